@@ -114,6 +114,11 @@ impl<L: Link> Client<L> {
         &mut self.link
     }
 
+    /// Gives the link back.
+    pub fn into_link(self) -> L {
+        self.link
+    }
+
     /// Lines that were lost, damaged or dropped so far.
     #[must_use]
     pub const fn counts(&self) -> LineCounts {

@@ -1,0 +1,259 @@
+//! What the client makes of answers, and of what comes in their place.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use thermal_client::client::{
+    BoardReport, Client, ClientError, Order, QueryBoard, QueryCause, QueryIdentity, QueryRaw,
+    QuerySelfTest, QueryState, SelfTestResult,
+};
+use thermal_client::link::{Interruptible, LineSplitter, LinkError};
+use thermal_device::StateName;
+use thermal_device::safety::Fault;
+
+use crate::fake_device::{FakeDevice, answers, knows};
+
+#[test]
+fn a_refusal_has_the_devices_text() {
+    let mut client = knows(&[("start", "err start needs arm first")]);
+    let error = client.ask(&Order::Start).unwrap_err();
+    assert_eq!(error.refusal(), Some("start needs arm first"));
+    assert_eq!(
+        error.to_string(),
+        "the device answers 'start' with 'err start needs arm first'"
+    );
+}
+
+#[test]
+fn a_device_that_does_not_answer_is_given_up_after_two_seconds() {
+    let mut client = FakeDevice::client(|_| Vec::new());
+    let error = client.ask(&Order::Arm).unwrap_err();
+    assert!(matches!(error, ClientError::TimedOut { .. }), "{error}");
+    assert_eq!(
+        error.to_string(),
+        "the device does not answer 'arm' within 2 s"
+    );
+}
+
+/// Without this, every answer after a lost second would be taken for that of the line after it.
+#[test]
+fn a_late_answer_is_not_taken_for_that_of_the_next_line() {
+    // A device answers in order.
+    let mut client = FakeDevice::client(|line| match line {
+        "law" => vec![(2500, "ok law=pi".into())],
+        "finger" => vec![(200, "ok finger=mean".into())],
+        other => vec![(200, format!("err unknown command '{other}'; known: id"))],
+    });
+    assert!(client.query("law").is_err());
+    // The late answer comes half a second after the client has given it up.
+    client.wait(Duration::from_millis(400)).unwrap();
+    assert_eq!(client.query("finger").unwrap(), "ok finger=mean");
+    assert_eq!(client.query("finger").unwrap(), "ok finger=mean");
+}
+
+#[test]
+fn what_is_no_answer_is_shown() {
+    let garbage = |_: &str| answers("\u{fffd}\u{fffd}ok?\u{1}");
+    let error = FakeDevice::client(garbage).ask(&Order::Arm).unwrap_err();
+    assert!(matches!(error, ClientError::NotUnderstood { .. }));
+    assert!(error.to_string().contains("ok?"), "{error}");
+    // An answer of another form.
+    let mut client = knows(&[("state", "ok state=melted fault=-")]);
+    assert_eq!(
+        client.ask(&QueryState).unwrap_err().to_string(),
+        "the answer to 'state' is not understood: 'ok state=melted fault=-'"
+    );
+    let mut client = knows(&[("arm", "ok 7")]);
+    assert!(matches!(
+        client.ask(&Order::Arm).unwrap_err(),
+        ClientError::NotUnderstood { .. }
+    ));
+}
+
+#[test]
+fn garbage_before_an_answer_is_counted_and_skipped() {
+    let mut client = FakeDevice::client(|_| {
+        ["", "rtfm", "T 12 armed 3", "k", "ok"]
+            .map(|line| (1, line.to_owned()))
+            .into()
+    });
+    client.ask(&Order::Arm).unwrap();
+    assert_eq!(client.counts().damaged, 3);
+}
+
+#[test]
+fn the_answer_of_another_finger_is_not_taken() {
+    let mut client = knows(&[
+        ("@2 arm", "@2 ok"),
+        ("@3 arm", "@2 ok"),
+        ("@1 law", "@1 err tripped by dose; clear it first"),
+        ("abort", "@3 err busy"),
+    ]);
+    client.ask_finger(Some(2), &Order::Arm).unwrap();
+    assert!(client.ask_finger(Some(3), &Order::Arm).is_err());
+    assert_eq!(
+        client.ask(&Order::Abort).unwrap_err().refusal(),
+        Some("busy")
+    );
+}
+
+#[test]
+fn lines_that_no_device_takes_are_not_sent() {
+    let mut client = knows(&[]);
+    for line in ["", " ", "a\nb", "h\u{e4}", &"x".repeat(97)] {
+        let error = client.query(line).unwrap_err();
+        assert!(matches!(error, ClientError::Unsendable { .. }), "{line}");
+    }
+    assert!(client.link().sent.is_empty());
+    assert!(client.query(&"x".repeat(96)).is_ok());
+}
+
+#[test]
+fn a_link_that_vanishes_is_an_error_at_once_and_the_reason_is_given() {
+    let mut client = FakeDevice::client(|_| Vec::new());
+    client.link().vanishes_at = Some(Duration::from_millis(300));
+    let gone = ClientError::Link(LinkError::Gone("unplugged".into()));
+    assert_eq!(client.ask(&Order::Arm).unwrap_err(), gone);
+    assert!(client.wait(Duration::from_secs(1)).is_err());
+    assert!(client.next_telemetry(Duration::from_secs(1)).is_err());
+}
+
+#[test]
+fn a_client_that_attaches_ends_the_line_of_its_predecessor_and_skips_its_answers() {
+    let mut fake = FakeDevice::client(|line| match line {
+        "" => Vec::new(),
+        "half a line" => answers("err unknown command 'half'; known: id"),
+        "law" => answers("ok law=pi"),
+        other => answers(&format!("err unknown command '{other}'; known: id")),
+    });
+    use thermal_client::link::Link;
+    fake.link().send(b"half a line").unwrap();
+    fake.link().sends(0, "17 armed - - - - - - 0 0 0 -");
+    fake.link().sends(0, "ok finger=mean");
+    let requested = Arc::new(AtomicBool::new(false));
+    let link = Interruptible::new(fake.into_link(), Arc::clone(&requested));
+    let mut client = Client::attach(link).unwrap();
+    assert_eq!(client.query("law").unwrap(), "ok law=pi");
+    // An interruption ends one wait, and the device can be told to stop.
+    requested.store(true, Ordering::Relaxed);
+    assert_eq!(
+        client.wait(Duration::from_secs(5)),
+        Err(LinkError::Interrupted)
+    );
+    assert_eq!(client.query("law").unwrap(), "ok law=pi");
+}
+
+#[test]
+fn lines_arrive_in_parts_and_endless_ones_do_not_fill_the_memory() {
+    let mut splitter = LineSplitter::default();
+    splitter.received().extend(b"ok sta");
+    assert!(splitter.complete().is_empty());
+    splitter.received().extend(b"te=off\r\nT 1\n\nhal");
+    assert_eq!(splitter.complete(), ["ok state=off", "T 1", ""]);
+    splitter.received().extend(b"f\n\xff\xfe\n");
+    assert_eq!(splitter.complete(), ["half", "\u{fffd}\u{fffd}"]);
+    for _ in 0..10_000 {
+        splitter.received().extend([b'x'; 100]);
+        splitter.complete();
+        assert!(splitter.received().len() < 2000);
+    }
+}
+
+#[test]
+fn with_checksums_damaged_answers_are_not_taken() {
+    // Checksums by hand: the exclusive or of all bytes, as in NMEA 0183.
+    let sum = |text: &str| {
+        format!(
+            "{text}*{:02X}",
+            text.bytes().fold(0, |sum, byte| sum ^ byte)
+        )
+    };
+    assert_eq!(sum("ok"), "ok*04");
+    let mut client = FakeDevice::client(move |line| match line {
+        "checksum on" => answers("ok*04"),
+        "law*7A" => vec![
+            (1, "ok law=pi*00".into()),
+            (2, "ok law=pi".into()),
+            (3, sum("ok law=model")),
+        ],
+        "checksum off*42" => answers("ok"),
+        "law" => answers("ok law=pi"),
+        other => answers(&format!("err unknown command '{other}'")),
+    });
+    client.ask(&Order::Checksum(true)).unwrap();
+    assert_eq!(client.query("law").unwrap(), "ok law=model");
+    assert_eq!(client.counts().damaged, 2);
+    client.ask(&Order::Checksum(false)).unwrap();
+    assert_eq!(client.query("law").unwrap(), "ok law=pi");
+}
+
+#[test]
+fn the_answers_for_diagnosis_are_read() {
+    let mut client = knows(&[
+        (
+            "id",
+            "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000 protocol=1 capabilities=upload,checksum,raw",
+        ),
+        (
+            "self-test",
+            "ok hot_cut_ms=1 hot_supply_v=0.42 hot_release_ms=2 cold_cut_ms=- cold_supply_v=- cold_release_ms=- supply_v=11.9 cool_a=- warm_a=- display_k=- check_k=- result=comparator",
+        ),
+        (
+            "raw",
+            "ok display=2048.25 check=2047.5 sink=1900 skin=1500 room=2000 force=410.06 current=0 supply=2730 stop=0 fault_line=1",
+        ),
+        (
+            "board",
+            "ok bor=3 watchdogs=running clock=hse pwm_lock=1 reset=power rx_overruns=0 rx_framing=1 rx_noise=2 tx_dropped=3",
+        ),
+        (
+            "cause",
+            "ok cause=display-hot tick=1234 display_c=43.10 check_c=42.90 sink_c=- current_a=5.990 asked_a=-6.000",
+        ),
+    ]);
+    let identity = client.ask(&QueryIdentity).unwrap();
+    assert_eq!(
+        (identity.fingers, identity.protocol, identity.scan_hz),
+        (1, Some(1), 16_000)
+    );
+    assert!(identity.can("raw") && !identity.can("ra") && !identity.can("board"));
+    let test = client.ask(&QuerySelfTest).unwrap();
+    assert_eq!(test.result, SelfTestResult::Failed(Fault::Comparator));
+    assert_eq!((test.hot_supply_v, test.cold_cut_ms), (Some(0.42), None));
+    let raw = client.ask(&QueryRaw).unwrap();
+    assert_eq!((raw.display, raw.supply), (2048.25, 2730.0));
+    assert!(raw.fault_line && !raw.stop);
+    let board = BoardReport {
+        bor: "3".into(),
+        watchdogs_frozen: false,
+        clock_external: true,
+        pwm_lock: "1".into(),
+        reset: "power".into(),
+        rx_overruns: 0,
+        rx_framing: 1,
+        rx_noise: 2,
+        tx_dropped: 3,
+    };
+    assert_eq!(client.ask(&QueryBoard).unwrap(), board);
+    let cause = client.ask(&QueryCause).unwrap().unwrap();
+    assert_eq!((cause.fault, cause.tick), (Fault::DisplayHot, 1234));
+    assert_eq!((cause.sink_c, cause.asked_a), (None, -6.0));
+    let mut untripped = knows(&[("cause", "ok cause=-")]);
+    assert_eq!(untripped.ask(&QueryCause).unwrap(), None);
+}
+
+#[test]
+fn every_fault_of_the_device_is_known_in_its_state() {
+    for fault in Fault::ALL {
+        let word = fault.name();
+        let mut client = FakeDevice::client(move |_| {
+            answers(&format!(
+                "ok state=tripped fault={word} material=copper object_c=24.00 mode=contact setpoint_c=- limited body=slab"
+            ))
+        });
+        let status = client.ask(&QueryState).unwrap();
+        assert_eq!(status.state, StateName::Tripped(*fault));
+        assert_eq!((status.object_c, status.limited), (Some(24.0), true));
+    }
+}

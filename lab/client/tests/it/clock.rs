@@ -1,0 +1,87 @@
+//! Ticks against the host's time, with arrivals as a USB adapter delays them.
+
+use std::time::Duration;
+
+use thermal_client::client::DeviceClock;
+
+/// Deterministic noise from 0 to 1.
+fn noise(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+    (*seed >> 40) as f64 / (1u64 << 24) as f64
+}
+
+/// The estimate after telemetry every 10 ms for some seconds, of a device whose clock is off by so many parts in a million and
+/// whose tick 0 was at `zero_s`. Lines arrive up to 4 ms late, and one in a hundred up to 60 ms.
+fn observed(clock: &mut DeviceClock, zero_s: f64, ppm: f64, from: u32, seconds: u32) {
+    let mut seed = 7;
+    for i in 0..100 * seconds {
+        let tick = from.wrapping_add(10 * i);
+        let late = noise(&mut seed);
+        let late_s = match i % 100 {
+            0 => 0.06 * late,
+            _ => 4e-3 * late,
+        };
+        let at_s = zero_s + f64::from(10 * i) * 1e-3 * (1.0 + 1e-6 * ppm) + late_s;
+        clock.observe(tick, Duration::from_secs_f64(at_s));
+    }
+}
+
+#[test]
+fn offset_and_drift_are_found_within_the_stated_error() {
+    for (ppm, seconds) in [(0.0, 10), (30.0, 60), (-50.0, 600), (20.0, 7200)] {
+        let mut clock = DeviceClock::default();
+        observed(&mut clock, 5.0, ppm, 0, seconds);
+        for tick in [0, 1000 * seconds / 2, 1000 * (seconds - 1)] {
+            let time = clock.time_of(tick).unwrap();
+            let true_s = 5.0 + f64::from(tick) * 1e-3 * (1.0 + 1e-6 * ppm);
+            let error_s = time.at_s - true_s;
+            // The common delay, the least of 4 ms, is not seen.
+            assert!(
+                error_s.abs() <= time.error_s + 0.2e-3,
+                "{ppm} ppm, {seconds} s, tick {tick}: {error_s}, {time:?}"
+            );
+            assert!(time.error_s < 1e-3, "{time:?}");
+        }
+        if seconds >= 600 {
+            let drift_ppm = clock.time_of(0).unwrap().drift_ppm;
+            assert!((drift_ppm - ppm).abs() < 2.0, "{drift_ppm}, {ppm}");
+        }
+    }
+}
+
+#[test]
+fn a_restart_begins_a_new_estimate() {
+    let mut clock = DeviceClock::default();
+    assert_eq!(clock.time_of(0), None);
+    observed(&mut clock, 1.0, 10.0, 0, 20);
+    assert_eq!(clock.restarts(), 0);
+    observed(&mut clock, 40.0, 10.0, 0, 20);
+    assert_eq!(clock.restarts(), 1);
+    let time = clock.time_of(1000).unwrap();
+    assert!((time.at_s - 41.0).abs() < 1e-3, "{time:?}");
+}
+
+/// After 49 days.
+#[test]
+fn a_tick_that_wraps_is_no_restart() {
+    let mut clock = DeviceClock::default();
+    observed(&mut clock, 1.0, 0.0, u32::MAX - 4999, 10);
+    assert_eq!(clock.restarts(), 0);
+    for (tick, true_s) in [(u32::MAX - 999, 5.0), (0, 6.0), (4000, 10.0)] {
+        let time = clock.time_of(tick).unwrap();
+        assert!((time.at_s - true_s).abs() < 1.2e-3, "{tick}: {time:?}");
+    }
+}
+
+/// The fingers of one device are sampled within one tick; their lines overtake each other.
+#[test]
+fn lines_of_several_fingers_in_any_order_are_no_restart() {
+    let mut clock = DeviceClock::default();
+    for i in 0..1000u32 {
+        let at = Duration::from_millis(u64::from(5 * i));
+        for back in [0, 1, 5, 3] {
+            clock.observe((1000 + 5 * i) - back, at);
+        }
+    }
+    assert_eq!(clock.restarts(), 0);
+}

@@ -1,0 +1,157 @@
+//! Telemetry beside answers, its losses, and the sign of life.
+
+use std::time::Duration;
+
+use thermal_client::client::{Client, Order};
+use thermal_device::StateName;
+use thermal_device::safety::Fault;
+
+use crate::fake_device::{FakeDevice, answers, knows};
+
+/// Time after which a streaming device trips because its host is silent, ms (docs/protocol.md).
+const HOST_SILENT_MS: u128 = 2000;
+
+fn line(tick: u32) -> String {
+    format!("T {tick} armed 33.00000 33.0123 24.10 33.20 24.00 0.001 -1.250 1.240 17 -")
+}
+
+/// A device that streams, and was told at which interval.
+fn streaming(interval_ms: u32) -> Client<FakeDevice> {
+    let mut client = FakeDevice::client(|line| match line {
+        "" => Vec::new(),
+        _ => answers("ok"),
+    });
+    client.ask(&Order::Stream(interval_ms)).unwrap();
+    client
+}
+
+#[test]
+fn telemetry_between_lines_and_answers_is_kept_apart_and_in_order() {
+    let mut client = FakeDevice::client(|_| {
+        vec![
+            (1, line(10)),
+            (1, line(11)),
+            (1, "ok law=pi".into()),
+            (1, line(12)),
+        ]
+    });
+    assert_eq!(client.query("law").unwrap(), "ok law=pi");
+    client.wait(Duration::from_millis(1)).unwrap();
+    let mut ticks = Vec::new();
+    while let Some(line) = client.next_telemetry(Duration::ZERO).unwrap() {
+        ticks.push(line.telemetry.tick);
+        let one = line.telemetry;
+        assert_eq!(one.state, StateName::Armed);
+        assert_eq!((one.setpoint_c, one.display_c), (Some(33.0), Some(33.0123)));
+        assert_eq!((one.sink_c, one.skin_c), (Some(24.1), Some(33.2)));
+        assert_eq!((one.room_c, one.force_n), (Some(24.0), Some(0.001)));
+        assert_eq!((one.demand_a, one.current_a), (Some(-1.25), Some(1.24)));
+        assert_eq!((one.evaluations, one.limited), (17, false));
+    }
+    assert_eq!(ticks, [10, 11, 12]);
+}
+
+#[test]
+fn what_the_device_does_not_know_and_why_it_tripped_is_read() {
+    let mut client = streaming(1);
+    client.link().sends(
+        1,
+        "@3 T 5 tripped - - 24.10 33.20 24.00 - 0.000 0.000 0 display-open",
+    );
+    client.link().sends(
+        2,
+        "T 6 preset 15.00000 15.2000 24.10 33.20 24.00 0.000 6.000 5.900 9 limited",
+    );
+    let wait = Duration::from_millis(5);
+    let tripped = client.next_telemetry(wait).unwrap().unwrap();
+    assert_eq!(tripped.finger, Some(3));
+    assert_eq!(tripped.telemetry.fault(), Some(Fault::DisplayOpen));
+    assert_eq!(
+        (tripped.telemetry.display_c, tripped.telemetry.force_n),
+        (None, None)
+    );
+    assert!(
+        client
+            .next_telemetry(wait)
+            .unwrap()
+            .unwrap()
+            .telemetry
+            .limited
+    );
+}
+
+#[test]
+fn a_client_that_waits_gives_a_sign_of_life_while_the_device_streams_and_only_then() {
+    let mut client = knows(&[
+        ("stream 50", "ok"),
+        ("stream 0", "ok"),
+        ("law", "ok law=pi"),
+    ]);
+    client.wait(Duration::from_secs(10)).unwrap();
+    assert!(client.link().blank_ms().is_empty());
+    client.ask(&Order::Stream(50)).unwrap();
+    let from_ms = client.link().sent[0].0.as_millis();
+    client.wait(Duration::from_secs(7)).unwrap();
+    client.query("law").unwrap();
+    assert!(
+        client
+            .next_telemetry(Duration::from_secs(8))
+            .unwrap()
+            .is_none()
+    );
+    let mut last_ms = from_ms;
+    for (at, _) in &client.link().sent {
+        assert!(at.as_millis() - last_ms.min(at.as_millis()) < HOST_SILENT_MS * 3 / 4);
+        last_ms = at.as_millis();
+    }
+    assert!(last_ms > 24_000, "{last_ms}");
+    client.ask(&Order::Stream(0)).unwrap();
+    let before = client.link().blank_ms().len();
+    client.wait(Duration::from_secs(10)).unwrap();
+    assert_eq!(client.link().blank_ms().len(), before);
+}
+
+#[test]
+fn lost_lines_are_counted_by_their_ticks_for_each_finger() {
+    let mut client = streaming(5);
+    for (after_ms, text) in [
+        (1, line(100)),
+        (6, line(105)),
+        // Three lines are missing.
+        (26, line(125)),
+        (26, format!("@1 {}", line(100))),
+        (31, format!("@1 {}", line(110))),
+        // It has restarted.
+        (400, line(5)),
+        (405, line(10)),
+    ] {
+        client.link().sends(after_ms, &text);
+    }
+    client.wait(Duration::from_millis(500)).unwrap();
+    let mut lost = Vec::new();
+    while let Some(line) = client.next_telemetry(Duration::ZERO).unwrap() {
+        lost.push(line.lost_before);
+    }
+    assert_eq!(lost, [0, 0, 3, 0, 1, 0, 0]);
+    assert_eq!(client.counts().lost, 4);
+}
+
+#[test]
+fn a_line_that_was_damaged_on_its_way_is_counted_and_not_taken() {
+    let mut client = streaming(1);
+    for text in [
+        "T 1 armed 33.00000 33.0123 24.10 33.20 24.00 0.001 -1.250 1.240 17 -",
+        "T 2 armed 33.00000 33.0123 24.1",
+        "T 3 armed 33.00000 33.O123 24.10 33.20 24.00 0.001 -1.250 1.240 17 -",
+        "T 4 armde 33.00000 33.0123 24.10 33.20 24.00 0.001 -1.250 1.240 17 -",
+        "T 5 armed nan 33.0123 24.10 33.20 24.00 0.001 -1.250 1.240 17 -",
+        "5 T armed",
+        "T",
+    ] {
+        client.link().sends(1, text);
+    }
+    client.wait(Duration::from_millis(5)).unwrap();
+    assert!(client.next_telemetry(Duration::ZERO).unwrap().is_some());
+    assert!(client.next_telemetry(Duration::ZERO).unwrap().is_none());
+    assert_eq!(client.counts().damaged, 6);
+}
