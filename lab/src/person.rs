@@ -5,7 +5,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use thermal_client::client::{Client, thermistor_word};
+use thermal_client::client::{Client, ClientError, Order, thermistor_word};
 use thermal_client::commissioning::{CommissioningEvent, Surroundings, SurroundingsError};
 use thermal_client::link::{Link, LinkError};
 use thermal_device::safety::ThermistorId;
@@ -15,6 +15,14 @@ const READING_C: (f64, f64) = (0.0, 60.0);
 const DISTANCE_MAX_K: f64 = 3.0;
 /// A point that the calibration misses by more than this, mK, is worth a second look at what was entered.
 const MISFIT_MK: f64 = 20.0;
+/// Distance from what the device reads, K, beyond which a number must be entered twice: as long as its thermistor has fewer
+/// than so many points, and from then on.
+const FAR_K: f64 = 0.3;
+const FEW_POINTS: u32 = 3;
+const FAR_CALIBRATED_K: f64 = 0.05;
+/// Interval of the telemetry from which the device's reading is taken, ms, and its timeout.
+const TELEMETRY_MS: u32 = 20;
+const TELEMETRY_TIMEOUT: Duration = Duration::from_millis(500);
 /// Time between two looks at the device while the person types.
 const LOOK: Duration = Duration::from_millis(100);
 
@@ -23,12 +31,15 @@ pub type Lines = Receiver<io::Result<String>>;
 
 /// A person at the bench.
 pub struct Person<'a> {
+    finger: Option<u8>,
     lines: Lines,
     screen: &'a mut dyn Write,
     /// Temperature that was asked for last, °C.
     asked_c: Option<f64>,
     /// What the person has entered since anything changed, °C; it holds for both thermistors of the display.
     entered_c: Option<f64>,
+    /// Points of the thermistor so far.
+    points: u32,
 }
 
 /// Lines of a reader, such as standard input, which another thread waits for.
@@ -42,13 +53,15 @@ pub fn lines(reader: impl BufRead + Send + 'static) -> Lines {
 }
 
 impl<'a> Person<'a> {
-    /// A person who enters `lines` and reads the screen.
-    pub fn new(lines: Lines, screen: &'a mut dyn Write) -> Self {
+    /// A person at a device, or at one of its fingers, who enters `lines` and reads the screen.
+    pub fn new(finger: Option<u8>, lines: Lines, screen: &'a mut dyn Write) -> Self {
         Self {
+            finger,
             lines,
             screen,
             asked_c: None,
             entered_c: None,
+            points: 0,
         }
     }
 
@@ -98,6 +111,27 @@ impl<'a> Person<'a> {
     }
 }
 
+/// What the device reads at a thermistor now, °C, by its telemetry.
+fn device_reads_c<L: Link>(
+    client: &mut Client<L>,
+    finger: Option<u8>,
+    thermistor: ThermistorId,
+) -> Result<Option<f64>, ClientError> {
+    while client.next_telemetry(Duration::ZERO)?.is_some() {}
+    client.ask_finger(finger, &Order::Stream(TELEMETRY_MS))?;
+    let mut line = client.next_telemetry(TELEMETRY_TIMEOUT)?;
+    while line.is_some_and(|line| finger.is_some() && line.finger != finger) {
+        line = client.next_telemetry(TELEMETRY_TIMEOUT)?;
+    }
+    client.ask_finger(finger, &Order::Stream(0))?;
+    Ok(line.and_then(|line| match thermistor {
+        ThermistorId::Display | ThermistorId::Check => line.telemetry.display_c,
+        ThermistorId::Sink => line.telemetry.sink_c,
+        ThermistorId::Skin => line.telemetry.skin_c,
+        ThermistorId::Room => line.telemetry.room_c,
+    }))
+}
+
 fn ended(error: LinkError) -> SurroundingsError {
     match error {
         LinkError::Interrupted => SurroundingsError::Interrupted,
@@ -122,14 +156,37 @@ impl<L: Link> Surroundings<L> for Person<'_> {
         };
         let question =
             format!("  Wait until the reference thermometer {place} is steady. It shows, in C: ");
+        let mut entered_before_c = None;
         loop {
             let line = self.ask(client, &question)?;
-            match self.reading_c(&line) {
-                Ok(celsius) => {
+            let celsius = match self.reading_c(&line) {
+                Ok(celsius) => celsius,
+                Err(why) => {
+                    self.tell(&format!("  {why}\n"));
+                    continue;
+                }
+            };
+            let device_c = device_reads_c(client, self.finger, thermistor);
+            let device_c = device_c.map_err(|error| match error {
+                ClientError::Link(error) => ended(error),
+                error => SurroundingsError::Failed(error.to_string()),
+            })?;
+            let far_k = if self.points < FEW_POINTS {
+                FAR_K
+            } else {
+                FAR_CALIBRATED_K
+            };
+            match device_c.filter(|device_c| (celsius - device_c).abs() > far_k) {
+                Some(device_c) if entered_before_c != Some(celsius) => {
+                    entered_before_c = Some(celsius);
+                    self.tell(&format!(
+                        "  The device reads {device_c:.3} C. If {celsius:.3} C is right, enter it again.\n"
+                    ));
+                }
+                _ => {
                     self.entered_c = Some(celsius);
                     return Ok(celsius);
                 }
-                Err(why) => self.tell(&format!("  {why}\n")),
             }
         }
     }
@@ -158,21 +215,25 @@ impl<L: Link> Surroundings<L> for Person<'_> {
     }
 
     fn reads_again(&mut self, why: &str) -> bool {
-        !why.starts_with("tripped")
+        // The bath stays as it is: its point is left out, as the others suffice.
+        !why.starts_with("tripped") && !why.starts_with("at a step")
     }
 
     fn notice(&mut self, event: &CommissioningEvent) {
         let mut text = format!("{event}\n");
         match event {
-            CommissioningEvent::StepStarted(_) => self.asked_c = None,
+            CommissioningEvent::StepStarted(_) => (self.asked_c, self.points) = (None, 0),
             CommissioningEvent::HoldStarted(hold_c) => {
                 (self.asked_c, self.entered_c) = (Some(*hold_c), None);
             }
             CommissioningEvent::PointRefused { .. } => self.entered_c = None,
-            CommissioningEvent::PointAccepted(point) if point.worst_mk > MISFIT_MK => {
-                text += "  If a number was wrong, press Ctrl-C and begin again.\n";
+            CommissioningEvent::PointAccepted(point) => {
+                self.points = point.points;
+                if point.worst_mk > MISFIT_MK {
+                    text += "  If a number was wrong, press Ctrl-C and begin again.\n";
+                }
             }
-            _ => {}
+            CommissioningEvent::TileIdentified(_) => {}
         }
         self.tell(&text);
     }

@@ -2,7 +2,7 @@
 
 use std::io::{BufReader, Write, stderr, stdin};
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use clap::Args;
 use thermal_client::client::Client;
 use thermal_client::commissioning::{CommissioningEvent, CommissioningRecord};
@@ -20,7 +20,7 @@ pub struct Arguments {
     finger: Option<u8>,
     /// Surroundings of a device that `hil-sim serve --surroundings` serves at `--tcp`: baths and reference thermometer are
     /// simulated there, and nobody is asked
-    #[arg(long, value_name = "ADDR", requires = "tcp")]
+    #[arg(long, value_name = "ADDR")]
     surroundings: Option<String>,
     /// Print one JSON object: points, tile with margins, settings
     #[arg(long)]
@@ -30,6 +30,11 @@ pub struct Arguments {
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let record = match (&arguments.surroundings, &target.tcp) {
         (Some(surroundings), Some(device)) => served(device, surroundings, arguments)?,
+        (Some(_), None) => {
+            return Err(Failure::input(anyhow!(
+                "--surroundings is for a device that is served at --tcp ADDR"
+            )));
+        }
         _ if target.simulated => simulated(target)?,
         _ => by_a_person(target, arguments)?,
     };
@@ -43,7 +48,11 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
 /// On a device at a bench.
 fn by_a_person(target: &Target, arguments: &Arguments) -> Result<CommissioningRecord, Failure> {
     let mut screen = stderr();
-    let mut person = Person::new(lines(BufReader::new(stdin())), &mut screen);
+    let mut person = Person::new(
+        arguments.finger,
+        lines(BufReader::new(stdin())),
+        &mut screen,
+    );
     target.with_client(|client| {
         commission(client, arguments.finger, &mut person).map_err(Failure::run)
     })

@@ -30,7 +30,8 @@ pub trait Surroundings<L> {
         bath_c: f64,
     ) -> Result<(), SurroundingsError>;
 
-    /// Whether the thermometer is read again after the device refused a point for this reason: a person may have mistyped.
+    /// Whether the thermometer is read again after the device refused a point for this reason: a person may have mistyped. If
+    /// not, a point in a bath is left out.
     fn reads_again(&mut self, why: &str) -> bool;
 
     /// Is told what happens.

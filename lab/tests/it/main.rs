@@ -1,0 +1,6 @@
+//! Lines to real and simulated devices, and the person at the bench.
+
+mod person;
+mod program;
+mod simulated_device;
+mod tcp;

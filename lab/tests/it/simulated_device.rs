@@ -1,0 +1,188 @@
+//! Every command of the client, on the device's own parser and logic.
+
+use std::time::Duration;
+
+use contact_model::impedance::{Impedance, Relaxation};
+use contact_model::material::MATERIALS;
+use contact_model::slab::Back;
+use thermal_commissioning::StorageOrder;
+use thermal_device::StateName;
+use thermal_device::command::AssumedFinger;
+use thermal_device::control::Law;
+use thermal_device::reference::ContactModel;
+use thermal_device::safety::ThermistorId;
+use thermal_lab::client::{
+    Calibrate, Client, CountSettings, Order, QueryAssumedFinger, QueryBoard, QueryCause,
+    QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState,
+    upload,
+};
+use thermal_lab::commissioning::arm;
+use thermal_lab::link::{Link, SimulatedLink};
+use thermal_plant::Params;
+use thermal_sim::commissioning::CommissioningSetup;
+use thermal_sim::engine::NativeEngine;
+
+pub fn device() -> NativeEngine {
+    let setup = CommissioningSetup::new(&Params::nominal(), 24.0, 1);
+    NativeEngine::new(setup.in_use().expect("a plant"))
+}
+
+#[test]
+fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
+    let mut engine = device();
+    let mut client = Client::new(SimulatedLink::new(&mut engine));
+    client.wait(Duration::from_millis(600)).unwrap();
+    let (_, copper) = MATERIALS[0];
+    let setting = client.ask(&QuerySettings(3)).unwrap();
+    let relaxations = [Relaxation {
+        rate_1_s: 2.0,
+        gain_m2k_j: 4e-5,
+    }];
+    let object = Impedance {
+        direct_m2k_w: 5e-7,
+        relaxations: &relaxations,
+    };
+    let mut orders = vec![
+        Order::Material("oak".into()),
+        Order::Material("granite".into()),
+        Order::CustomMaterial(copper),
+        Order::ObjectTemperature(Some(-3.25)),
+        Order::ObjectTemperature(None),
+        Order::HalfSpace,
+        Order::Slab {
+            thickness_mm: 2.5,
+            back: Back::Film(12.5),
+        },
+        Order::Slab {
+            thickness_mm: 3.0,
+            back: Back::Held,
+        },
+        Order::Slab {
+            thickness_mm: 4.0,
+            back: Back::Insulated,
+        },
+        Order::AssumedFinger(AssumedFinger::MeanOnPad),
+        Order::Mode(ContactModel::SemiInfinite),
+        Order::Law(Law::Pi10Hz),
+        Order::Checksum(true),
+        Order::Stream(7),
+        Order::Stream(0),
+        Order::Checksum(false),
+        Order::Set(setting),
+        Order::ClearCalibration(ThermistorId::Check),
+    ];
+    orders.extend(upload(&object));
+    let refused: Vec<_> = (orders.iter())
+        .filter_map(|order| Some((order.to_string(), client.ask(order).err()?)))
+        .collect();
+    // The only one that no device knows.
+    assert_eq!(refused.len(), 1, "{refused:?}");
+    assert!(
+        refused[0]
+            .1
+            .refusal()
+            .unwrap()
+            .starts_with("unknown material 'oak'")
+    );
+    let status = client.ask(&QueryState).unwrap();
+    assert_eq!(status.state, StateName::Off);
+    assert_eq!(status.material.as_deref(), Some("custom"));
+    assert_eq!(
+        (status.mode, status.body.as_str()),
+        (ContactModel::SemiInfinite, "upload")
+    );
+    assert_eq!(client.ask(&QueryLaw).unwrap(), Law::Pi10Hz);
+    assert_eq!(
+        client.ask(&QueryAssumedFinger).unwrap(),
+        AssumedFinger::MeanOnPad
+    );
+    assert_eq!(client.ask(&QueryCause).unwrap(), None);
+    arm(&mut client, None).unwrap();
+    client.ask(&Order::Start).unwrap();
+    client.ask(&Order::Arm).unwrap();
+    client.ask(&Order::Hold(30.0)).unwrap();
+    client.ask(&Order::Tune).unwrap();
+    client.ask(&Order::Abort).unwrap();
+    let refused = client.ask(&Order::Clear).unwrap_err();
+    assert_eq!(refused.refusal(), Some("no fault to clear"));
+    let point = Calibrate {
+        thermistor: ThermistorId::Room,
+        reference_c: 24.0,
+    };
+    client.wait(Duration::from_millis(600)).unwrap();
+    let fit = client.ask(&point).unwrap();
+    assert_eq!(fit.points, 1);
+    let lines = client.ask(&CountSettings).unwrap();
+    let before: Vec<_> = (1..=lines)
+        .map(|n| client.ask(&QuerySettings(n)).unwrap())
+        .collect();
+    client.ask(&Order::Store(StorageOrder::Save)).unwrap();
+    let after: Vec<_> = (1..=lines)
+        .map(|n| client.ask(&QuerySettings(n)).unwrap())
+        .collect();
+    assert_eq!(before, after);
+    client.ask(&Order::Store(StorageOrder::Forget)).unwrap();
+    assert!((client.ask(&QueryMargins).unwrap().gain_k_s_a - 2.91).abs() < 1e-9);
+}
+
+#[test]
+fn what_the_device_says_it_can_do_it_does() {
+    let mut engine = device();
+    let mut client = Client::attach(SimulatedLink::new(&mut engine)).unwrap();
+    let identity = client.ask(&QueryIdentity).unwrap();
+    assert_eq!((identity.fingers, identity.tick_hz), (1, 1000));
+    assert_eq!(identity.protocol, Some(1));
+    if identity.can("self-test") {
+        client.ask(&QuerySelfTest).unwrap();
+    }
+    if identity.can("raw") {
+        let raw = client.ask(&QueryRaw).unwrap();
+        assert!(raw.display > 100.0 && raw.display < 4000.0, "{raw:?}");
+    }
+    if identity.can("board") {
+        client.ask(&QueryBoard).unwrap();
+    }
+}
+
+/// Time of the device against that of its link, which in a simulation are the same but for the time on the line.
+#[test]
+fn telemetry_comes_at_its_interval_and_a_device_that_restarts_is_noticed() {
+    let mut engine = device();
+    let mut client = Client::new(SimulatedLink::new(&mut engine));
+    client.wait(Duration::from_millis(100)).unwrap();
+    client.ask(&Order::Stream(5)).unwrap();
+    client.wait(Duration::from_secs(3)).unwrap();
+    let mut last = None;
+    while let Some(line) = client.next_telemetry(Duration::ZERO).unwrap() {
+        let tick = line.telemetry.tick;
+        assert!(last.is_none_or(|last| tick == last + 5), "{last:?}, {tick}");
+        last = Some(tick);
+    }
+    let time = client.clock().time_of(last.unwrap()).unwrap();
+    assert!(
+        (time.at_s - client.link().now().as_secs_f64()).abs() < 0.01,
+        "{time:?}"
+    );
+    assert!(
+        time.error_s < 1.1e-3 && time.drift_ppm.abs() < 1.0,
+        "{time:?}"
+    );
+    client.ask(&Order::Store(StorageOrder::Forget)).unwrap();
+    client.ask(&Order::Stream(5)).unwrap();
+    client.wait(Duration::from_millis(50)).unwrap();
+    let line = client.next_telemetry(Duration::ZERO).unwrap().unwrap();
+    assert!(line.telemetry.tick < 100, "{line:?}");
+    assert_eq!((client.clock().restarts(), client.counts().lost), (1, 0));
+}
+
+/// Two minutes without any other line: the device would trip after two seconds.
+#[test]
+fn a_driven_device_whose_host_only_listens_does_not_trip() {
+    let mut engine = device();
+    let mut client = Client::new(SimulatedLink::new(&mut engine));
+    client.wait(Duration::from_millis(500)).unwrap();
+    arm(&mut client, None).unwrap();
+    client.ask(&Order::Stream(1000)).unwrap();
+    client.wait(Duration::from_secs(120)).unwrap();
+    assert_eq!(client.ask(&QueryState).unwrap().state, StateName::Armed);
+}
