@@ -198,10 +198,10 @@ impl Plant {
         self.defects.supply.emergency_stop
     }
 
-    /// Voltage of the bridge's supply behind its switch, V.
+    /// Sensed voltage of the bridge's supply behind its switch, V.
     #[must_use]
-    pub const fn supply_v(&self) -> f64 {
-        self.supply.node_v()
+    pub fn sensed_supply_v(&self) -> f64 {
+        self.supply.sensed_v()
     }
 
     /// Reseeds the noise of the A/D converter; its non-linearity, which belongs to the device, stays.

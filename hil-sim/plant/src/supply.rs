@@ -137,13 +137,20 @@ impl Supply {
         !self.driver_is_on() && self.node_v > DRIVER_DEAD_BELOW_V
     }
 
+    /// Voltage that the sense divider shows, V; none if its wire is open.
+    #[must_use]
+    pub const fn sensed_v(&self) -> f64 {
+        if self.defects.sense_open {
+            0.0
+        } else {
+            self.node_v
+        }
+    }
+
     /// Voltage at the converter's pin, counts at a nominal reference.
     #[must_use]
-    pub fn sensed_counts(&self) -> f64 {
-        if self.defects.sense_open {
-            return 0.0;
-        }
-        self.params.sense_counts_per_v * self.node_v
+    pub const fn sensed_counts(&self) -> f64 {
+        self.params.sense_counts_per_v * self.sensed_v()
     }
 }
 

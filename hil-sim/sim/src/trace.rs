@@ -40,6 +40,8 @@ pub struct TraceRow {
     pub current_a: f64,
     /// Sensor outputs before the converter.
     pub taken: SensorReadings,
+    /// Sensed supply of the bridge, V.
+    pub supply_v: f64,
     /// Whether the fault line is low.
     pub fault_line: bool,
     /// Camera reading of the skin on the real object; `None` between frames.
@@ -64,6 +66,7 @@ impl TraceRow {
             sink_c: plant.sink_c(),
             current_a: plant.current_a(),
             taken: plant.sensor_readings(),
+            supply_v: plant.sensed_supply_v(),
             fault_line: plant.bridge_fault(),
             camera,
             device: None,

@@ -45,11 +45,15 @@ pub enum Symptom {
     SinkLimit,
     /// The fault line is low while current flows.
     FaultLine,
+    /// The sensed supply of the bridge is outside of 10.6 to 13.4 V in a state after the self-test. A counter of such rows,
+    /// decremented by other rows, reaches 12; the onset is 12 ms earlier.
+    SupplyOff,
     /// The dose of the display's reading less 0.1 K reaches half a minute of CEM43.
     Dose,
-    /// The age of a self-test that started after the fault, s: its test of the comparator ends at 0.02, of the current at
-    /// 0.304, of the response of the display at 0.504, and the whole at 0.704. The part after the comparator restarts one
-    /// second after a finger lands or lifts, and is delayed by one second under a resting finger.
+    /// The age of a self-test that started after the fault, s, without its wait for a tick whose number is a multiple of
+    /// 64: its test of the comparator's hot side ends at 0.02 and the pause after it at 0.04, the test of the cold side at
+    /// 0.06, of the current at 0.344, of the response of the display at 0.544, and the whole at 0.744. The part after the
+    /// comparator restarts one second after a finger lands or lifts, and is delayed by one second under a resting finger.
     SelfTest(f64),
 }
 
@@ -65,6 +69,10 @@ const OFF_A: f64 = 1.05;
 const OFF_FRACTION: f64 = 0.25;
 /// Two more than the debounce of the device: it samples during the whole tick and may count one tick less.
 const OFF_ROWS: usize = 32;
+/// The device's limits are 10.8 and 13.2 V; divider and reference are 2 % off at most.
+const SUPPLY_V: std::ops::RangeInclusive<f64> = 10.6..=13.4;
+/// Two more than the debounce of the device.
+const SUPPLY_ROWS: usize = 12;
 const OVER_A: f64 = 9.2;
 const OVER_ROWS: usize = 2;
 const DIRECTED_A: f64 = 1.0;
@@ -74,8 +82,10 @@ const DISPLAY_C: std::ops::RangeInclusive<f64> = 13.4..=43.1;
 const SINK_C: f64 = 42.1;
 const DOSE_MIN: f64 = 0.5;
 const DOSE_BELOW_K: f64 = 0.1;
+/// Ticks whose numbers are multiples of this begin a self-test.
+const BEGIN_TICKS: u64 = 64;
 /// End of the comparator's part of a self-test, and the wait after a change of contact, ms.
-const COMPARATOR_MS: u32 = 40;
+const COMPARATOR_MS: u32 = 80;
 const UNTOUCHED_MS: u32 = 1000;
 
 /// Indices of the thermistors.
@@ -142,6 +152,7 @@ impl Symptom {
             Self::FaultLine => (from.max(1)..rows.len())
                 .find(|&i| rows[i].fault_line && rows[i - 1].current_a != 0.0)
                 .map(|i| rows[i].t_s),
+            Self::SupplyOff => supply_off(after),
             Self::Dose => dose(rows, from),
             Self::SelfTest(age_s) => self_test(rows, from, tested_from_s?, age_s),
         }
@@ -232,6 +243,27 @@ fn over_current(rows: &[TraceRow]) -> Option<f64> {
     Some(lasts[0].t_s)
 }
 
+fn supply_off(rows: &[TraceRow]) -> Option<f64> {
+    let mut wrong = 0;
+    for (i, row) in rows.iter().enumerate() {
+        let is_tested = row.device.as_ref().is_some_and(|device| {
+            matches!(
+                device.state.as_str(),
+                "ready" | "armed" | "preset" | "contact"
+            )
+        });
+        wrong = if is_tested && !SUPPLY_V.contains(&row.supply_v) {
+            wrong + 1
+        } else {
+            usize::saturating_sub(wrong, 1)
+        };
+        if wrong >= SUPPLY_ROWS {
+            return Some(rows[i + 1 - SUPPLY_ROWS].t_s);
+        }
+    }
+    None
+}
+
 fn dose(rows: &[TraceRow], from: usize) -> Option<f64> {
     let mut minutes = 0.0;
     let mut doses = rows.iter().enumerate().map(|(i, row)| {
@@ -252,7 +284,11 @@ fn self_test(rows: &[TraceRow], from: usize, tested_from_s: f64, age_s: f64) -> 
         return None;
     }
     let (mut age_ms, mut wait_ms, mut touched) = (0, 0, false);
-    for row in &rows[begin..] {
+    let waits = |row: &&TraceRow| {
+        let device = row.device.as_ref();
+        device.is_some_and(|device| !device.tick.is_multiple_of(BEGIN_TICKS))
+    };
+    for row in rows[begin..].iter().skip_while(waits) {
         if f64::from(age_ms) * 1e-3 >= age_s - 1e-9 {
             return Some(row.t_s);
         }
@@ -283,7 +319,7 @@ mod tests {
         let world = World::new(&scene).expect("a plant");
         let row = |ms: u32| {
             let mut row = TraceRow::capture(f64::from(ms) / 1e3, world.plant(), None);
-            let mut device = Telemetry::parse("T 1 armed - - - - - - - - 0 -").expect("telemetry");
+            let mut device = Telemetry::parse("T 0 armed - - - - - - - - 0 -").expect("telemetry");
             at(row.t_s, &mut row, &mut device);
             row.device = Some(device);
             row
@@ -299,7 +335,7 @@ mod tests {
         );
     }
 
-    /// A finger adds a second to the parts after the first 40 ms.
+    /// A finger adds a second to the parts after the first 80 ms.
     #[test]
     fn a_finger_delays_the_self_test() {
         let with_finger_from = |from_s: f64| {
@@ -313,7 +349,7 @@ mod tests {
             (9.0, 0.304, 1.304),
             (0.0, 0.02, 1.02),
             (0.0, 0.304, 2.304),
-            (1.2, 0.304, 1.2 + 1.0 + 0.264),
+            (1.2, 0.304, 1.2 + 1.0 + 0.224),
         ] {
             about(
                 Symptom::SelfTest(age_s).onset_s(&with_finger_from(from_s), &[], 500, Some(1.0)),
