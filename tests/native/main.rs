@@ -3,6 +3,7 @@
 mod contact_detection;
 mod control_law;
 mod display_modes;
+mod electrical_parameters;
 mod fidelity_populations;
 mod hold_stability;
 mod processor_faults;

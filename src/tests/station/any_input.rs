@@ -219,7 +219,7 @@ impl TickCount {
             bench.display_c -= 2.7e-3 * telemetry.demand.to_num::<f64>();
             bench.check_c = bench.display_c;
         }
-        bench.apply_comparator_test(&outputs);
+        bench.apply_comparator_test(outputs.comparator_test);
         self.all.set(self.all.get() + 1);
         self.driven.set(self.driven.get() + u32::from(on));
         Ok(())

@@ -30,7 +30,7 @@ const FAULT_CASES: [FaultCase; 17] = [
 ];
 
 /// One bench in each state other than tripped and self-test.
-fn bench_in_each_state() -> [TestBench; 5] {
+pub(super) fn bench_in_each_state() -> [TestBench; 5] {
     let armed = {
         let mut bench = TestBench::new();
         bench.send_ok(&["material copper", "arm"]);
@@ -222,7 +222,7 @@ fn a_self_test_without_current_in_one_direction_trips() {
         bench.measured_a = Some(flowing_a);
         bench.display_c -= 2.7e-3 * flowing_a;
         bench.check_c = bench.display_c;
-        bench.apply_comparator_test(&outputs);
+        bench.apply_comparator_test(outputs.comparator_test);
     }
     assert_eq!(bench.state().fault(), Some(Fault::CurrentLow));
 }

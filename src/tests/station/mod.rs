@@ -5,6 +5,7 @@ mod faults;
 mod model_law;
 mod rendering;
 mod states;
+mod supply;
 
 use contact_model::material::{self, Material, REFERENCE_DISPLAY, SKIN};
 use contact_model::{pressure, reference};
@@ -121,15 +122,20 @@ impl TestBench {
 
     /// One tick of a self-test, on a display that responds with 2.7 K/s per ampere and with a working comparator.
     fn step_self_test(&mut self) {
+        self.step_self_test_with(Self::apply_comparator_test);
+    }
+
+    /// One tick of a self-test with another comparator.
+    fn step_self_test_with(&mut self, comparator: impl FnOnce(&mut Self, ComparatorTest)) {
         let (outputs, telemetry) = self.step_with_outputs();
         let moved_k = 2.7e-3 * telemetry.demand.to_num::<f64>();
         (self.display_c, self.check_c) = (self.display_c - moved_k, self.check_c - moved_k);
-        self.apply_comparator_test(&outputs);
+        comparator(self, outputs.comparator_test);
     }
 
     /// A comparator that works at once: a test pulls the fault line, and cuts the supply, which falls to 4 V.
-    fn apply_comparator_test(&mut self, outputs: &BoardOutputs) {
-        self.bridge_fault = outputs.comparator_test != ComparatorTest::None;
+    fn apply_comparator_test(&mut self, test: ComparatorTest) {
+        self.bridge_fault = test != ComparatorTest::None;
         self.supply_v = if self.bridge_fault { 4.0 } else { 12.0 };
     }
 

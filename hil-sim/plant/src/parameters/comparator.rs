@@ -51,7 +51,7 @@ pub fn entries(comparator: &mut ComparatorParams) -> impl Iterator<Item = Entry<
             release_s,
             "s",
             "time from the end of a test until the latch is cleared",
-            between(2.7e-3, 6.9e-3),
+            between(2.7e-3, 7e-3),
             (0.0, 1.0),
             Netlist,
         ),
