@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
+use std::iter;
 
 use anyhow::{Context, Result};
 
@@ -22,6 +23,17 @@ const COLUMNS: f64 = 14.0;
 /// Height of a pin of a box.
 const PIN: f64 = 14.0;
 
+/// The only P-channel MOSFET of the netlists.
+const P_CHANNEL: &str = "ipd90p03";
+
+/// What the colours mean.
+const KEY: [&str; 4] = [
+    "Terminals of the same name within a block are connected. Red names leave the block; green ones do not. Ground is the block's own: power board or analog board (ground.cir).",
+    "Grey, dashed: no part, but what the simulation has in its place. Numbers at boxes: pins of the usual package, recalled, check with the data sheet of the package that you buy.",
+    "Not drawn: 100 nF at every supply pin of an integrated circuit; inputs of unused gates and amplifiers go to ground. Blocks of one finger come first, then those of five.",
+    "Values: ohm, farad, henry; m is milli, M is mega.",
+];
+
 /// A part of a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Part {
@@ -29,14 +41,32 @@ struct Part {
     nets: Vec<String>,
     /// Value, or the part's type.
     value: String,
+    /// What a line that is no part stands for: the words behind `; model`.
+    model: Option<String>,
+    /// Of a MOSFET.
+    is_p_channel: bool,
 }
 
 /// A block: a `.subckt` with its parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Block {
     title: String,
+    /// What the ports are: the comment above the `.subckt` line.
+    description: Vec<String>,
     ports: Vec<String>,
     parts: Vec<Part>,
+}
+
+/// An integrated circuit: a `.subckt` of `parts.cir` with the `*@` line above it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Kind {
+    pins: Vec<String>,
+    /// Name of the part to buy; empty if the line is missing.
+    part: String,
+    /// Pin numbers of the usual package, or the part's own names, by the netlist's name.
+    numbers: BTreeMap<String, String>,
+    /// What else is connected.
+    note: String,
 }
 
 /// The picture of all files but `parts.cir`.
@@ -45,33 +75,55 @@ struct Block {
 /// A file cannot be read, or a value has no parameter.
 pub fn draw() -> Result<String> {
     let netlists = Netlists::load()?;
-    let types = types(&netlists.text());
+    let kinds = kinds(&netlists.text());
     let (mut body, mut y) = (String::new(), 40.0);
+    for line in KEY {
+        text(&mut body, 20.0, y, "note", "start", line);
+        y += 13.0;
+    }
+    y += 20.0;
     for name in FILES.iter().filter(|name| **name != "parts") {
         let path = folder().join(name).with_extension("cir");
         let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
         let block = block(&text).with_context(|| path.display().to_string())?;
-        y = draw_block(&mut body, y, &block, &netlists, &types)?;
+        y = draw_block(&mut body, y, &block, &netlists, &kinds)?;
     }
     let (width, height) = (COLUMNS * CELL + 60.0, y + 10.0);
     Ok(format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
          font-family=\"sans-serif\" font-size=\"10\" stroke=\"black\" fill=\"none\">\n\
-         <style>text{{stroke:none;fill:black}} .net{{fill:#0a5}} .value{{fill:#05a}} .title{{font-size:15px;font-weight:bold}}</style>\n\
+         <style>text{{stroke:none;fill:black}} .net{{fill:#0a5}} .port{{fill:#b30;font-weight:bold}} .note{{fill:#666;font-size:9px}} .model{{stroke:#aaa;stroke-dasharray:3 2}} \
+         .model text{{fill:#888}} .value{{fill:#05a}} .title{{font-size:15px;font-weight:bold}}</style>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"white\" stroke=\"none\"/>\n{body}</svg>\n"
     ))
 }
 
-/// Pins of every `.subckt` by its name.
-fn types(text: &str) -> BTreeMap<String, Vec<String>> {
-    text.lines()
-        .filter_map(|line| line.strip_prefix(".subckt "))
-        .filter_map(|line| {
-            let mut words = line.split_whitespace().filter(|word| !word.contains('='));
-            let name = words.next()?.to_owned();
-            Some((name, words.map(str::to_owned).collect()))
-        })
-        .collect()
+/// Every `.subckt` by its name.
+fn kinds(text: &str) -> BTreeMap<String, Kind> {
+    let mut kinds = BTreeMap::new();
+    let mut above = "";
+    for line in text.lines() {
+        if let Some(rest) = line.strip_prefix(".subckt ") {
+            let mut words = rest.split_whitespace().filter(|word| !word.contains('='));
+            let Some(name) = words.next() else { continue };
+            let mut fields = above.strip_prefix("*@ ").unwrap_or("").splitn(3, ';');
+            let mut field = || fields.next().unwrap_or("").trim();
+            let part = field().to_owned();
+            let numbers = field()
+                .split_whitespace()
+                .filter_map(|pair| pair.split_once('='))
+                .map(|(pin, number)| (pin.to_owned(), number.to_owned()));
+            let kind = Kind {
+                pins: words.map(str::to_owned).collect(),
+                part,
+                numbers: numbers.collect(),
+                note: field().to_owned(),
+            };
+            kinds.insert(name.to_owned(), kind);
+        }
+        above = line;
+    }
+    kinds
 }
 
 /// The block of a file: its first `.subckt`, with the file's first line as its title.
@@ -81,6 +133,17 @@ fn block(text: &str) -> Option<Block> {
         .next()?
         .trim_start_matches(['*', ' '])
         .to_owned();
+    let above: Vec<_> = text
+        .lines()
+        .take_while(|line| !line.starts_with(".subckt "))
+        .collect();
+    let mut description: Vec<_> = above
+        .iter()
+        .rev()
+        .map_while(|line| line.strip_prefix("* "))
+        .map(str::to_owned)
+        .collect();
+    description.reverse();
     let mut lines = text
         .lines()
         .skip_while(|line| !line.starts_with(".subckt "));
@@ -93,6 +156,7 @@ fn block(text: &str) -> Option<Block> {
         .collect();
     Some(Block {
         title,
+        description,
         ports,
         parts,
     })
@@ -100,6 +164,8 @@ fn block(text: &str) -> Option<Block> {
 
 /// A line of a part: name, nets, value or type.
 fn part(line: &str) -> Option<Part> {
+    let (line, comment) = line.split_once(';').unwrap_or((line, ""));
+    let model = comment.trim().strip_prefix("model ").map(str::to_owned);
     let words: Vec<_> = line.split_whitespace().collect();
     let name = *words.first()?;
     let count = match name.chars().next()? {
@@ -119,6 +185,8 @@ fn part(line: &str) -> Option<Part> {
         name: name.to_owned(),
         nets: nets.iter().map(|net| (*net).to_owned()).collect(),
         value: (*words.get(count + 1)?).to_owned(),
+        model,
+        is_p_channel: words.get(count + 1) == Some(&P_CHANNEL),
     })
 }
 
@@ -152,12 +220,19 @@ fn draw_block(
     y: f64,
     block: &Block,
     netlists: &Netlists,
-    types: &BTreeMap<String, Vec<String>>,
+    kinds: &BTreeMap<String, Kind>,
 ) -> Result<f64> {
     text(svg, 20.0, y, "title", "start", &block.title);
-    let ports = format!("connects to: {}", block.ports.join(", "));
-    text(svg, 20.0, y + 16.0, "net", "start", &ports);
-    let top = y + 34.0;
+    let ports = format!("Connects to other blocks by: {}", block.ports.join(", "));
+    let mut top = y + 16.0;
+    for (class, line) in
+        iter::once(("port", &ports)).chain(block.description.iter().map(|line| ("note", line)))
+    {
+        text(svg, 20.0, top, class, "start", line);
+        top += 13.0;
+    }
+    top += 12.0;
+    let is_port = |net: &str| block.ports.iter().any(|port| port == net);
     let (mut x, mut row, mut tallest) = (30.0, top, HEIGHT);
     let mut before: Option<(f64, [String; 2])> = None;
     for part in &block.parts {
@@ -174,12 +249,12 @@ fn draw_block(
         }
         let value = shown(&part.value, netlists)?;
         if wide {
-            let pins = types.get(&part.value);
-            let pins = pins.with_context(|| format!("no .subckt {}", part.value))?;
-            tallest = f64::max(tallest, draw_box(svg, x, row, part, pins));
+            let kind = kinds.get(&part.value);
+            let kind = kind.with_context(|| format!("no .subckt {}", part.value))?;
+            tallest = f64::max(tallest, draw_box(svg, x, row, part, kind, &is_port));
             before = None;
         } else {
-            let ends = draw_part(svg, x + width / 2.0, row, part, &value);
+            let ends = draw_part(svg, x + width / 2.0, row, part, &value, &is_port);
             if let Some((before_x, before_ends)) = &before {
                 for (end, at) in [(0, row + 18.0), (1, row + HEIGHT - 18.0)] {
                     if ends[end] == before_ends[end] && ends[end] != "0" {
@@ -195,17 +270,29 @@ fn draw_block(
 }
 
 /// Draws a part with two or three terminals in the middle of a cell; its upper and lower net.
-fn draw_part(svg: &mut String, x: f64, y: f64, part: &Part, value: &str) -> [String; 2] {
+fn draw_part(
+    svg: &mut String,
+    x: f64,
+    y: f64,
+    part: &Part,
+    value: &str,
+    is_port: &dyn Fn(&str) -> bool,
+) -> [String; 2] {
+    if part.model.is_some() {
+        svg.push_str("<g class=\"model\">\n");
+    }
     let (top, bottom, middle) = (y + 18.0, y + HEIGHT - 18.0, y + HEIGHT / 2.0);
     let kind = part.name.chars().next().unwrap_or('R');
     let mut ends = match kind {
-        // Drain above the source, collector above the emitter.
+        // Drain above the source, collector above the emitter; of a P channel the source is above.
+        'M' if part.is_p_channel => [part.nets[2].clone(), part.nets[0].clone()],
         'M' | 'Q' => [part.nets[0].clone(), part.nets[2].clone()],
         _ => [part.nets[0].clone(), part.nets[1].clone()],
     };
     // Ground below, supplies above.
     let is_supply = |net: &str| SUPPLIES.contains(&net);
-    let turned = ends[0] == "0" || (is_supply(&ends[1]) && !is_supply(&ends[0]));
+    let upside_down = ends[0] == "0" || (is_supply(&ends[1]) && !is_supply(&ends[0]));
+    let turned = upside_down && !matches!(kind, 'M' | 'Q');
     if turned {
         ends.reverse();
     }
@@ -214,7 +301,7 @@ fn draw_part(svg: &mut String, x: f64, y: f64, part: &Part, value: &str) -> [Str
         (&ends[1], bottom, middle + 18.0),
     ] {
         line(svg, &[(x, at), (x, towards)]);
-        terminal(svg, x, at, net, at < middle);
+        terminal(svg, x, at, net, at < middle, is_port(net));
     }
     match kind {
         'R' => rect(svg, x - 6.0, middle - 18.0, 12.0, 36.0),
@@ -281,21 +368,69 @@ fn draw_part(svg: &mut String, x: f64, y: f64, part: &Part, value: &str) -> [Str
             );
             line(svg, &[(x - 8.0, middle - 16.0), (x - 8.0, middle + 16.0)]);
             line(svg, &[(x - 26.0, middle), (x - 12.0, middle)]);
-            text(svg, x - 24.0, middle - 3.0, "net", "end", &part.nets[1]);
+            if kind == 'Q' {
+                // The emitter's arrow.
+                line(
+                    svg,
+                    &[
+                        (x - 5.0, middle + 6.0),
+                        (x, middle + 10.0),
+                        (x - 5.0, middle + 14.0),
+                    ],
+                );
+            } else {
+                // Source: arrow into the channel of an N channel, out of that of a P channel.
+                let (at, tip, tail) = if part.is_p_channel {
+                    (middle - 10.0, x - 2.0, x - 7.0)
+                } else {
+                    (middle + 10.0, x - 7.0, x - 2.0)
+                };
+                line(svg, &[(tail, at - 3.0), (tip, at), (tail, at + 3.0)]);
+            }
+            let class = if is_port(&part.nets[1]) {
+                "port"
+            } else {
+                "net"
+            };
+            text(svg, x - 24.0, middle - 3.0, class, "end", &part.nets[1]);
         }
     }
     text(svg, x + 15.0, middle - 2.0, "", "start", &part.name);
     text(svg, x + 15.0, middle + 10.0, "value", "start", value);
+    if let Some(model) = &part.model {
+        // In two lines beside the part.
+        let (first, second) = model
+            .match_indices(' ')
+            .map(|(at, _)| model.split_at(at))
+            .find(|(first, _)| first.len() > 8)
+            .unwrap_or((model, ""));
+        text(svg, x + 15.0, middle + 22.0, "note", "start", first);
+        text(svg, x + 15.0, middle + 33.0, "note", "start", second.trim());
+        svg.push_str("</g>\n");
+    }
     ends
 }
 
 /// Draws an integrated circuit as a box with its pins, half of them on each side; its height.
-fn draw_box(svg: &mut String, x: f64, y: f64, part: &Part, pins: &[String]) -> f64 {
+fn draw_box(
+    svg: &mut String,
+    x: f64,
+    y: f64,
+    part: &Part,
+    kind: &Kind,
+    is_port: &dyn Fn(&str) -> bool,
+) -> f64 {
+    let pins = &kind.pins;
     let rows = pins.len().div_ceil(2);
     let height = f64::max(HEIGHT - 40.0, PIN * (rows as f64 + 2.5));
     let (left, right, top) = (x + 48.0, x + 2.0 * CELL - 48.0, y + 22.0);
     rect(svg, left, top, right - left, height - 22.0 + 8.0);
-    let title = format!("{} {}", part.name, part.value);
+    let bought = if kind.part.is_empty() {
+        &part.value
+    } else {
+        &kind.part
+    };
+    let title = format!("{} {bought}", part.name);
     text(
         svg,
         0.5 * (left + right),
@@ -312,14 +447,25 @@ fn draw_box(svg: &mut String, x: f64, y: f64, part: &Part, pins: &[String]) -> f
             (right, 10.0, -3.0, ("end", "start"))
         };
         line(svg, &[(edge, at), (edge + out, at)]);
-        text(svg, edge + inner, at + 3.0, "", anchors.0, pin);
-        text(svg, edge + 1.2 * out, at + 3.0, "net", anchors.1, net);
+        let label = match kind.numbers.get(pin) {
+            // A pin that the part itself names.
+            Some(own) if own.starts_with(|c: char| c.is_ascii_alphabetic()) => own.clone(),
+            Some(number) if index < rows => format!("{number}: {pin}"),
+            Some(number) => format!("{pin}: {number}"),
+            None => pin.clone(),
+        };
+        let class = if is_port(net) { "port" } else { "net" };
+        text(svg, edge + inner, at + 3.0, "", anchors.0, &label);
+        text(svg, edge + 1.2 * out, at + 3.0, class, anchors.1, net);
     }
-    height + 20.0
+    let middle = 0.5 * (left + right);
+    let below = top + height - 22.0 + 8.0 + 12.0;
+    text(svg, middle, below, "note", "middle", &kind.note);
+    height + 34.0
 }
 
 /// The end of a part: ground, supply, or the name of the net.
-fn terminal(svg: &mut String, x: f64, y: f64, net: &str, above: bool) {
+fn terminal(svg: &mut String, x: f64, y: f64, net: &str, above: bool, is_port: bool) {
     if net == "0" {
         for (half, down) in [(9.0, 0.0), (6.0, 3.0), (3.0, 6.0)] {
             line(svg, &[(x - half, y + down), (x + half, y + down)]);
@@ -333,7 +479,7 @@ fn terminal(svg: &mut String, x: f64, y: f64, net: &str, above: bool) {
         svg,
         x + 3.0,
         if above { y - 3.0 } else { y + 10.0 },
-        "net",
+        if is_port { "port" } else { "net" },
         "start",
         net,
     );
