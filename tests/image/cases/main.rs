@@ -8,6 +8,7 @@ mod five_fingers;
 mod processor_faults;
 mod range_limits;
 mod safety;
+mod serve;
 mod settings_storage;
 mod start_up;
 mod wire_protocol;

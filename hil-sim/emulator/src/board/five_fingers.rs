@@ -3,8 +3,8 @@
 use thermal_plant::bridge::BridgeOutputs;
 use thermal_plant::sensors::Channel;
 use thermal_sim::World;
-use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine as _, LineSplitter};
-use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, OneLine};
+use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine as _};
+use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine};
 
 use super::meter::Meter;
 use super::one_finger::{ADC_INPUTS, OneFingerBoard, StartError, power_up, resets};
@@ -39,7 +39,6 @@ pub struct FiveFingerBoard {
     first_boundary_ps: u64,
     /// Boundaries reached so far.
     boundaries: u64,
-    lines: LineSplitter,
     meter: Meter,
 }
 
@@ -61,7 +60,6 @@ impl FiveFingerBoard {
             machine,
             first_boundary_ps,
             boundaries: 0,
-            lines: LineSplitter::default(),
             meter,
         })
     }
@@ -93,33 +91,12 @@ impl FiveFingerEngine for FiveFingerBoard {
         BRIDGES[finger].legs(&mut self.machine)
     }
 
-    fn send(&mut self, finger: usize, line: &[u8]) {
-        // A blank line has no address.
-        let address = if line == b"\n" {
-            String::new()
-        } else {
-            format!("@{finger} ")
-        };
-        self.machine.uart_send(&[address.as_bytes(), line].concat());
+    fn send(&mut self, bytes: &[u8]) {
+        self.machine.uart_send(bytes);
     }
 
-    fn receive(&mut self) -> Vec<(usize, String)> {
-        self.lines
-            .received()
-            .append(&mut self.machine.wiring_mut().received);
-        let lines = self.lines.complete().into_iter();
-        // LineSplitter of the device as a whole are attributed to the first finger.
-        lines
-            .map(|line| match line.split_at_checked(3) {
-                Some((prefix, rest)) => match prefix.as_bytes() {
-                    [b'@', digit @ b'0'..=b'4', b' '] => {
-                        (usize::from(digit - b'0'), rest.to_owned())
-                    }
-                    _ => (0, line),
-                },
-                None => (0, line),
-            })
-            .collect()
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        into.append(&mut self.machine.wiring_mut().received);
     }
 
     fn resets(&self) -> Vec<DeviceReset> {
@@ -132,16 +109,6 @@ impl FiveFingerEngine for FiveFingerBoard {
 
     fn cost(&self) -> Option<Cost> {
         self.meter.cost(&self.machine)
-    }
-}
-
-impl OneLine for FiveFingerBoard {
-    fn send_bytes(&mut self, bytes: &[u8]) {
-        self.machine.uart_send(bytes);
-    }
-
-    fn receive_bytes(&mut self, into: &mut Vec<u8>) {
-        into.append(&mut self.machine.wiring_mut().received);
     }
 }
 

@@ -16,7 +16,7 @@
 
 mod native;
 
-pub use native::NativeEngine;
+pub use native::{NativeDevice, NativeEngine, NativeFiveFingers};
 
 use thermal_plant::bridge::BridgeOutputs;
 

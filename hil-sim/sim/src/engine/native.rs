@@ -22,13 +22,17 @@ use thermal_settings::{Settings, StoredSettings, decode_settings_record};
 
 use super::{BAUD, DeviceReset, Engine};
 use crate::World;
+use crate::five_fingers::{FINGERS as FIVE, FiveFingerEngine};
 use crate::processor::{MachineFault, NotInjected, ResetCause};
 
-/// Nanoseconds of one half millisecond, of one byte on the line, and of the tick after the whole-millisecond
-/// boundary that lies before it.
+/// Nanoseconds of one half millisecond, from a boundary of a finger to that of the next finger, and of one byte on the line.
 const HALF_NS: u64 = 500_000;
+const TURN_NS: u64 = 200_000;
 const BYTE_NS: u64 = 10 * 1_000_000_000 / BAUD;
+/// Nanoseconds of the tick after the boundary that lies a millisecond before the one after it: of one finger, and of five,
+/// whose scans follow each other more closely.
 const TICK_NS: u64 = 730_000;
+const TICK_OF_FIVE_FINGERS_NS: u64 = 135_000;
 
 /// Timeout of the window watchdog, ms.
 const WINDOW_MS: u64 = 46;
@@ -44,75 +48,61 @@ const SCANS_BEFORE_START: usize = 4;
 const SCANS_IN_FIRST_HALF: usize = 8;
 
 /// The logic of one finger without the microcontroller.
+pub type NativeEngine = NativeDevice<1>;
+/// The logic of five fingers without the microcontroller.
+pub type NativeFiveFingers = NativeDevice<FIVE>;
+
+/// The logic of a device without the microcontroller.
 #[derive(Debug)]
-pub struct NativeEngine {
-    world: World,
-    handler: CommandHandler<1>,
-    device: Device<1>,
+pub struct NativeDevice<const FINGERS: usize> {
+    fingers: [Finger; FINGERS],
+    handler: CommandHandler<FINGERS>,
+    device: Device<FINGERS>,
     reader: LineReader,
     /// Bytes on the line to the device with their arrival times, ns.
     incoming: VecDeque<(u64, u8)>,
     outgoing: Vec<u8>,
-    scans: [Scan; SCANS_PER_TICK],
-    filled: usize,
-    /// Number of scans discarded before those of each tick, while the multiplexers settle.
-    settling_scans: usize,
     pwm_period_steps: u16,
-    /// Whether the bridge has pulled its fault pin since the last tick, as the board's break flag records.
-    fault: bool,
-    outputs: BoardOutputs,
     /// Time for which no tick has run, while the outputs keep their state.
     hung_ms: Option<u64>,
     resets: Vec<DeviceReset>,
     /// Settings in the simulated flash.
-    stored: Option<[StoredSettings; 1]>,
-    /// Half milliseconds since the first boundary.
-    halves: u64,
+    stored: Option<[StoredSettings; FINGERS]>,
+    /// Time since the first boundary, ns.
+    now_ns: u64,
+    /// Boundaries of fingers so far, on a device with five.
+    boundaries: usize,
 }
 
-impl NativeEngine {
-    /// A device that has just started its first tick.
-    #[must_use]
-    pub fn new(world: World) -> Self {
-        Self::with_discarded_scans(world, PWM_PERIOD_STEPS_OF_ONE_FINGER, 0, 0)
-    }
+/// One finger's world, and what the board has of it.
+#[derive(Debug)]
+struct Finger {
+    world: World,
+    scans: [Scan; SCANS_PER_TICK],
+    filled: usize,
+    /// Number of scans discarded before those of each tick, while the multiplexers settle.
+    settling_scans: usize,
+    /// Whether the bridge has pulled its fault pin since the last tick, as the board's break flag records.
+    fault: bool,
+    outputs: BoardOutputs,
+}
 
-    /// One of several fingers that share the converter through multiplexers: one scan is discarded before those of each
-    /// tick. For the finger that the multiplexers select at power-up (`settled`), two scans are discarded the first time,
-    /// because no switch precedes the first one.
-    #[must_use]
-    pub fn multiplexed(world: World, settled: bool) -> Self {
-        Self::with_discarded_scans(world, PWM_PERIOD_STEPS_OF_FIVE_FINGERS, 1, settled.into())
-    }
-
-    fn with_discarded_scans(
-        world: World,
-        pwm_period_steps: u16,
-        settling_scans: usize,
-        more_at_first: usize,
-    ) -> Self {
-        let settings = Settings::default();
-        let mut native = Self {
+impl Finger {
+    /// A finger whose first tick has just started. On a device with several, which share the converter through multiplexers,
+    /// one scan is discarded before those of each tick. For the finger that the multiplexers select at power-up, two scans are
+    /// discarded the first time, because no switch precedes the first one.
+    fn new(world: World, settling_scans: usize, more_at_first: usize) -> Self {
+        let mut finger = Self {
             world,
-            handler: CommandHandler::new(settings),
-            device: Device::new(&settings),
-            reader: LineReader::new(),
-            incoming: VecDeque::new(),
-            outgoing: Vec::new(),
             scans: [Scan::default(); SCANS_PER_TICK],
             filled: 0,
             settling_scans,
-            pwm_period_steps,
             fault: false,
             outputs: OFF,
-            hung_ms: None,
-            resets: Vec::new(),
-            stored: None,
-            halves: 0,
         };
-        native.discard_scans(more_at_first);
-        native.start_tick();
-        native
+        finger.discard_scans(more_at_first);
+        finger.start_tick();
+        finger
     }
 
     /// Converts all channels and discards the codes.
@@ -136,27 +126,91 @@ impl NativeEngine {
         self.filled += count;
     }
 
-    fn tick(&mut self) {
-        self.execute_received_lines((self.halves - 1) * HALF_NS + TICK_NS);
+    /// The samples of the tick whose scans are complete.
+    fn samples(&mut self) -> Samples {
         let inputs = DigitalInputs {
             bridge_fault: self.fault,
             emergency_stop: self.world.emergency_stop(),
         };
-        let samples = Samples::from_scans(&self.scans, inputs);
         self.fault = self.world.bridge_fault();
-        self.outputs = self.device.step_finger(FingerIndex::FIRST, &samples);
-        self.world
-            .comparator_test(match self.outputs.comparator_test {
-                ComparatorTest::None => PlantTest::None,
-                ComparatorTest::Hot => PlantTest::Hot,
-                ComparatorTest::Cold => PlantTest::Cold,
-            });
-        if let Some(telemetry) = self.device.finger_telemetry_if_due(FingerIndex::FIRST) {
+        Samples::from_scans(&self.scans, inputs)
+    }
+
+    fn set_outputs(&mut self, outputs: BoardOutputs) {
+        self.outputs = outputs;
+        self.world.comparator_test(match outputs.comparator_test {
+            ComparatorTest::None => PlantTest::None,
+            ComparatorTest::Hot => PlantTest::Hot,
+            ComparatorTest::Cold => PlantTest::Cold,
+        });
+    }
+
+    fn legs(&self, pwm_period_steps: u16) -> BridgeOutputs {
+        match self.outputs.drive {
+            Drive::Off => BridgeOutputs::default(),
+            Drive::On(duty) => {
+                let (a, b) = duty.input_high_times(pwm_period_steps);
+                let leg = |part: u16| Leg::Duty(f64::from(part) / f64::from(pwm_period_steps));
+                BridgeOutputs {
+                    a: leg(a),
+                    b: leg(b),
+                    enabled: true,
+                }
+            }
+        }
+    }
+}
+
+impl NativeEngine {
+    /// A device that has just started its first tick.
+    #[must_use]
+    pub fn new(world: World) -> Self {
+        let finger = Finger::new(world, 0, 0);
+        Self::with_fingers([finger], PWM_PERIOD_STEPS_OF_ONE_FINGER)
+    }
+}
+
+impl NativeFiveFingers {
+    /// A device just before its first boundary.
+    #[must_use]
+    pub fn new(worlds: [World; FIVE]) -> Self {
+        let mut more_at_first = 1;
+        let fingers = worlds.map(|world| Finger::new(world, 1, std::mem::take(&mut more_at_first)));
+        Self::with_fingers(fingers, PWM_PERIOD_STEPS_OF_FIVE_FINGERS)
+    }
+}
+
+impl<const FINGERS: usize> NativeDevice<FINGERS> {
+    fn with_fingers(fingers: [Finger; FINGERS], pwm_period_steps: u16) -> Self {
+        let settings = Settings::default();
+        Self {
+            fingers,
+            handler: CommandHandler::new(settings),
+            device: Device::new(&settings),
+            reader: LineReader::new(),
+            incoming: VecDeque::new(),
+            outgoing: Vec::new(),
+            pwm_period_steps,
+            hung_ms: None,
+            resets: Vec::new(),
+            stored: None,
+            now_ns: 0,
+            boundaries: 0,
+        }
+    }
+
+    /// Runs the tick of a finger, at this time.
+    fn tick(&mut self, index: FingerIndex<FINGERS>, at_ns: u64) {
+        self.execute_received_lines(at_ns);
+        let finger = &mut self.fingers[index.index()];
+        let samples = finger.samples();
+        finger.set_outputs(self.device.step_finger(index, &samples));
+        if let Some(telemetry) = self.device.finger_telemetry_if_due(index) {
             self.send_line(&wrap_as_telemetry_line(telemetry));
         }
     }
 
-    /// Restarts the logic with the bridge off and with the trip cause and dose that the board retains. The start-up time of
+    /// Restarts the logic with the bridges off and with the trip cause and doses that the board retains. The start-up time of
     /// the board is not modelled.
     fn restart(&mut self, cause: ResetCause) {
         let tripped = self.device.earliest_trip_cause().copied();
@@ -167,29 +221,33 @@ impl NativeEngine {
             }
             _ => tripped,
         };
-        let dose = match cause {
-            ResetCause::PowerOn => ThermalDose::default(),
-            _ => ThermalDose::from_any_retained_word(
-                self.device
-                    .finger_thermal_dose(FingerIndex::FIRST)
-                    .to_retained_word(),
-            ),
-        };
-        let settings = Settings::default();
-        self.device = Device::new_optionally_tripped(cause_retained, &settings);
-        self.device
-            .restore_finger_thermal_dose(FingerIndex::FIRST, dose);
+        let before = std::mem::replace(
+            &mut self.device,
+            Device::new_optionally_tripped(cause_retained, &Settings::default()),
+        );
+        for finger in FingerIndex::all() {
+            let dose = match cause {
+                ResetCause::PowerOn => ThermalDose::default(),
+                _ => ThermalDose::from_any_retained_word(
+                    before.finger_thermal_dose(finger).to_retained_word(),
+                ),
+            };
+            self.device.restore_finger_thermal_dose(finger, dose);
+        }
         self.handler = match &self.stored {
             Some(stored) => {
                 self.device.restore_settings(stored);
                 CommandHandler::from_stored(stored)
             }
-            None => CommandHandler::new(settings),
+            None => CommandHandler::new(Settings::default()),
         };
         self.reader = LineReader::new();
-        (self.fault, self.outputs, self.hung_ms) = (false, OFF, None);
+        self.hung_ms = None;
+        for finger in &mut self.fingers {
+            (finger.fault, finger.outputs) = (false, OFF);
+        }
         self.resets.push(DeviceReset {
-            t_s: (self.halves * HALF_NS) as f64 * 1e-9,
+            t_s: self.now_ns as f64 * 1e-9,
             cause,
         });
     }
@@ -209,8 +267,8 @@ impl NativeEngine {
     }
 
     /// Executes the lines whose last byte has arrived before the tick.
-    fn execute_received_lines(&mut self, now_ns: u64) {
-        while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= now_ns) {
+    fn execute_received_lines(&mut self, tick_ns: u64) {
+        while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= tick_ns) {
             if LineReader::is_line_end(byte) {
                 self.device.note_host_activity();
             }
@@ -237,6 +295,18 @@ impl NativeEngine {
             }
         }
     }
+
+    /// Puts bytes on the line to the device, after those that are on it.
+    fn put_on_line(&mut self, bytes: &[u8]) {
+        let mut at = self.now_ns;
+        if let Some((last, _)) = self.incoming.back() {
+            at = at.max(*last);
+        }
+        for &byte in bytes {
+            at += BYTE_NS;
+            self.incoming.push_back((at, byte));
+        }
+    }
 }
 
 impl Engine for NativeEngine {
@@ -245,51 +315,33 @@ impl Engine for NativeEngine {
     const NAME: &'static str = "native";
 
     fn world(&mut self) -> &mut World {
-        &mut self.world
+        &mut self.fingers[0].world
     }
 
     fn legs(&mut self) -> BridgeOutputs {
-        match self.outputs.drive {
-            Drive::Off => BridgeOutputs::default(),
-            Drive::On(duty) => {
-                let steps = self.pwm_period_steps;
-                let (a, b) = duty.input_high_times(steps);
-                let leg = |part: u16| Leg::Duty(f64::from(part) / f64::from(steps));
-                BridgeOutputs {
-                    a: leg(a),
-                    b: leg(b),
-                    enabled: true,
-                }
-            }
-        }
+        self.fingers[0].legs(self.pwm_period_steps)
     }
 
     fn run_half_ms(&mut self) -> Result<(), Infallible> {
-        self.fault |= self.world.bridge_fault();
-        if self.halves.is_multiple_of(2) {
-            self.scan(SCANS_IN_FIRST_HALF);
+        let [finger] = &mut self.fingers;
+        finger.fault |= finger.world.bridge_fault();
+        if self.now_ns.is_multiple_of(2 * HALF_NS) {
+            finger.scan(SCANS_IN_FIRST_HALF);
         } else {
-            self.scan(SCANS_PER_TICK - self.filled);
+            finger.scan(SCANS_PER_TICK - finger.filled);
             match &mut self.hung_ms {
-                None => self.tick(),
+                None => self.tick(FingerIndex::FIRST, self.now_ns - HALF_NS + TICK_NS),
                 Some(WINDOW_MS) => self.restart(ResetCause::WindowWatchdog),
                 Some(ms) => *ms += 1,
             }
-            self.start_tick();
+            self.fingers[0].start_tick();
         }
-        self.halves += 1;
+        self.now_ns += HALF_NS;
         Ok(())
     }
 
     fn send(&mut self, bytes: &[u8]) {
-        let mut at = self.halves * HALF_NS;
-        if let Some((last, _)) = self.incoming.back() {
-            at = at.max(*last);
-        }
-        for &byte in bytes {
-            at += BYTE_NS;
-            self.incoming.push_back((at, byte));
-        }
+        self.put_on_line(bytes);
     }
 
     fn receive(&mut self, into: &mut Vec<u8>) {
@@ -315,6 +367,50 @@ impl Engine for NativeEngine {
             }
         }
         Ok(())
+    }
+
+    fn resets(&self) -> Vec<DeviceReset> {
+        self.resets.clone()
+    }
+}
+
+impl FiveFingerEngine for NativeFiveFingers {
+    type Stop = Infallible;
+
+    const NAME: &'static str = NativeEngine::NAME;
+
+    fn run_to(&mut self, index: usize) -> Result<(), Infallible> {
+        let last_ns = self.now_ns;
+        self.now_ns = self.boundaries as u64 * TURN_NS;
+        self.boundaries += 1;
+        // Nothing runs before a finger's first boundary.
+        let begun = self.boundaries > FIVE;
+        let Some(finger) = FingerIndex::new(index).filter(|_| begun) else {
+            return Ok(());
+        };
+        let of_finger = &mut self.fingers[index];
+        of_finger.fault |= of_finger.world.bridge_fault();
+        of_finger.scan(SCANS_PER_TICK - of_finger.filled);
+        let boundary_ns = last_ns - (FIVE as u64 - 1) * TURN_NS;
+        self.tick(finger, boundary_ns + TICK_OF_FIVE_FINGERS_NS);
+        self.fingers[index].start_tick();
+        Ok(())
+    }
+
+    fn world(&mut self, finger: usize) -> &mut World {
+        &mut self.fingers[finger].world
+    }
+
+    fn legs(&mut self, finger: usize) -> BridgeOutputs {
+        self.fingers[finger].legs(self.pwm_period_steps)
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        self.put_on_line(bytes);
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        into.append(&mut self.outgoing);
     }
 
     fn resets(&self) -> Vec<DeviceReset> {

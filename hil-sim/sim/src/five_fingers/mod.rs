@@ -10,15 +10,13 @@
 //! because at 1 Mbaud they would delay each other. The fingers are set up one after the other, because the device takes
 //! up to a millisecond for some lines, and keeps one upload.
 
-mod native;
-
 use std::time::Instant;
 
-pub use native::NativeFiveFingers;
+pub use crate::engine::NativeFiveFingers;
 
 use crate::World;
 use crate::commissioning;
-use crate::engine::{Cost, DeviceReset};
+use crate::engine::{Cost, DeviceReset, LineSplitter};
 use crate::host::SET_UP_FROM_MS;
 use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
@@ -53,11 +51,11 @@ pub trait FiveFingerEngine {
     /// The legs of a finger's bridge as the device drives them now.
     fn legs(&mut self, finger: usize) -> BridgeOutputs;
 
-    /// Sends a line to a finger, after its tick.
-    fn send(&mut self, finger: usize, line: &[u8]);
+    /// Sends bytes to the device, starting now.
+    fn send(&mut self, bytes: &[u8]);
 
-    /// The complete lines received since the last call, with the fingers that sent them.
-    fn receive(&mut self) -> Vec<(usize, String)>;
+    /// Appends the bytes received from the device since the last call.
+    fn receive(&mut self, into: &mut Vec<u8>);
 
     /// Resets of the device after power-up; time counts from the first finger's first boundary.
     fn resets(&self) -> Vec<DeviceReset>;
@@ -69,15 +67,6 @@ pub trait FiveFingerEngine {
     fn cost(&self) -> Option<Cost> {
         None
     }
-}
-
-/// A device for five fingers with one line, as it is built.
-pub trait OneLine: FiveFingerEngine {
-    /// Sends bytes to the device, starting now.
-    fn send_bytes(&mut self, bytes: &[u8]);
-
-    /// Appends the bytes received from the device since the last call.
-    fn receive_bytes(&mut self, into: &mut Vec<u8>);
 }
 
 /// Runs a scene on each finger and returns their results; `progress` is called with the fraction done.
@@ -108,6 +97,7 @@ pub fn run<H: FiveFingerEngine>(
     let last = |of: fn(&SceneRecording<'_>) -> u64| fingers.iter().map(of).max().unwrap_or(0);
     let zero_ms = last(|finger| finger.zero_ms);
     let last_ms = last(|finger| finger.end_ms) + DRAIN_MS;
+    let mut received = LineSplitter::default();
     for ms in 0..=last_ms {
         if ms == zero_ms {
             engine.reset_cost();
@@ -122,7 +112,7 @@ pub fn run<H: FiveFingerEngine>(
             // Each finger is sent its lines a millisecond later than the previous one.
             let finger_ms = previous_ms.and_then(|ms| ms.checked_sub(previous as u64));
             if let Some(line) = finger_ms.and_then(|ms| fingers[previous].send(2 * ms + 1)) {
-                engine.send(previous, line);
+                engine.send(&addressed(previous, line));
             }
             let legs = engine.legs(index);
             let world = engine.world(index);
@@ -130,7 +120,9 @@ pub fn run<H: FiveFingerEngine>(
             fingers[index].record(ms, world);
             world.step(legs);
         }
-        for (index, line) in engine.receive() {
+        engine.receive(received.received());
+        for line in received.complete() {
+            let (index, line) = source_finger(line);
             (fingers[index].receive(ms, line))
                 .map_err(|line| RunError::Refused(format!("finger {index}: {line}")))?;
         }
@@ -139,4 +131,24 @@ pub fn run<H: FiveFingerEngine>(
     let real_time_factor = last_ms as f64 * 1e-3 / began.elapsed().as_secs_f64();
     let (cost, resets) = (engine.cost(), engine.resets());
     Ok(fingers.map(|finger| finger.outcome(H::NAME, &resets, cost, real_time_factor)))
+}
+
+/// A line to a finger. A blank line has no address.
+fn addressed(finger: usize, line: &[u8]) -> Vec<u8> {
+    if line == b"\n" {
+        return line.into();
+    }
+    [format!("@{finger} ").as_bytes(), line].concat()
+}
+
+/// The finger that has sent a line, and the line without its address. Lines of the device as a whole are attributed to the first
+/// finger.
+fn source_finger(line: String) -> (usize, String) {
+    let addressed = line.split_at_checked(3);
+    match addressed.map(|(address, rest)| (address.as_bytes(), rest)) {
+        Some(([b'@', digit @ b'0'..=b'4', b' '], rest)) => {
+            (usize::from(digit - b'0'), rest.to_owned())
+        }
+        _ => (0, line),
+    }
 }

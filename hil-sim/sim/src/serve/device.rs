@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::engine::Engine;
-use crate::five_fingers::{FINGERS, OneLine};
+use crate::five_fingers::{FINGERS, FiveFingerEngine};
 use crate::processor::NotInjected;
 use crate::run::inject_due;
 use crate::scene::{Scene, SceneError};
@@ -131,7 +131,7 @@ pub struct FiveFingers<H> {
     ms: u64,
 }
 
-impl<H: OneLine> FiveFingers<H> {
+impl<H: FiveFingerEngine> FiveFingers<H> {
     /// A device that was just powered up in the worlds of these scenes, whose processor faults are not injected.
     pub fn new(engine: H, scenes: [Scene; FINGERS]) -> Self {
         Self {
@@ -142,11 +142,11 @@ impl<H: OneLine> FiveFingers<H> {
     }
 }
 
-impl<H: OneLine> ServedDevice for FiveFingers<H> {
+impl<H: FiveFingerEngine> ServedDevice for FiveFingers<H> {
     type Stop = H::Stop;
 
     fn send(&mut self, bytes: &[u8]) {
-        self.engine.send_bytes(bytes);
+        self.engine.send(bytes);
     }
 
     fn run_1_ms(&mut self) -> Result<(), H::Stop> {
@@ -162,7 +162,7 @@ impl<H: OneLine> ServedDevice for FiveFingers<H> {
     }
 
     fn receive(&mut self, into: &mut Vec<u8>) {
-        self.engine.receive_bytes(into);
+        self.engine.receive(into);
     }
 }
 

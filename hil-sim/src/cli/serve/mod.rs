@@ -14,15 +14,12 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use thermal_sim::World;
 use thermal_sim::commissioning::{CommissioningSetup, SimulatedSurroundings};
 use thermal_sim::engine::{Engine, NativeEngine};
-use thermal_sim::five_fingers::FINGERS;
-#[cfg(feature = "emulator")]
-use thermal_sim::five_fingers::OneLine;
+use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, NativeFiveFingers};
 use thermal_sim::scene::{FaultKind, Scene};
 use thermal_sim::serve::{
-    ClientLine, Clock, OneFinger, ServedDevice, Speed, TcpLine, read_scene, serve, serve_in_step,
+    ClientLine, Clock, FiveFingers, OneFinger, ServedDevice, Speed, TcpLine, read_scene,
+    scenes_of_five_fingers, serve, serve_in_step,
 };
-#[cfg(feature = "emulator")]
-use thermal_sim::serve::{FiveFingers, scenes_of_five_fingers};
 
 use super::engine::{self, EngineKind};
 use super::{Failure, output};
@@ -124,9 +121,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             engine::refuse_elf(elf)?;
             server.one_finger(scene, |world| Ok(NativeEngine::new(world)))
         }
-        (EngineKind::Native, _) => Err(Failure::input(anyhow!(
-            "--fingers 5 --engine native: the native engine has one finger; allowed is --engine image"
-        ))),
+        (EngineKind::Native, _) => {
+            engine::refuse_elf(elf)?;
+            server.five_fingers(&scene, |worlds| Ok(NativeFiveFingers::new(worlds)))
+        }
         #[cfg(feature = "emulator")]
         (EngineKind::Image, 1) => {
             server.one_finger(scene, |world| super::image::engine(elf, world))
@@ -205,8 +203,7 @@ impl Server<'_> {
             .map_err(Failure::run)
     }
 
-    #[cfg(feature = "emulator")]
-    fn five_fingers<H: OneLine>(
+    fn five_fingers<H: FiveFingerEngine>(
         self,
         scene: &Scene,
         start: impl FnOnce([World; FINGERS]) -> Result<H, Failure>,
