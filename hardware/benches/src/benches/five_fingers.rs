@@ -183,7 +183,7 @@ fn scene() -> Scene {
             ".tran 50u 60m 0 100u uic",
         ),
         time: ("time, ms; the button is pressed at 20 ms", 1e3),
-        range: 0.0..60.0,
+        range: 15.0..60.0,
         charts: &[
             (
                 "V",
