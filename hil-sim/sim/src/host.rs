@@ -69,7 +69,8 @@ fn relaxations(scene: &Scene) -> Vec<String> {
         return Vec::new();
     }
     let fit = upload::object_fit(&object.material, &object.layers, &object.back);
-    upload::upload_lines(&fit)
+    let orders = thermal_client::client::upload(&fit.impedance());
+    orders.iter().map(ToString::to_string).collect()
 }
 
 impl Host {

@@ -1,18 +1,15 @@
-//! The host's description of an object that is not a half-space: an upload of its relaxations.
+//! The relaxations by which the host describes an object that is not a half-space.
 
 use contact_model::material::{Material, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::contact_resistance;
 use relaxation_fit::{Back, Fit, Layer, fit, impedance};
 use thermal_plant::slab::{self, BackBoundary};
-use thermal_settings::CRC_32;
 
 /// Largest number of relaxations that are fitted to an object.
 const RELAXATIONS_MAX: usize = 14;
 /// Force, N, for whose contact resistance the errors of the object's impedance are weighted.
 const TYPICAL_FORCE_N: f64 = 2.0;
-/// Square millimetres, in which the protocol counts areas, per square metre.
-const MM2_PER_M2: f64 = 1e6;
 
 /// Fits relaxations to an object of these layers by least squares of the error that they cause in the skin's temperature.
 /// `material` is that of the touched surface, which determines the contact resistance.
@@ -42,24 +39,4 @@ pub fn object_fit(material: &Material, layers: &[slab::Layer], back: &BackBounda
         weight,
         RELAXATIONS_MAX,
     )
-}
-
-/// The lines of an upload: begin, one row for each relaxation, and commit.
-#[must_use]
-pub fn upload_lines(object: &Fit) -> Vec<String> {
-    let direct = MM2_PER_M2 * object.direct_m2k_w;
-    let mut lines = vec![format!(
-        "upload begin object {} {direct:.9}",
-        object.relaxations.len()
-    )];
-    lines.extend(object.relaxations.iter().enumerate().map(|(index, one)| {
-        let (rate, gain) = (one.rate_1_s, MM2_PER_M2 * one.gain_m2k_j);
-        format!("upload row {index} {rate:.9} {gain:.9}")
-    }));
-    let sent: String = lines.iter().flat_map(|line| [line, "\n"]).collect();
-    lines.push(format!(
-        "upload commit {:08x}",
-        CRC_32.checksum(sent.as_bytes())
-    ));
-    lines
 }

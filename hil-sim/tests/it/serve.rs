@@ -5,6 +5,12 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::process::{Child, ChildStdout, Command, Stdio};
 
+use thermal_lab::client::Client;
+use thermal_lab::commissioning::commission;
+use thermal_lab::link::{ServedLink, ServedOperator};
+use thermal_sim::commissioning::settings_for_device;
+use thermal_sim::scene::Scene;
+
 use super::refused;
 
 /// A served device, which ends with the test.
@@ -27,10 +33,15 @@ impl Served {
 
     /// Where it listens.
     fn place(&mut self) -> String {
+        self.line("listening on ")
+    }
+
+    /// The rest of its next line of output.
+    fn line(&mut self, begin: &str) -> String {
         let mut line = String::new();
         self.out.read_line(&mut line).expect("a line");
-        let place = line.strip_prefix("listening on ").expect(&line);
-        place.strip_suffix('\n').expect("a whole line").into()
+        let rest = line.strip_prefix(begin).expect(&line);
+        rest.strip_suffix('\n').expect("a whole line").into()
     }
 }
 
@@ -73,6 +84,21 @@ fn a_device_on_a_pseudo_terminal_is_at_the_printed_path_for_one_program_after_an
         let answer = query(terminal.expect("a terminal"), "id\n");
         assert!(answer.starts_with(IDENTITY), "{answer}");
     }
+}
+
+/// Byte for byte: the procedure is in step with the device that it commissions.
+#[test]
+fn a_served_device_is_commissioned_over_tcp_as_by_the_simulated_operator() {
+    const SCENE: &str = "../scenes/copper.toml";
+    let listen = ["--tcp", "127.0.0.1:0", "--surroundings", "127.0.0.1:0"];
+    let mut served = Served::start(&[&[SCENE, "--speed", "max"][..], &listen].concat());
+    let (device, surroundings) = (served.place(), served.line("surroundings on "));
+    let link = ServedLink::connect(device, surroundings).expect("a connection");
+    let mut operator = ServedOperator { watch: &mut |_| () };
+    let record = commission(&mut Client::new(link), None, &mut operator).expect("commissioned");
+    let scene = Scene::read(SCENE.as_ref()).expect("a scene");
+    let operators = settings_for_device(&scene.params, scene.room_c, scene.seed);
+    assert_eq!(record.settings, operators.expect("commissioned"));
 }
 
 #[cfg(unix)]

@@ -6,7 +6,7 @@ use anyhow::{Context, anyhow};
 use clap::Args;
 use thermal_client::client::Client;
 use thermal_client::commissioning::{CommissioningEvent, CommissioningRecord};
-use thermal_lab::commissioning::commission;
+use thermal_lab::commissioning::{clear_calibration, commission};
 use thermal_lab::link::{ServedLink, ServedOperator};
 use thermal_lab::person::{Person, lines};
 use thermal_sim::engine::NativeEngine;
@@ -54,6 +54,7 @@ fn by_a_person(target: &Target, arguments: &Arguments) -> Result<CommissioningRe
         &mut screen,
     );
     target.with_client(|client| {
+        clear_calibration(client, arguments.finger).map_err(Failure::run)?;
         commission(client, arguments.finger, &mut person).map_err(Failure::run)
     })
 }

@@ -20,8 +20,9 @@ use super::Failure;
 const ROOM_C: f64 = 24.0;
 const SEED: u64 = 0;
 
-/// The device: exactly one of the three, for all commands but `ports`.
+// The device: exactly one of the three, for all commands but `ports`.
 #[derive(Args)]
+#[command(next_help_heading = "Device, one of three")]
 pub struct Target {
     /// Serial port of the device; `thermal-lab ports` lists them
     #[arg(long, value_name = "NAME", global = true, conflicts_with_all = ["tcp", "simulated"])]

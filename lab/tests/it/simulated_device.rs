@@ -16,7 +16,7 @@ use thermal_lab::client::{
     QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState,
     upload,
 };
-use thermal_lab::commissioning::arm;
+use thermal_lab::commissioning::{arm, clear_calibration};
 use thermal_lab::link::{Link, SimulatedLink};
 use thermal_plant::Params;
 use thermal_sim::commissioning::CommissioningSetup;
@@ -112,6 +112,8 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     client.wait(Duration::from_millis(600)).unwrap();
     let fit = client.ask(&point).unwrap();
     assert_eq!(fit.points, 1);
+    clear_calibration(&mut client, None).unwrap();
+    assert_eq!(client.ask(&point).unwrap().points, 1);
     let lines = client.ask(&CountSettings).unwrap();
     let before: Vec<_> = (1..=lines)
         .map(|n| client.ask(&QuerySettings(n)).unwrap())

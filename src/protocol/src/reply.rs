@@ -6,7 +6,7 @@ use thermal_commissioning::{
     SessionReply, Setting, StabilityMargins, StorageOrder, THERMISTOR_WORDS,
 };
 use thermal_device::command::{self, Status};
-use thermal_device::safety::{SelfTestReport, SelfTestResult, TripCause};
+use thermal_device::safety::{SelfTestReport, TripCause};
 use thermal_device::sense::Samples;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
 use thermal_settings::{Calibration, Tile};
@@ -207,12 +207,7 @@ fn pulse_test_answer_words(report: &SelfTestReport) -> LineBuffer {
         line.push_celsius_or_dash::<2>(response);
     }
     line.push_str_if_fits(" result=");
-    line.push_str_if_fits(match report.result {
-        SelfTestResult::None => "none",
-        SelfTestResult::Running => "running",
-        SelfTestResult::Passed => "passed",
-        SelfTestResult::Failed(fault) => fault.name(),
-    });
+    line.push_str_if_fits(report.result.name());
     line
 }
 

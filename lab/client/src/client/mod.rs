@@ -24,14 +24,14 @@ use streams::Streams;
 pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
 pub use fields::Fields;
-pub use order::{Order, thermistor, thermistor_word, upload};
+pub use order::{Order, THERMISTORS, thermistor, thermistor_word, upload};
 pub use query::{
     Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryIdentity, QueryLaw,
     QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState, TuneResult,
 };
 pub use reply::{
     BoardReport, CalibrationFit, Cause, IdentifiedTile, Identity, RawReadings, SelfTestReport,
-    SelfTestResult, SettingsLine, Status,
+    SettingsLine, Status,
 };
 pub use telemetry::{ReceivedTelemetry, Telemetry};
 

@@ -74,7 +74,7 @@ pub enum Order {
 }
 
 /// The thermistors in the order of their words.
-const THERMISTORS: [ThermistorId; THERMISTOR_WORDS.len()] = [
+pub const THERMISTORS: [ThermistorId; THERMISTOR_WORDS.len()] = [
     ThermistorId::Display,
     ThermistorId::Check,
     ThermistorId::Sink,

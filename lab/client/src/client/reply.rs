@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 use thermal_commissioning::{SessionRequest, Setting};
 use thermal_device::StateName;
 use thermal_device::reference::ContactModel;
-use thermal_device::safety::Fault;
+use thermal_device::safety::{Fault, SelfTestResult};
 use thermal_protocol::{CONTACT_MODEL_WORDS, Request};
 use thermal_settings::Settings;
 
@@ -233,19 +233,6 @@ impl fmt::Display for SettingsLine {
     }
 }
 
-/// Result of the last self-test.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SelfTestResult {
-    /// There has been none since the start.
-    None,
-    /// It runs.
-    Running,
-    /// It was passed.
-    Passed,
-    /// It found this fault.
-    Failed(Fault),
-}
-
 /// Answer to `self-test`: what the last self-test measured; `None` for what it did not reach.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SelfTestReport {
@@ -276,23 +263,14 @@ pub struct SelfTestReport {
     pub result: SelfTestResult,
 }
 
-impl SelfTestResult {
-    /// Its word on the line; of a failed test that of the fault.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Running => "running",
-            Self::Passed => "passed",
-            Self::Failed(fault) => fault.name(),
-        }
-    }
-
-    fn read(word: &str) -> Option<Self> {
-        let known = [Self::None, Self::Running, Self::Passed];
-        let known = known.into_iter().find(|known| known.name() == word);
-        known.or_else(|| fault(word).map(Self::Failed))
-    }
+fn self_test_result(word: &str) -> Option<SelfTestResult> {
+    let known = [
+        SelfTestResult::None,
+        SelfTestResult::Running,
+        SelfTestResult::Passed,
+    ];
+    let known = known.into_iter().find(|known| known.name() == word);
+    known.or_else(|| fault(word).map(SelfTestResult::Failed))
 }
 
 fn result_word<S: Serializer>(result: &SelfTestResult, serializer: S) -> Result<S::Ok, S::Error> {
@@ -313,7 +291,7 @@ impl SelfTestReport {
             warm_a: reply.known_number("warm_a")?,
             display_k: reply.known_number("display_k")?,
             check_k: reply.known_number("check_k")?,
-            result: SelfTestResult::read(reply.word("result")?)?,
+            result: self_test_result(reply.word("result")?)?,
         })
     }
 }
@@ -363,14 +341,14 @@ impl RawReadings {
 /// Answer to `board`: option bytes, clocks, locks and counters of the serial line.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct BoardReport {
-    /// Brown-out reset level.
-    pub bor: String,
-    /// Whether a debugger has frozen the watchdogs.
+    /// Brown-out level of the option bytes, 0 (off) to 3.
+    pub bor: u8,
+    /// Whether a debugger has selected that watchdogs or PWM timers stand still while it halts the core.
     pub watchdogs_frozen: bool,
     /// Whether the clock is the external one.
     pub clock_external: bool,
-    /// Lock level of the PWM timer.
-    pub pwm_lock: String,
+    /// Level of the lock of the PWM timers' settings, 0 (off) to 3.
+    pub pwm_lock: u8,
     /// Cause of the last reset.
     pub reset: String,
     /// Bytes lost because they were not fetched in time.
@@ -386,7 +364,7 @@ pub struct BoardReport {
 impl BoardReport {
     pub(super) fn read(reply: &Fields<'_>) -> Option<Self> {
         Some(Self {
-            bor: reply.word("bor")?.into(),
+            bor: reply.number("bor")?,
             watchdogs_frozen: match reply.word("watchdogs")? {
                 "running" => false,
                 "frozen" => true,
@@ -397,7 +375,7 @@ impl BoardReport {
                 "hsi" => false,
                 _ => return None,
             },
-            pwm_lock: reply.word("pwm_lock")?.into(),
+            pwm_lock: reply.number("pwm_lock")?,
             reset: reply.word("reset")?.into(),
             rx_overruns: reply.number("rx_overruns")?,
             rx_framing: reply.number("rx_framing")?,

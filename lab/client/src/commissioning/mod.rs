@@ -9,7 +9,7 @@ mod surroundings_line;
 use crate::client::ClientError;
 use crate::link::LinkError;
 
-pub use procedure::{arm, commission, restore, settings};
+pub use procedure::{arm, clear_calibration, commission, restore, settings};
 pub use record::{CalibrationPoint, CommissioningEvent, CommissioningRecord};
 pub use surroundings::{Surroundings, SurroundingsError};
 pub use surroundings_line::SurroundingsRequest;

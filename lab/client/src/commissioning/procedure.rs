@@ -12,7 +12,7 @@ use super::{
 };
 use crate::client::{
     Calibrate, Client, ClientError, CountSettings, IdentifiedTile, Order, QueryMargins,
-    QuerySettings, QueryState, TuneResult, thermistor_word,
+    QuerySettings, QueryState, THERMISTORS, TuneResult, thermistor_word,
 };
 use crate::link::Link;
 
@@ -100,6 +100,21 @@ fn expect_settings<L: Link>(
         Some(lost) => Err(CommissionError::NotRestored(lost.clone())),
         None => Ok(()),
     }
+}
+
+/// Makes a device, or one of its fingers, forget points and corrections of all thermistors until it restarts, with the bridge
+/// off. A device that is commissioned again begins so.
+///
+/// # Errors
+/// The device refuses.
+pub fn clear_calibration<L: Link>(
+    client: &mut Client<L>,
+    finger: Option<u8>,
+) -> Result<(), ClientError> {
+    client.ask_finger(finger, &Order::Abort)?;
+    THERMISTORS
+        .into_iter()
+        .try_for_each(|one| client.ask_finger(finger, &Order::ClearCalibration(one)))
 }
 
 /// All settings of a device or of one of its fingers, as lines.

@@ -6,11 +6,11 @@ use std::time::Duration;
 
 use thermal_client::client::{
     BoardReport, Client, ClientError, Order, QueryBoard, QueryCause, QueryIdentity, QueryRaw,
-    QuerySelfTest, QueryState, SelfTestResult,
+    QuerySelfTest, QueryState,
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
 use thermal_device::StateName;
-use thermal_device::safety::Fault;
+use thermal_device::safety::{Fault, SelfTestResult};
 
 use crate::fake_device::{FakeDevice, answers, knows};
 
@@ -225,10 +225,10 @@ fn the_answers_for_diagnosis_are_read() {
     assert_eq!((raw.display, raw.supply), (2048.25, 2730.0));
     assert!(raw.fault_line && !raw.stop);
     let board = BoardReport {
-        bor: "3".into(),
+        bor: 3,
         watchdogs_frozen: false,
         clock_external: true,
-        pwm_lock: "1".into(),
+        pwm_lock: 1,
         reset: "power".into(),
         rx_overruns: 0,
         rx_framing: 1,

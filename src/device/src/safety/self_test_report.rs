@@ -49,3 +49,16 @@ pub enum SelfTestResult {
     /// This fault, found by the self-test or by another detector, has ended the self-test.
     Failed(Fault),
 }
+
+impl SelfTestResult {
+    /// Its word in lines to the host; of a failed self-test that of its fault.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Running => "running",
+            Self::Passed => "passed",
+            Self::Failed(fault) => fault.name(),
+        }
+    }
+}
