@@ -76,7 +76,7 @@ fn state(force_n: f64) -> SensorInputs {
         room_c: 24.0,
         force_n,
         mirror_a: 0.0,
-        mirror_ripple_a: 0.0,
+        mirror_ripple: thermal_plant::bridge::InductorRipple::default(),
         supply_counts: 0.0,
     }
 }

@@ -19,7 +19,7 @@ pub mod thermal;
 pub mod tile;
 mod tr_bdf2;
 
-use bridge::{Bridge, BridgeOutputs};
+use bridge::{Bridge, BridgeOutputs, InductorRipple};
 use comparator::{Comparator, ComparatorTest};
 pub use config::{ConfigError, HostParams, Params, PlantConfig};
 use contact::{ContactLaw, SkinContact};
@@ -57,8 +57,8 @@ pub struct Plant {
     source_v: f64,
     supply: Supply,
     comparator: Comparator,
-    /// Fraction of the inductors' ripple behind the filters of the current measurement, and its sampling phase.
-    mirror_ripple: (f64, f64),
+    /// Fraction of the inductors' ripple behind the filters of the current measurement.
+    ripple_share: f64,
     defects: Defects,
     heat: ThermalModel,
     receptors: [Option<DepthProbe>; RECEPTORS_M.len()],
@@ -119,7 +119,7 @@ impl Plant {
             room_c: config.room_c,
             force_n: 0.0,
             mirror_a: 0.0,
-            mirror_ripple_a: 0.0,
+            mirror_ripple: InductorRipple::default(),
             supply_counts: 0.0,
         };
         let sensors = Sensors::new(params.sensors, &at_rest, config.seed);
@@ -140,10 +140,7 @@ impl Plant {
             bridge: Bridge::new(params.bridge, params.tile.resistance_ohm()),
             source_v: params.bridge.supply_v,
             supply: Supply::new(params.supply),
-            mirror_ripple: (
-                params.sensors.mirror.ripple_share(params.bridge.pwm_hz),
-                params.sensors.mirror.sampling_phase,
-            ),
+            ripple_share: (params.sensors.mirror).ripple_share(params.bridge.pwm_hz),
             comparator: Comparator::new(
                 &params.comparator,
                 &BONDED,
@@ -228,7 +225,6 @@ impl Plant {
         self.steps += 1;
         self.steps_since_change = self.steps_since_change.saturating_add(1);
         let current = self.heat.tile().current();
-        let (share, phase) = self.mirror_ripple;
         let state = SensorInputs {
             display_c: self.display_c(),
             sink_c: self.sink_c(),
@@ -237,7 +233,10 @@ impl Plant {
             room_c: self.room_c,
             force_n: self.force_n,
             mirror_a: current.mean_a.abs(),
-            mirror_ripple_a: share * current.inductor.at_phase(phase),
+            mirror_ripple: InductorRipple {
+                half_a: self.ripple_share * current.inductor.half_a,
+                ..current.inductor
+            },
             supply_counts: self.supply.sensed_counts(),
         };
         self.sensors.step(STEP_S, &state);

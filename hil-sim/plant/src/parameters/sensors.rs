@@ -164,13 +164,14 @@ fn force(force: &mut ForceParams) -> [Entry<'_>; 4] {
     ]
 }
 
-fn mirror(mirror: &mut MirrorParams) -> [Entry<'_>; 5] {
+fn mirror(mirror: &mut MirrorParams) -> [Entry<'_>; 6] {
     let MirrorParams {
         counts_per_a,
         gain_error,
         offset_a,
         lag_s,
         sampling_phase,
+        phase_step,
     } = mirror;
     [
         entry!(
@@ -208,7 +209,15 @@ fn mirror(mirror: &mut MirrorParams) -> [Entry<'_>; 5] {
         entry!(
             sampling_phase,
             "1",
-            "phase of the PWM period at which the current is sampled",
+            "phase of the PWM period at which the first scan of a step samples the current",
+            FIXED,
+            (0.0, 1.0),
+            Design,
+        ),
+        entry!(
+            phase_step,
+            "1",
+            "change of that phase from scan to scan, periods",
             FIXED,
             (0.0, 1.0),
             Design,

@@ -22,6 +22,8 @@ pub(crate) use lag::Delay;
 use lag::FirstOrderLag;
 use thermistor::{Site, Thermistor};
 
+use crate::bridge::InductorRipple;
+
 /// Number of signals of one finger that the converter scans.
 pub const CHANNELS: usize = 8;
 /// Number of scans of all channels in one step of the plant, [`STEP_S`](crate::STEP_S).
@@ -81,8 +83,8 @@ pub struct SensorInputs {
     pub force_n: f64,
     /// Magnitude of the current that the sense resistors see, A.
     pub mirror_a: f64,
-    /// Ripple of that current behind the filters at the sampling phase, A.
-    pub mirror_ripple_a: f64,
+    /// Ripple of that current behind the filters.
+    pub mirror_ripple: InductorRipple,
     /// Sensed supply of the bridge, counts at a nominal reference.
     pub supply_counts: f64,
 }
@@ -112,7 +114,7 @@ pub struct Sensors {
     /// Output of the current measurement's filters, A, and the ripple on it.
     mirror_lag: FirstOrderLag,
     mirror_a: f64,
-    mirror_ripple_a: f64,
+    mirror_ripple: InductorRipple,
     supply_counts: f64,
     defects: SensorDefects,
     /// Noise-free level of each channel at the end of the last step, counts.
@@ -144,7 +146,7 @@ impl Sensors {
             ratios: [0.0; THERMISTORS],
             mirror_lag: FirstOrderLag::new(params.mirror.lag_s),
             mirror_a: state.mirror_a,
-            mirror_ripple_a: state.mirror_ripple_a,
+            mirror_ripple: state.mirror_ripple,
             supply_counts: state.supply_counts,
             defects: SensorDefects::NONE,
             counts: [0.0; CHANNELS],
@@ -191,7 +193,7 @@ impl Sensors {
         self.mirror_a = self
             .mirror_lag
             .step_response(step_s, self.mirror_a, state.mirror_a);
-        self.mirror_ripple_a = state.mirror_ripple_a;
+        self.mirror_ripple = state.mirror_ripple;
         self.supply_counts = state.supply_counts;
         self.level = self.counts;
         self.update_counts();
@@ -241,8 +243,7 @@ impl Sensors {
 
     /// Output of the current measurement, counts.
     fn mirror_counts(&self) -> f64 {
-        let current_a = (self.defects.mirror_stuck_a)
-            .unwrap_or_else(|| (self.mirror_a + self.mirror_ripple_a).abs());
+        let current_a = self.defects.mirror_stuck_a.unwrap_or(self.mirror_a);
         self.params.mirror.counts(current_a) * self.reference_scale()
     }
 
@@ -259,7 +260,27 @@ impl Sensors {
             self.remaining[i] -= 1;
             self.level[i] += self.increment[i];
         }
-        self.converter.convert(self.level[i])
+        let level = match channel {
+            Channel::Current if self.ripple_is_seen() => self.rippled_level(self.remaining[i]),
+            _ => self.level[i],
+        };
+        self.converter.convert(level)
+    }
+
+    /// Whether the ripple of the current measurement is more than a hundredth of a count.
+    fn ripple_is_seen(&self) -> bool {
+        let counts = self.params.mirror.counts_per_a * self.mirror_ripple.half_a;
+        counts > 0.01 && self.defects.mirror_stuck_a.is_none()
+    }
+
+    /// Level of the current measurement with its ripple, counts, `remaining` scans before the end of the step.
+    fn rippled_level(&self, remaining: usize) -> f64 {
+        let mirror = &self.params.mirror;
+        let scan = (SCANS_PER_STEP - 1).saturating_sub(remaining);
+        let phase = (mirror.sampling_phase + scan as f64 * mirror.phase_step).fract();
+        let current_a = (self.mirror_a + self.mirror_ripple.at_phase(phase)).abs();
+        self.converter
+            .with_offset_and_gain(mirror.counts(current_a) * self.reference_scale())
     }
 
     fn update_counts(&mut self) {

@@ -36,18 +36,20 @@ pub struct MirrorParams {
     pub offset_a: f64,
     /// Time constant of its filters, s; 0 for a board without them, whose converter sees the ripple.
     pub lag_s: f64,
-    /// Phase of the PWM period at which the converter samples, 0 to 1 from the begin of the pulses. With one finger the
-    /// scans are whole numbers of periods apart, so all see the ripple at this phase.
+    /// Phase of the PWM period at which the first scan of a step samples, 0 to 1 from the begin of the pulses.
     pub sampling_phase: f64,
+    /// Change of the phase from one scan to the next, periods. The 16 scans of one finger are spread over a period; 0 for
+    /// a firmware whose scans are whole numbers of periods apart.
+    pub phase_step: f64,
 }
 
 impl MirrorParams {
-    /// Fraction of the inductors' ripple, at a PWM frequency, Hz, that passes the filters.
+    /// Fraction of the inductors' ripple, at a PWM frequency, Hz, that passes the filters: two poles, with a fifth and four
+    /// fifths of the lag.
     #[must_use]
     pub fn ripple_share(&self, pwm_hz: f64) -> f64 {
-        (1.0f64)
-            .hypot(std::f64::consts::TAU * pwm_hz * self.lag_s)
-            .recip()
+        let radians = std::f64::consts::TAU * pwm_hz * self.lag_s;
+        (1.0f64.hypot(0.2 * radians) * 1.0f64.hypot(0.8 * radians)).recip()
     }
 
     /// Output at a current, A, in counts.
@@ -138,6 +140,7 @@ impl SensorParams {
             offset_a: 0.0,
             lag_s: 0.43e-3,
             sampling_phase: 0.0,
+            phase_step: 0.0614,
         },
         reference: ReferenceParams {
             volt: 3.3,

@@ -10,7 +10,10 @@ const NOMINAL_INPUTS: SensorInputs = SensorInputs {
     room_c: 22.0,
     force_n: 0.0,
     mirror_a: 0.0,
-    mirror_ripple_a: 0.0,
+    mirror_ripple: InductorRipple {
+        half_a: 0.0,
+        width: 0.0,
+    },
     supply_counts: 0.0,
 };
 
@@ -41,7 +44,10 @@ fn channels_come_in_scan_order() {
         room_c: 40.0,
         force_n: 2.0,
         mirror_a: 3.0,
-        mirror_ripple_a: 0.0,
+        mirror_ripple: InductorRipple {
+            half_a: 0.0,
+            width: 0.0,
+        },
         supply_counts: 3464.0,
     };
     let [display, check, sink, skin, room, force, current, supply] = counts(ideal(), &state);
