@@ -18,7 +18,6 @@ pub mod scene;
 mod scene_recording;
 pub mod serve;
 pub mod simulated_link;
-pub mod telemetry;
 pub mod trace;
 pub mod upload;
 mod world;

@@ -179,7 +179,7 @@ pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
     let evaluations = || {
         rows.iter()
             .filter_map(|row| row.device.as_ref())
-            .map(|device| device.evaluations)
+            .map(|device| u64::from(device.evaluations))
     };
     let skins = || rows.iter().map(|row| row.skin_c);
     let mut exchanges = outcome.exchanges();
@@ -363,11 +363,11 @@ fn faults(outcome: &Outcome) -> Vec<TripRecord> {
     let mut tripped = false;
     for row in outcome.trace.rows() {
         let Some(device) = &row.device else { continue };
-        let now = device.state == "tripped";
+        let now = device.fault().is_some();
         if now && !tripped {
             faults.push(TripRecord {
                 t_s: row.t_s,
-                fault: device.remark.clone().unwrap_or_default(),
+                fault: device.remark().unwrap_or_default().into(),
             });
         }
         tripped = now;

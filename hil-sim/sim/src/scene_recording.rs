@@ -1,10 +1,11 @@
 //! The scene of one finger during a run: its changes to the world, and the recording of trace and answers.
 
+use thermal_client::client::Telemetry;
+
 use crate::World;
 use crate::engine::{Cost, DeviceReset};
 use crate::host::Host;
 use crate::scene::Scene;
-use crate::telemetry::Telemetry;
 use crate::trace::{Trace, TraceRow};
 
 /// Result of a run.

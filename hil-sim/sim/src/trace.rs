@@ -5,11 +5,10 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 
+use thermal_client::client::Telemetry;
 use thermal_plant::infrared::Reading;
 use thermal_plant::sensors::SensorReadings;
 use thermal_plant::{Finger, Plant, RECEPTORS_M};
-
-use crate::telemetry::Telemetry;
 
 /// Number of rows without telemetry, and of telemetry lines without a row, that are kept for matching.
 const UNMATCHED_MAX: usize = 20;
@@ -90,7 +89,7 @@ impl Trace {
         if let Some(index) = self
             .early
             .iter()
-            .position(|telemetry| telemetry.tick == tick)
+            .position(|telemetry| u64::from(telemetry.tick) == tick)
         {
             row.device = self.early.remove(index);
         } else {
@@ -104,7 +103,7 @@ impl Trace {
         match self
             .waiting
             .iter()
-            .find(|(tick, _)| *tick == telemetry.tick)
+            .find(|(tick, _)| *tick == u64::from(telemetry.tick))
         {
             Some((_, index)) => self.rows[*index].device = Some(telemetry),
             None => push_bounded(&mut self.early, telemetry),
@@ -163,7 +162,7 @@ const COLUMNS: [Column; 17] = [
     }),
     ("display_c", |row| format!("{:.6}", row.display_c)),
     ("sensor_c", |row| {
-        telemetry_cell(row, |device| device.sensor_c, 4)
+        telemetry_cell(row, |device| device.display_c, 4)
     }),
     ("skin_c", |row| format!("{:.6}", row.skin_c)),
     ("skin_real_c", |row| format!("{:.6}", row.skin_real_c)),
@@ -172,7 +171,7 @@ const COLUMNS: [Column; 17] = [
     ("state", |row| {
         row.device
             .as_ref()
-            .map_or("", |device| &device.state)
+            .map_or("", |device| device.state.name())
             .into()
     }),
     ("demand_a", |row| {
@@ -181,7 +180,7 @@ const COLUMNS: [Column; 17] = [
     ("object_real_c", |row| format!("{:.6}", row.object_real_c)),
     ("remark", |row| {
         let device = row.device.as_ref();
-        let remark = device.and_then(|device| device.remark.as_deref());
+        let remark = device.and_then(Telemetry::remark);
         remark.unwrap_or("").into()
     }),
     ("skin_cold_c", |row| optional_cell(row.receptors_c[0], 6)),

@@ -1,6 +1,7 @@
 //! Assessment of a run against the limits.
 
 use serde::Serialize;
+use thermal_client::client::Telemetry;
 use thermal_sim::metrics::{Extremes, Figures};
 use thermal_sim::named_enum;
 use thermal_sim::run::Outcome;
@@ -164,9 +165,8 @@ impl RunAssessment {
     ) {
         let early = rows_before.iter().any(|row| {
             let device = row.device.as_ref();
-            device.is_some_and(|device| {
-                device.state == "tripped" && device.remark.as_deref() != before
-            })
+            let fault = device.and_then(Telemetry::fault);
+            fault.is_some_and(|fault| Some(fault.name()) != before)
         });
         let reached = self.detectable_ms.is_some();
         let late = reached
@@ -208,7 +208,8 @@ pub(super) const WORKING_STATES: [&str; 5] = ["self-test", "ready", "armed", "pr
 fn detected(outcome: &Outcome, from: usize, t_s: f64, before: Option<&str>) -> Option<f64> {
     let tripped = outcome.trace.rows()[from..].iter().find(|row| {
         let device = row.device.as_ref();
-        device.is_some_and(|device| device.state == "tripped" && device.remark.as_deref() != before)
+        let fault = device.and_then(Telemetry::fault);
+        fault.is_some_and(|fault| Some(fault.name()) != before)
     });
     let reset = outcome.resets.iter().find(|reset| reset.t_s >= t_s - 1e-6);
     let times = [tripped.map(|row| row.t_s), reset.map(|reset| reset.t_s)];

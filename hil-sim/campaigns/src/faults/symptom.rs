@@ -83,7 +83,7 @@ const SINK_C: f64 = 42.1;
 const DOSE_MIN: f64 = 0.5;
 const DOSE_BELOW_K: f64 = 0.1;
 /// Ticks whose numbers are multiples of this begin a self-test.
-const BEGIN_TICKS: u64 = 64;
+const BEGIN_TICKS: u32 = 64;
 /// End of the comparator's part of a self-test, and the wait after a change of contact, ms.
 const COMPARATOR_MS: u32 = 80;
 const UNTOUCHED_MS: u32 = 1000;
@@ -248,7 +248,7 @@ fn supply_off(rows: &[TraceRow]) -> Option<f64> {
     for (i, row) in rows.iter().enumerate() {
         let is_tested = row.device.as_ref().is_some_and(|device| {
             matches!(
-                device.state.as_str(),
+                device.state.name(),
                 "ready" | "armed" | "preset" | "contact"
             )
         });
@@ -308,9 +308,10 @@ fn self_test(rows: &[TraceRow], from: usize, tested_from_s: f64, age_s: f64) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use thermal_client::client::Telemetry;
+    use thermal_device::StateName;
     use thermal_sim::World;
     use thermal_sim::scene::Scene;
-    use thermal_sim::telemetry::Telemetry;
 
     /// One row per millisecond for 4 s, each changed by `at`.
     fn rows(at: impl Fn(f64, &mut TraceRow, &mut Telemetry)) -> Vec<TraceRow> {
@@ -341,7 +342,11 @@ mod tests {
         let with_finger_from = |from_s: f64| {
             rows(move |t_s, row, device| {
                 row.force_n = if t_s >= from_s { 2.0 } else { 0.0 };
-                device.state = if t_s >= 1.0 { "self-test" } else { "off" }.into();
+                device.state = if t_s >= 1.0 {
+                    StateName::SelfTest
+                } else {
+                    StateName::Off
+                };
             })
         };
         for (from_s, age_s, expected_s) in [

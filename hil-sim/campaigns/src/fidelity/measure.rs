@@ -1,6 +1,7 @@
 //! The figure of a run that is compared with a bound.
 
 use serde::Serialize;
+use thermal_device::StateName;
 use thermal_sim::metrics::skin_errors;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
@@ -123,9 +124,9 @@ fn limited(outcome: &Outcome) -> Option<f64> {
         .iter()
         .filter_map(|row| row.device.as_ref())
     {
-        if device.state == "contact" {
+        if device.state == StateName::Contact {
             contact += 1;
-            limited += u32::from(device.remark.as_deref() == Some("limited"));
+            limited += u32::from(device.limited);
         }
     }
     (contact > 0).then(|| 100.0 * f64::from(limited) / f64::from(contact))

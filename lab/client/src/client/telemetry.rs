@@ -91,6 +91,16 @@ impl Telemetry {
         })
     }
 
+    /// The last word of the line: the fault by which the device is tripped, or `limited`.
+    #[must_use]
+    pub const fn remark(&self) -> Option<&'static str> {
+        match self.state.fault() {
+            Some(fault) => Some(fault.name()),
+            None if self.limited => Some("limited"),
+            None => None,
+        }
+    }
+
     /// The fault by which the device is tripped.
     #[must_use]
     pub const fn fault(&self) -> Option<Fault> {

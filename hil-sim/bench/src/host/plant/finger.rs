@@ -3,12 +3,12 @@ use std::hint::black_box;
 use std::path::Path;
 
 use anyhow::{Context, bail};
+use thermal_client::client::Telemetry;
 use thermal_plant::Plant;
 use thermal_plant::bridge::BridgeOutputs;
 use thermal_sim::World;
 use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::scene::Scene;
-use thermal_sim::telemetry::Telemetry;
 
 /// Material of the presented object.
 pub const OBJECT: &str = "granite";
@@ -163,7 +163,7 @@ impl Finger {
         }
         let last = text.lines().filter_map(Telemetry::parse).next_back();
         match last {
-            Some(telemetry) if telemetry.state == "contact" => Ok(()),
+            Some(telemetry) if telemetry.state.name() == "contact" => Ok(()),
             other => bail!("the device is not in contact: {other:?}"),
         }
     }
