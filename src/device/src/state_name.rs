@@ -9,7 +9,7 @@ pub enum StateName {
     /// The bridge is off: after a start of the program without a trip, after `clear`, or after `abort` of the
     /// self-test. `arm` leads to the self-test.
     Off,
-    /// The self-test runs, for 0.7 s if no finger disturbs it: the comparator is tested with the bridge off, then 1 A
+    /// The self-test runs, for 0.8 s if no finger disturbs it: the comparator is tested with the bridge off, then 1 A
     /// cools and 1 A warms the display.
     SelfTest,
     /// The bridge is off after `abort` in armed, preset or contact. The self-test was passed before, so `arm` leads to

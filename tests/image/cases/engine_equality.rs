@@ -64,7 +64,7 @@ fn a_shorted_bridge_trips_both_engines_in_the_same_tick() {
     assert_eq!(state_at(1.65).as_deref(), Some("self-test"));
     assert_eq!(state_at(2.65).as_deref(), Some("self-test"));
     // At most 63 ms until it begins, 80 ms for the comparator, 64 ms for the slope.
-    assert_eq!(state_at(2.82).as_deref(), Some("tripped"));
+    assert_eq!(state_at(2.85).as_deref(), Some("tripped"));
 }
 
 /// An object with most relaxations, which is uploaded, and a drawn finger on a drawn device.
