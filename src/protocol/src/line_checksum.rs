@@ -33,7 +33,7 @@ pub fn line_checksum(line: &[u8]) -> u8 {
 /// The checksum is wrong, or what follows `*` is none.
 #[inline(never)]
 pub fn strip_checksum(line: &str) -> Result<&str, ChecksumError> {
-    let Some((content, digits)) = line.rsplit_once('*') else {
+    let Some((content, digits)) = line.split_once('*') else {
         return Ok(line);
     };
     // `from_str_radix` accepts a leading `+`.
