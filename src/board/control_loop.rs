@@ -70,6 +70,9 @@ impl ControlLoop {
         if let Some(fault) = self.chip_monitor.present_fault() {
             device.trip_all(fault);
         }
+        if !self.sampler.finger_was_selected() {
+            device.trip_all(Fault::SelectLines);
+        }
         let outputs = device.step_finger(finger, &samples);
         // Scan all fingers only when one has tripped or a cause is stored.
         if !self.chip_monitor.has_fault_at_start()

@@ -104,11 +104,13 @@ impl CoreRegister {
     }
 }
 
-/// A fault of the microcontroller.
+/// A fault of the microcontroller, or of the select lines by which it addresses the multiplexers of the board for five
+/// fingers.
 ///
 /// Its text, both ways: `ram-bit=0x20000010.3`, `core-bit=r4.7` (r0 to r12, sp, lr, pc, psr, s0 to s31, fpscr),
 /// `register-bit=0x40010044.15`, `hung-core`, `debugger-halt`, `hse-stopped`, `hse-started`, `adc-stopped`, `dma-stopped=2.0` (controller, stream),
-/// `brown-out`, `power-cycle=1` (seed of the noise in RAM), `reset-pin`, `software-reset`, `stack-overflow`.
+/// `brown-out`, `power-cycle=1` (seed of the noise in RAM), `reset-pin`, `software-reset`, `stack-overflow`,
+/// `select-line-stuck=0.1` (line, level), `select-line-open=0` (line).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MachineFault {
     /// A bit (0 to 7) of a byte of the RAM flips.
@@ -162,6 +164,18 @@ pub enum MachineFault {
     SoftwareReset,
     /// The stack pointer is set to the end of the stack, so that the next push overflows.
     StackOverflow,
+    /// A select line is shorted at its pin, to ground or to 3.3 V.
+    SelectLineStuck {
+        /// 0 to 2.
+        line: u8,
+        /// 0 or 1.
+        level: u8,
+    },
+    /// The wire of a select line breaks: the multiplexers see the level of its pull-down.
+    SelectLineOpen {
+        /// 0 to 2.
+        line: u8,
+    },
 }
 
 /// A fault of the processor at a time of a scene, with microsecond resolution; at a whole millisecond it comes before the
@@ -216,6 +230,8 @@ impl fmt::Display for MachineFault {
             Self::ResetPin => f.write_str("reset-pin"),
             Self::SoftwareReset => f.write_str("software-reset"),
             Self::StackOverflow => f.write_str("stack-overflow"),
+            Self::SelectLineStuck { line, level } => write!(f, "select-line-stuck={line}.{level}"),
+            Self::SelectLineOpen { line } => write!(f, "select-line-open={line}"),
         }
     }
 }
@@ -225,7 +241,8 @@ impl fmt::Display for MachineFault {
 #[error(
     "`{0}` is no fault of the machine; allowed are ram-bit=ADDRESS.BIT, core-bit=REGISTER.BIT, \
      register-bit=ADDRESS.BIT, hung-core, debugger-halt, hse-stopped, hse-started, adc-stopped, dma-stopped=CONTROLLER.STREAM, brown-out, \
-     power-cycle=SEED, reset-pin, software-reset, stack-overflow"
+     power-cycle=SEED, reset-pin, software-reset, stack-overflow, select-line-stuck=LINE.LEVEL, select-line-open=LINE with \
+     lines 0 to 2 and levels 0 and 1"
 )]
 pub struct ParseMachineFaultError(String);
 
@@ -262,6 +279,13 @@ fn parse(text: &str) -> Option<MachineFault> {
         "power-cycle" => MachineFault::PowerCycle {
             seed: value.parse().ok()?,
         },
+        "select-line-stuck" => MachineFault::SelectLineStuck {
+            line: up_to(2, pair()?.0)?,
+            level: up_to(1, pair()?.1)?,
+        },
+        "select-line-open" => MachineFault::SelectLineOpen {
+            line: up_to(2, value)?,
+        },
         _ if !value.is_empty() => return None,
         "hung-core" => MachineFault::HungCore,
         "debugger-halt" => MachineFault::DebuggerHalt,
@@ -274,6 +298,10 @@ fn parse(text: &str) -> Option<MachineFault> {
         "stack-overflow" => MachineFault::StackOverflow,
         _ => return None,
     })
+}
+
+fn up_to(most: u8, text: &str) -> Option<u8> {
+    text.parse().ok().filter(|number| *number <= most)
 }
 
 fn number(text: &str) -> Option<u32> {
@@ -322,6 +350,8 @@ mod tests {
             "reset-pin",
             "software-reset",
             "stack-overflow",
+            "select-line-stuck=2.1",
+            "select-line-open=0",
         ] {
             let fault: MachineFault = text.parse().expect("a fault");
             assert_eq!(fault.to_string(), text);
@@ -337,6 +367,9 @@ mod tests {
             "core-bit=x1.2",
             "dma-stopped=2",
             "power-cycle",
+            "select-line-stuck=3.0",
+            "select-line-stuck=0.2",
+            "select-line-open=3",
         ] {
             let error = text.parse::<MachineFault>().expect_err("no fault");
             assert!(error.to_string().contains(&format!("`{text}`")), "{error}");

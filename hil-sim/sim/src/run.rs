@@ -41,11 +41,6 @@ pub enum RunError<S: std::error::Error + 'static> {
         /// End of the scene, s.
         to_s: f64,
     },
-    /// A scene of one of five fingers contains a fault of the processor, which all fingers share.
-    #[error(
-        "{0} is a fault of the processor that five fingers share; such a scene is for one finger"
-    )]
-    SharedProcessor(MachineFault),
     /// The device refused a set-up line of the scene.
     #[error("the device refused to be set up for the scene: {0}")]
     Refused(String),

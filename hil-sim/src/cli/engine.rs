@@ -4,6 +4,11 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
+#[cfg(feature = "emulator")]
+use stm32_emulator::FiveFingerBoard;
+#[cfg(feature = "emulator")]
+use thermal_sim::five_fingers::FINGERS;
+use thermal_sim::five_fingers::{FiveFingerEngine, FiveFingerRunner, NativeFiveFingers};
 use thermal_sim::scene::Scene;
 use thermal_sim::{NativeRunner, SceneRunner, World};
 
@@ -38,6 +43,24 @@ pub fn runner(kind: EngineKind, elf: Option<&Path>) -> Result<Box<dyn SceneRunne
         EngineKind::Native => {
             refuse_elf(elf)?;
             Ok(Box::new(NativeRunner))
+        }
+    }
+}
+
+/// The runner of five fingers and the name of its engine.
+pub fn five_finger_runner(
+    kind: EngineKind,
+    elf: Option<&Path>,
+) -> Result<(Box<dyn FiveFingerRunner>, &'static str), Failure> {
+    match kind {
+        #[cfg(feature = "emulator")]
+        EngineKind::Image => {
+            let image = image::firmware(elf, FINGERS)?.0;
+            Ok((Box::new(image), FiveFingerBoard::NAME))
+        }
+        EngineKind::Native => {
+            refuse_elf(elf)?;
+            Ok((Box::new(NativeRunner), NativeFiveFingers::NAME))
         }
     }
 }

@@ -290,7 +290,8 @@ impl Board {
                     wiring::BridgeAndComparatorPins::new(gpiob.pb1, gpiob.pb12, gpiob.pb7),
                 ],
             };
-            let multiplexer = wiring::Multiplexer::new(gpioc.pc10, gpioc.pc11, gpioc.pc12);
+            let multiplexer =
+                wiring::Multiplexer::new(gpioc.pc10, gpioc.pc11, gpioc.pc12, gpioa.pa5);
             (pins.into_power_stages(&mut rcc), multiplexer)
         };
 

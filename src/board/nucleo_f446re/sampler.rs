@@ -71,6 +71,9 @@ pub struct Sampler {
     multiplexer: Multiplexer,
     /// The finger whose samples the DMA stream stores now. The next tick takes that finger's block.
     finger: FingerIndex<FINGERS>,
+    /// Whether the multiplexers had selected the finger of the last block, as far as the parity of
+    /// their select lines shows.
+    finger_was_selected: bool,
     tick_rate_and_rcc_monitor: TickRateAndRccMonitor,
 }
 
@@ -124,6 +127,7 @@ impl Sampler {
             last_buffer: CurrentBuffer::SecondBuffer,
             multiplexer,
             finger: FingerIndex::FIRST,
+            finger_was_selected: true,
             tick_rate_and_rcc_monitor,
         };
         (sampler, SampleTrigger(timer.counter_hz()))
@@ -147,6 +151,7 @@ impl Sampler {
             .tick_rate_and_rcc_monitor
             .check_rcc_cfgr_and_tick_rate();
         let finger = self.finger;
+        self.finger_was_selected = self.multiplexer.can_have_selected(finger);
         self.finger = finger.next_cyclic();
         self.multiplexer.select(self.finger);
         if Multiplexer::SETTLING_SCANS != 0 && self.first_scan_of_block_is_stored() {
@@ -177,6 +182,12 @@ impl Sampler {
             .last_chunk()
             .ok_or(SampleError::Bus)?;
         Ok((finger, scans))
+    }
+
+    /// Whether the last block can be that of its finger: a select line of the multiplexers that is
+    /// broken or shorted connects other sensors. All fingers must then trip.
+    pub const fn finger_was_selected(&self) -> bool {
+        self.finger_was_selected
     }
 
     /// Whether the DMA stream has already stored the first scan of the block that it is filling.

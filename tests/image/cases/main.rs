@@ -4,6 +4,7 @@ mod chip;
 mod closed_loop;
 mod contact_transients;
 mod engine_equality;
+mod five_finger_faults;
 mod five_fingers;
 mod processor_faults;
 mod range_limits;

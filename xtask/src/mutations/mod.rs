@@ -25,11 +25,21 @@ struct Mutation {
     faults: Vec<&'static str>,
     /// Engine that runs the faults; detectors in the board's code are in the image only.
     engine: &'static str,
+    /// Number of fingers of the device that runs the faults; empty for 1.
+    fingers: &'static str,
     /// Instead of faults and engine: package and name of unit tests.
     tests: Option<(&'static str, &'static str)>,
 }
 
 impl Mutation {
+    fn fingers(&self) -> &'static str {
+        if self.fingers.is_empty() {
+            "1"
+        } else {
+            self.fingers
+        }
+    }
+
     fn apply(&self, text: &str) -> Result<String> {
         let Self {
             detector,
@@ -77,6 +87,7 @@ fn mutations() -> Result<Vec<Mutation>> {
             "after" => last.after = value,
             "faults" => last.faults = value.split(' ').collect(),
             "engine" => last.engine = value,
+            "fingers" => last.fingers = value,
             "tests" => last.tests = value.split_once(' '),
             _ => bail!("{TABLE}: unknown key in `{line}`"),
         }
@@ -92,13 +103,14 @@ pub fn run(names: &[String]) -> Result<()> {
     ensure!(!mutations.is_empty(), "no detector has such a name");
     let copy = workspace().join(FOLDER).join("sources");
     copy_sources(&copy)?;
-    for engine in ["native", "image"] {
-        let of_engine = mutations.iter().filter(|one| one.engine == engine);
-        let mut faults: Vec<_> = of_engine.flat_map(|one| &one.faults).copied().collect();
+    for (engine, fingers) in [("native", "1"), ("image", "1"), ("image", "5")] {
+        let of_device =
+            (mutations.iter()).filter(|one| (one.engine, one.fingers()) == (engine, fingers));
+        let mut faults: Vec<_> = of_device.flat_map(|one| &one.faults).copied().collect();
         faults.sort_unstable();
         faults.dedup();
         if !faults.is_empty() {
-            matrix(&copy, engine, &faults)
+            matrix(&copy, (engine, fingers), &faults)
                 .run_to_stderr()
                 .context(UNCHANGED)?;
         }
@@ -131,12 +143,17 @@ pub fn run(names: &[String]) -> Result<()> {
         if mutation.engine == "image" {
             let manifest = copy.join("Cargo.toml").into();
             let line = ["run", "--package", "xtask", "--manifest-path"].map(OsString::from);
-            let firmware = [manifest, "--".into(), "firmware".into()];
-            Invocation::cargo(line.into_iter().chain(firmware)).run_to_stderr()?;
+            let firmware = ["--", "firmware", "--fingers", mutation.fingers()];
+            let firmware = firmware.map(OsString::from);
+            let line = line.into_iter().chain([manifest]).chain(firmware);
+            Invocation::cargo(line).run_to_stderr()?;
         }
         let revealed = match mutation.tests {
             Some(tests) => unit_tests(&copy, tests, &[]),
-            None => matrix(&copy, mutation.engine, &mutation.faults),
+            None => {
+                let device = (mutation.engine, mutation.fingers());
+                matrix(&copy, device, &mutation.faults)
+            }
         }
         .run_to_stderr()
         .is_err();
@@ -210,10 +227,15 @@ fn unit_tests(copy: &Path, (package, name): (&str, &str), options: &[&str]) -> I
 }
 
 /// `hil-sim faults` of the copy, with these kinds of faults.
-fn matrix(copy: &Path, engine: &str, faults: &[&str]) -> Invocation {
+fn matrix(copy: &Path, (engine, fingers): (&str, &str), faults: &[&str]) -> Invocation {
     let mut line = hil_sim(copy, "run");
     let options = ["--", "faults", "--engine", engine, "--moments", "4"];
-    line.extend(options.into_iter().map(OsString::from));
+    line.extend(
+        options
+            .into_iter()
+            .chain(["--fingers", fingers])
+            .map(OsString::from),
+    );
     line.push("--only".into());
     line.extend(faults.iter().map(OsString::from));
     Invocation::cargo(line)

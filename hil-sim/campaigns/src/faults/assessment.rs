@@ -40,6 +40,8 @@ named_enum! {
         Reason = "reason",
         /// The set-point differed from that without the fault, which must not change it.
         Changed = "changed",
+        /// One of five fingers, which does not have the fault, did not render as without it.
+        Others = "others",
     }
 }
 
@@ -114,15 +116,15 @@ impl RunAssessment {
         )
     }
 
-    /// Assesses a run; `fault_free` are the rows of the same scene without the fault, if a symptom needs them.
+    /// Assesses a run by the rows of its trace; `fault_free` are the rows of the same scene without the fault, if a symptom needs them.
     pub(super) fn new(
         fault_case: &FaultCase,
         point: InjectionPoint,
         outcome: &Outcome,
+        rows: &[TraceRow],
         figures: &Figures,
         fault_free: &[TraceRow],
     ) -> Self {
-        let rows = outcome.trace.rows();
         let t_s = point.t_s;
         // The fault is present from the first boundary at or after its time.
         let from = rows.partition_point(|row| row.t_s < t_s - 1e-9);
@@ -203,6 +205,12 @@ const OFF: &str = "off";
 
 /// The states in which the device continues to work without a fault.
 pub(super) const WORKING_STATES: [&str; 5] = ["self-test", "ready", "armed", "preset", "contact"];
+
+/// Whether the device works without a fault at the end of a run.
+pub(super) fn works_at_end(outcome: &Outcome, t_s: f64) -> bool {
+    let reason = FinalAnswers::new(outcome, t_s).reason(None);
+    WORKING_STATES.contains(&reason.as_str())
+}
 
 /// Time of the first reset or of the first trip from row `from` on, except the trip before the fault.
 fn detected(outcome: &Outcome, from: usize, t_s: f64, before: Option<&str>) -> Option<f64> {

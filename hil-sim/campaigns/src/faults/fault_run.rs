@@ -64,6 +64,9 @@ fn fault_free_run(
 pub struct FaultRun {
     /// Name of the scene.
     pub place: &'static str,
+    /// The finger, if it is one of five.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finger: Option<usize>,
     /// Time of the fault, s.
     pub t_s: f64,
     /// Assessment of the run.
@@ -114,13 +117,15 @@ impl FaultRun {
                 let fault_free: &[_] = fault_free
                     .as_ref()
                     .map_or(&[], |outcome| outcome.trace.rows());
-                RunAssessment::new(fault_case, point, &outcome, &figures, fault_free)
+                let rows = outcome.trace.rows();
+                RunAssessment::new(fault_case, point, &outcome, rows, &figures, fault_free)
             }
             // The behaviour of the hardware is unknown then, so the run counts as a breach.
             Err(error) => RunAssessment::ended(&error),
         };
         Ok(Some(Self {
             place: point.scene.name(),
+            finger: None,
             t_s: point.t_s,
             assessment,
         }))

@@ -19,6 +19,8 @@ const AFTER_S: f64 = 24.0;
 #[serde(deny_unknown_fields)]
 struct Table {
     cases: Vec<Row>,
+    #[serde(default)]
+    select_lines: Vec<Row>,
     symptoms: Groups,
     causes: Groups,
     scenes: Groups,
@@ -41,19 +43,30 @@ struct Row {
     after_s: Option<f64>,
 }
 
-/// All fault cases in the order of the table.
+/// The cases for every device, and those of the select lines of five fingers.
+type Lists = [Vec<FaultCase>; 2];
+
+static LISTS: LazyLock<Lists> =
+    LazyLock::new(|| read(include_str!("list.toml")).expect("list.toml"));
+
+/// All fault cases of one finger in the order of the table.
 #[must_use]
 pub fn fault_cases() -> Vec<FaultCase> {
-    static LIST: LazyLock<Vec<FaultCase>> =
-        LazyLock::new(|| read(include_str!("list.toml")).expect("list.toml"));
-    LIST.clone()
+    LISTS[0].clone()
+}
+
+/// The fault cases of the select lines, which only the device for five fingers has.
+pub(super) fn select_line_cases() -> Vec<FaultCase> {
+    LISTS[1].clone()
 }
 
 /// The cases of a table. Their texts and lists are kept until the program ends.
-fn read(text: &str) -> anyhow::Result<Vec<FaultCase>> {
+fn read(text: &str) -> anyhow::Result<Lists> {
     let table: Table = toml::from_str(text)?;
-    let case = |row| fault_case(row, &table).with_context(|| format!("fault {:?}", row.fault));
-    table.cases.iter().map(case).collect()
+    let case =
+        |row: &Row| fault_case(row, &table).with_context(|| format!("fault {:?}", row.fault));
+    let cases = |rows: &[Row]| rows.iter().map(case).collect::<anyhow::Result<_>>();
+    Ok([cases(&table.cases)?, cases(&table.select_lines)?])
 }
 
 fn fault_case(row: &Row, table: &Table) -> anyhow::Result<FaultCase> {

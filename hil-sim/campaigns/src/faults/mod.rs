@@ -9,12 +9,14 @@
 //! [The list](fault_cases) states for each fault, before any run, which deviation of the plant makes it detectable and which
 //! trip causes are then correct. [`RunAssessment`] checks every run: skin between 13 and 45 °C, less than a minute of CEM43,
 //! no current later than 50 ms after the first symptom, a correct cause, no trip before the fault, and an unchanged set-point
-//! after lines that may change nothing.
+//! after lines that may change nothing. A part of the list is run on [five fingers](five_finger_cases), too, of which those
+//! without the fault must render as before.
 
 mod assessment;
 mod fault_case;
 mod fault_run;
 mod fault_scene;
+mod five_fingers;
 mod flips;
 mod list;
 mod matrix;
@@ -31,6 +33,7 @@ pub use assessment::{Breach, RunAssessment};
 pub use fault_case::{ExpectedReaction, FaultCase, InjectedFault};
 pub use fault_run::FaultRun;
 pub use fault_scene::{FaultScene, InjectionPoint};
+pub use five_fingers::{FiveFingerRun, Reference, five_finger_cases};
 pub use flips::{
     BitFlip, FlipEffect, FlipRegion, FlipResult, FlippableMemory, ReferenceRun, flip_table,
 };

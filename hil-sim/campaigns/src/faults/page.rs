@@ -27,25 +27,28 @@ const HEADS: [&str; 9] = [
 
 /// A page that needs no other file.
 #[must_use]
-pub fn page(rows: &[FaultSummary], engine: &str) -> String {
+pub fn page(sections: &[(&str, &[FaultSummary])], engine: &str) -> String {
     let mut body = format!(
         "<p>Engine {}; everything here is simulated, nobody has run it on hardware. Worst case of each fault over its \
          runs. Held to: skin within 13 to 45 °C, CEM43 below one minute, no current from 50 ms after the fault is \
-         detectable on, a right reason, no trip before the fault, an unchanged set-point where nothing may change.</p><table><tr>",
+         detectable on, a right reason, no trip before the fault, an unchanged set-point where nothing may change. On five fingers those without the fault render as before.</p>",
         escape(engine)
     );
-    for head in HEADS {
+    for (title, rows) in sections {
         // Writing to a String cannot fail.
-        let _ = write!(body, "<th>{head}</th>");
+        let _ = write!(body, "<h2>{title}</h2><table><tr>");
+        for head in HEADS {
+            let _ = write!(body, "<th>{head}</th>");
+        }
+        body += "</tr>";
+        for row in *rows {
+            body += &line(row);
+        }
+        body += "</table>";
     }
-    body += "</tr>";
-    for row in rows {
-        body += &line(row);
-    }
-    body += "</table>";
-    let failing = rows.iter().filter(|row| !row.holds);
+    let rows = sections.iter().flat_map(|(_, rows)| *rows);
     let mut list = String::new();
-    for row in failing {
+    for row in rows.filter(|row| !row.holds) {
         for trial in row.failing_runs() {
             let _ = write!(
                 list,
@@ -83,7 +86,7 @@ fn line(row: &FaultSummary) -> String {
         class(is(Breach::Late)),
         class(is(Breach::Skin)),
         class(is(Breach::Dose)),
-        class(is(Breach::Reason) || is(Breach::Early)),
+        class(is(Breach::Reason) || is(Breach::Early) || is(Breach::Others)),
         escape(&reasons),
     )
 }

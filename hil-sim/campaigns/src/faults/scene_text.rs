@@ -46,6 +46,12 @@ pub(super) fn fault_text(fault: &InjectedFault, t_s: f64) -> String {
         InjectedFault::Processor(MachineFault::DmaStopped { controller, stream }) => {
             writeln!(text, "controller = {controller}\nstream = {stream}")
         }
+        InjectedFault::Processor(MachineFault::SelectLineStuck { line, level }) => {
+            writeln!(text, "line = {line}\nlevel = {level}")
+        }
+        InjectedFault::Processor(MachineFault::SelectLineOpen { line }) => {
+            writeln!(text, "line = {line}")
+        }
         InjectedFault::Processor(_) | InjectedFault::HostLine(_) => Ok(()),
     };
     text

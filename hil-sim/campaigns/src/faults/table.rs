@@ -118,11 +118,15 @@ fn line(row: &FaultSummary, width: usize) -> String {
 /// A run that broke a limit, as text from which it can be repeated.
 pub(super) fn failing_run_text(trial: &FaultRun) -> String {
     let assessment = &trial.assessment;
+    let place = match trial.finger {
+        Some(finger) => format!("{} of finger {finger}", trial.place),
+        None => trial.place.into(),
+    };
     match &assessment.ended {
         Some(ended) => {
             let names = assessment.names();
-            format!("{names} in {} at {:.3} s: {ended}", trial.place, trial.t_s)
+            format!("{names} in {place} at {:.3} s: {ended}", trial.t_s)
         }
-        None => assessment.line(trial.place, trial.t_s, MILLISECONDS),
+        None => assessment.line(&place, trial.t_s, MILLISECONDS),
     }
 }

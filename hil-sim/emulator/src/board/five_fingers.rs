@@ -4,11 +4,15 @@ use thermal_plant::bridge::BridgeOutputs;
 use thermal_plant::sensors::Channel;
 use thermal_sim::World;
 use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine as _};
-use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine};
+use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, FiveFingerRunner, run_scenes_on};
+use thermal_sim::metrics::Figures;
+use thermal_sim::processor::{MachineFault, NotInjected};
+use thermal_sim::run::Outcome;
+use thermal_sim::scene::Scene;
 
 use super::meter::Meter;
 use super::one_finger::{ADC_INPUTS, OneFingerBoard, StartError, power_up, resets};
-use super::{A, B, Bridge, C, D, EMERGENCY_STOP, FIRST_BRIDGE, Pin, bridge};
+use super::{A, B, Bridge, C, D, EMERGENCY_STOP, FIRST_BRIDGE, Pin, bridge, inject};
 use crate::{Firmware, Machine, Stop, Wiring};
 
 const BRIDGES: [Bridge; FINGERS] = [
@@ -20,6 +24,8 @@ const BRIDGES: [Bridge; FINGERS] = [
 ];
 /// Select lines of the multiplexers, lowest bit first; pulled down.
 const SELECT: [Pin; 3] = [(C, 10), (C, 11), (C, 12)];
+/// Input for the parity of the select lines at the multiplexers.
+const PARITY: Pin = (A, 5);
 /// Longest settling time of the multiplexers and their followers that the board allows, microseconds. A conversion that ends
 /// earlier has the code of the finger before.
 const SETTLING_US: u64 = 11;
@@ -99,6 +105,21 @@ impl FiveFingerEngine for FiveFingerBoard {
         into.append(&mut self.machine.wiring_mut().received);
     }
 
+    fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected> {
+        let (line, fault) = match *fault {
+            MachineFault::SelectLineStuck { line, level } => {
+                (line, SelectLineFault::Stuck(level != 0))
+            }
+            MachineFault::SelectLineOpen { line } => (line, SelectLineFault::Open),
+            _ => return inject(&mut self.machine, fault),
+        };
+        let now = self.machine.now();
+        let pins = self.machine.wiring_mut();
+        pins.select_faults[usize::from(line) % SELECT.len()] = Some(fault);
+        pins.update_selection(now);
+        Ok(())
+    }
+
     fn resets(&self) -> Vec<DeviceReset> {
         resets(&self.machine, self.first_boundary_ps)
     }
@@ -112,9 +133,29 @@ impl FiveFingerEngine for FiveFingerBoard {
     }
 }
 
+/// The image on the board for five fingers; the scenes are run from power-up.
+impl FiveFingerRunner for Firmware {
+    fn run_five(&self, scenes: &[Scene; FINGERS]) -> anyhow::Result<Vec<(Outcome, Figures)>> {
+        run_scenes_on(scenes, |worlds| Ok(FiveFingerBoard::new(self, worlds)?))
+    }
+}
+
+/// A fault of a select line of the multiplexers.
+#[derive(Clone, Copy)]
+enum SelectLineFault {
+    /// Shorted at the microcontroller's pin to this level.
+    Stuck(bool),
+    /// Broken between the pin and the pull-down at the multiplexers.
+    Open,
+}
+
 /// The circuit at the pins of the microcontroller.
 struct Pins {
     worlds: [World; FINGERS],
+    /// Levels that the program drives on the select lines.
+    driven: [bool; SELECT.len()],
+    select_faults: [Option<SelectLineFault>; SELECT.len()],
+    /// Levels at the multiplexers.
     select: [bool; SELECT.len()],
     /// Cycle at which the multiplexers were last switched, and their settling time in cycles.
     switched_at: u64,
@@ -131,6 +172,8 @@ impl Pins {
     const fn new(worlds: [World; FINGERS]) -> Self {
         Self {
             worlds,
+            driven: [false; SELECT.len()],
+            select_faults: [None; SELECT.len()],
             select: [false; SELECT.len()],
             switched_at: 0,
             settling: 0,
@@ -139,6 +182,21 @@ impl Pins {
             codes: [0; ADC_INPUTS.len()],
             first_conversion: None,
             received: Vec::new(),
+        }
+    }
+
+    /// The levels at the multiplexers after a change of the driven levels or of the faults at `at`.
+    fn update_selection(&mut self, at: u64) {
+        for (line, fault) in self.select_faults.iter().enumerate() {
+            let level = match fault {
+                None => self.driven[line],
+                Some(SelectLineFault::Stuck(level)) => *level,
+                Some(SelectLineFault::Open) => false,
+            };
+            if self.select[line] != level {
+                (self.select[line], self.switched_at) = (level, at);
+                self.conversions_left = SETTLED_SCANS * Channel::ALL.len();
+            }
         }
     }
 }
@@ -161,6 +219,11 @@ impl Wiring for Pins {
                 self.codes[index] = FLOATING;
                 return FLOATING;
             };
+            if self.select_faults.iter().any(Option::is_some) {
+                // A finger may be converted for longer than its turn.
+                self.codes[index] = world.convert(Channel::ALL[index]);
+                return self.codes[index];
+            }
             // The noise of a finger's scans must not depend on when the program has switched, which other tasks delay by some
             // conversions of the scans that it drops: the first ones after the settling are drawn here, where they were lost;
             // those after the finger's last scan are not drawn.
@@ -182,6 +245,9 @@ impl Wiring for Pins {
         if (port, bit) == EMERGENCY_STOP {
             return Some(!self.worlds.iter().any(World::emergency_stop));
         }
+        if (port, bit) == PARITY {
+            return Some(self.select.iter().filter(|level| **level).count() % 2 == 1);
+        }
         let finger = BRIDGES
             .iter()
             .position(|bridge| bridge.fault == (port, bit))?;
@@ -194,11 +260,8 @@ impl Wiring for Pins {
 
     fn output(&mut self, port: u8, bit: u8, level: Option<bool>, at: u64) {
         if let Some(line) = SELECT.iter().position(|pin| *pin == (port, bit)) {
-            let level = level.unwrap_or(false);
-            if self.select[line] != level {
-                (self.select[line], self.switched_at) = (level, at);
-                self.conversions_left = SETTLED_SCANS * Channel::ALL.len();
-            }
+            self.driven[line] = level.unwrap_or(false);
+            self.update_selection(at);
         }
     }
 }

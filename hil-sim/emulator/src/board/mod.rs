@@ -1,9 +1,12 @@
 //! Boards around the machine: a NUCLEO-F446RE with one finger, and one with five on multiplexers; their engines.
 
+use std::fmt::Display;
+
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::comparator::ComparatorTest;
+use thermal_sim::processor::{MachineFault, NotInjected};
 
-use crate::{LegState, Machine, Wiring};
+use crate::{InjectError, LegState, Machine, Wiring};
 
 mod five_fingers;
 mod meter;
@@ -77,4 +80,50 @@ impl From<LegState> for Leg {
 /// Whether a general-purpose output drives its pin high.
 fn is_high<W: Wiring>(machine: &Machine<W>, pin: Pin) -> bool {
     machine.gpio_output(pin.0, pin.1) == Some(true)
+}
+
+/// Injects a fault of the microcontroller into the machine.
+fn inject<W: Wiring>(machine: &mut Machine<W>, fault: &MachineFault) -> Result<(), NotInjected> {
+    let injected = match *fault {
+        MachineFault::RamBit { address, bit } => machine.flip_ram_bit(address, bit),
+        MachineFault::CoreBit { register, bit } => machine.flip_core_bit(register, bit),
+        MachineFault::RegisterBit { address, bit } => machine.flip_register_bit(address, bit),
+        MachineFault::HungCore => {
+            machine.hang_core();
+            Ok(())
+        }
+        MachineFault::DebuggerHalt => {
+            machine.halt_by_debugger();
+            Ok(())
+        }
+        MachineFault::HseStopped => machine.stop_hse(),
+        MachineFault::HseStarted => {
+            machine.start_hse();
+            Ok(())
+        }
+        MachineFault::AdcStopped => {
+            machine.stop_adc();
+            Ok(())
+        }
+        MachineFault::DmaStopped { controller, stream } => machine.stop_dma(controller, stream),
+        MachineFault::BrownOut => machine.brown_out().map_err(InjectError::from),
+        MachineFault::PowerCycle { seed } => machine.power_cycle(seed).map_err(InjectError::from),
+        MachineFault::ResetPin => machine.pull_reset_pin().map_err(InjectError::from),
+        MachineFault::SoftwareReset => machine.request_reset().map_err(InjectError::from),
+        MachineFault::StackOverflow => machine.exhaust_stack(),
+        MachineFault::SelectLineStuck { .. } | MachineFault::SelectLineOpen { .. } => {
+            return Err(refused(
+                fault,
+                &"the board for one finger has no multiplexers",
+            ));
+        }
+    };
+    injected.map_err(|reason| refused(fault, &reason))
+}
+
+fn refused(fault: &MachineFault, reason: &dyn Display) -> NotInjected {
+    NotInjected::Refused {
+        fault: *fault,
+        reason: reason.to_string(),
+    }
 }

@@ -11,8 +11,8 @@ use thermal_sim::scene::Scene;
 use thermal_sim::{RamLayout, SceneRunner, World, run_scene_on};
 
 use super::meter::{Meter, TICK};
-use super::{EMERGENCY_STOP, FIRST_BRIDGE};
-use crate::{Firmware, InjectError, Machine, RAM_BASE, RAM_SIZE, Stop, Wiring};
+use super::{EMERGENCY_STOP, FIRST_BRIDGE, inject, refused};
+use crate::{Firmware, Machine, RAM_BASE, RAM_SIZE, Stop, Wiring};
 
 /// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2, PC4.
 pub const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12, 14];
@@ -140,47 +140,13 @@ impl Engine for OneFingerBoard {
     }
 
     fn inject(&mut self, fault: &MachineFault, after_us: u32) -> Result<(), NotInjected> {
-        let refused = |reason: InjectError| NotInjected::Refused {
-            fault: *fault,
-            reason: reason.to_string(),
-        };
         let begin_ps = self.first_boundary_ps + self.halves * HALF_MS_PS;
-        let machine = &mut self.machine;
         if after_us > 0 {
-            let reached = machine.run_until_ps(begin_ps + u64::from(after_us) * MICROSECOND_PS);
-            reached.map_err(|stop| refused(stop.into()))?;
+            let at_ps = begin_ps + u64::from(after_us) * MICROSECOND_PS;
+            let reached = self.machine.run_until_ps(at_ps);
+            reached.map_err(|stop| refused(fault, &stop))?;
         }
-        let injected = match *fault {
-            MachineFault::RamBit { address, bit } => machine.flip_ram_bit(address, bit),
-            MachineFault::CoreBit { register, bit } => machine.flip_core_bit(register, bit),
-            MachineFault::RegisterBit { address, bit } => machine.flip_register_bit(address, bit),
-            MachineFault::HungCore => {
-                machine.hang_core();
-                Ok(())
-            }
-            MachineFault::DebuggerHalt => {
-                machine.halt_by_debugger();
-                Ok(())
-            }
-            MachineFault::HseStopped => machine.stop_hse(),
-            MachineFault::HseStarted => {
-                machine.start_hse();
-                Ok(())
-            }
-            MachineFault::AdcStopped => {
-                machine.stop_adc();
-                Ok(())
-            }
-            MachineFault::DmaStopped { controller, stream } => machine.stop_dma(controller, stream),
-            MachineFault::BrownOut => machine.brown_out().map_err(InjectError::from),
-            MachineFault::PowerCycle { seed } => {
-                machine.power_cycle(seed).map_err(InjectError::from)
-            }
-            MachineFault::ResetPin => machine.pull_reset_pin().map_err(InjectError::from),
-            MachineFault::SoftwareReset => machine.request_reset().map_err(InjectError::from),
-            MachineFault::StackOverflow => machine.exhaust_stack(),
-        };
-        injected.map_err(refused)
+        inject(&mut self.machine, fault)
     }
 
     fn resets(&self) -> Vec<DeviceReset> {

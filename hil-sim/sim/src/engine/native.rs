@@ -296,6 +296,27 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         }
     }
 
+    /// A hung core or missing samples stop the ticks until the window watchdog resets the device; a reset restarts the
+    /// logic. Other faults do not apply to an engine without a processor.
+    fn inject_fault(&mut self, fault: &MachineFault) -> Result<(), NotInjected> {
+        match fault {
+            MachineFault::HungCore | MachineFault::DebuggerHalt | MachineFault::AdcStopped => {
+                self.hung_ms = Some(0);
+            }
+            MachineFault::DmaStopped { controller: 2, .. } => self.hung_ms = Some(0),
+            MachineFault::BrownOut => self.restart(ResetCause::BrownOut),
+            MachineFault::PowerCycle { .. } => self.restart(ResetCause::PowerOn),
+            MachineFault::ResetPin => self.restart(ResetCause::Pin),
+            _ => {
+                return Err(NotInjected::NotApplicable {
+                    fault: *fault,
+                    engine: NativeEngine::NAME,
+                });
+            }
+        }
+        Ok(())
+    }
+
     /// Puts bytes on the line to the device, after those that are on it.
     fn put_on_line(&mut self, bytes: &[u8]) {
         let mut at = self.now_ns;
@@ -348,25 +369,8 @@ impl Engine for NativeEngine {
         into.append(&mut self.outgoing);
     }
 
-    /// A hung core or missing samples stop the ticks until the window watchdog resets the device; a reset restarts the
-    /// logic. Other faults do not apply to an engine without a processor.
     fn inject(&mut self, fault: &MachineFault, _after_us: u32) -> Result<(), NotInjected> {
-        match fault {
-            MachineFault::HungCore | MachineFault::DebuggerHalt | MachineFault::AdcStopped => {
-                self.hung_ms = Some(0);
-            }
-            MachineFault::DmaStopped { controller: 2, .. } => self.hung_ms = Some(0),
-            MachineFault::BrownOut => self.restart(ResetCause::BrownOut),
-            MachineFault::PowerCycle { .. } => self.restart(ResetCause::PowerOn),
-            MachineFault::ResetPin => self.restart(ResetCause::Pin),
-            _ => {
-                return Err(NotInjected::NotApplicable {
-                    fault: *fault,
-                    engine: Self::NAME,
-                });
-            }
-        }
-        Ok(())
+        self.inject_fault(fault)
     }
 
     fn resets(&self) -> Vec<DeviceReset> {
@@ -392,7 +396,11 @@ impl FiveFingerEngine for NativeFiveFingers {
         of_finger.fault |= of_finger.world.bridge_fault();
         of_finger.scan(SCANS_PER_TICK - of_finger.filled);
         let boundary_ns = last_ns - (FIVE as u64 - 1) * TURN_NS;
-        self.tick(finger, boundary_ns + TICK_OF_FIVE_FINGERS_NS);
+        match &mut self.hung_ms {
+            None => self.tick(finger, boundary_ns + TICK_OF_FIVE_FINGERS_NS),
+            Some(WINDOW_MS) => self.restart(ResetCause::WindowWatchdog),
+            Some(ms) => *ms += u64::from(finger == FingerIndex::FIRST),
+        }
         self.fingers[index].start_tick();
         Ok(())
     }
@@ -411,6 +419,10 @@ impl FiveFingerEngine for NativeFiveFingers {
 
     fn receive(&mut self, into: &mut Vec<u8>) {
         into.append(&mut self.outgoing);
+    }
+
+    fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected> {
+        self.inject_fault(fault)
     }
 
     fn resets(&self) -> Vec<DeviceReset> {

@@ -10,14 +10,18 @@
 //! because at 1 Mbaud they would delay each other. The fingers are set up one after the other, because the device takes
 //! up to a millisecond for some lines, and keeps one upload.
 
+mod runner;
+
 use std::time::Instant;
 
 pub use crate::engine::NativeFiveFingers;
+pub use runner::{FiveFingerRunner, run_scenes_on};
 
 use crate::World;
 use crate::commissioning;
 use crate::engine::{Cost, DeviceReset, LineSplitter};
 use crate::host::SET_UP_FROM_MS;
+use crate::processor::{Injection, MachineFault, NotInjected};
 use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
@@ -27,7 +31,7 @@ use thermal_plant::bridge::BridgeOutputs;
 pub const FINGERS: usize = 5;
 
 /// Interval of each finger's telemetry, ms: five lines of 100 bytes every millisecond would not fit 1 Mbaud.
-const STREAM_MS: u32 = 10;
+pub const STREAM_MS: u32 = 10;
 /// Time for the telemetry of the last row to arrive, ms.
 const DRAIN_MS: u64 = 10;
 
@@ -57,6 +61,12 @@ pub trait FiveFingerEngine {
     /// Appends the bytes received from the device since the last call.
     fn receive(&mut self, into: &mut Vec<u8>);
 
+    /// Injects a fault of the processor, which all fingers share, or of a select line of the multiplexers.
+    ///
+    /// # Errors
+    /// The fault does not apply to the engine, or its machine refuses it.
+    fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected>;
+
     /// Resets of the device after power-up; time counts from the first finger's first boundary.
     fn resets(&self) -> Vec<DeviceReset>;
 
@@ -69,10 +79,12 @@ pub trait FiveFingerEngine {
     }
 }
 
-/// Runs a scene on each finger and returns their results; `progress` is called with the fraction done.
+/// Runs a scene on each finger and returns their results; `progress` is called with the fraction done. Faults of the
+/// processor in any of the scenes are injected into the one that all fingers share, at whole milliseconds, before the first
+/// finger's boundary.
 ///
 /// # Errors
-/// The engine stopped, or the device refused a scene.
+/// The engine stopped, the device refused a scene, or a fault of the processor could not be injected.
 pub fn run<H: FiveFingerEngine>(
     scenes: &[Scene; FINGERS],
     engine: &mut H,
@@ -83,9 +95,6 @@ pub fn run<H: FiveFingerEngine>(
         .map(commissioning::settings_for_scene)
         .collect::<Result<_, _>>())
     .map_err(RunError::Commission)?;
-    if let Some(injection) = scenes.iter().find_map(|scene| scene.injections.first()) {
-        return Err(RunError::SharedProcessor(injection.fault));
-    }
     let began = Instant::now();
     let mut set_up_from_ms = SET_UP_FROM_MS;
     let mut fingers: [_; FINGERS] = std::array::from_fn(|finger| {
@@ -96,11 +105,16 @@ pub fn run<H: FiveFingerEngine>(
     });
     let last = |of: fn(&SceneRecording<'_>) -> u64| fingers.iter().map(of).max().unwrap_or(0);
     let zero_ms = last(|finger| finger.zero_ms);
-    let last_ms = last(|finger| finger.end_ms) + DRAIN_MS;
+    let end_ms = last(|finger| finger.end_ms);
+    let last_ms = end_ms + DRAIN_MS;
+    let injections = injections(scenes, zero_ms, end_ms)?;
     let mut received = LineSplitter::default();
     for ms in 0..=last_ms {
         if ms == zero_ms {
             engine.reset_cost();
+        }
+        for (_, fault) in injections.iter().filter(|(at_ms, _)| *at_ms == ms) {
+            engine.inject(fault)?;
         }
         for index in 0..FINGERS {
             engine.run_to(index).map_err(RunError::Stop)?;
@@ -151,4 +165,27 @@ fn source_finger(line: String) -> (usize, String) {
         }
         _ => (0, line),
     }
+}
+
+/// The faults of the processor in all scenes with their times since the start, ms.
+fn injections<S: std::error::Error + 'static>(
+    scenes: &[Scene; FINGERS],
+    zero_ms: u64,
+    end_ms: u64,
+) -> Result<Vec<(u64, MachineFault)>, RunError<S>> {
+    let of_all = scenes.iter().flat_map(|scene| &scene.injections);
+    let since_start = |&Injection { t_s, fault }| {
+        let ms = (t_s * 1e3).round() + zero_ms as f64;
+        if (0.0..=end_ms as f64).contains(&ms) {
+            return Ok((ms as u64, fault));
+        }
+        let time_s = |ms: u64| (ms as f64 - zero_ms as f64) / 1e3;
+        Err(RunError::InjectionTime {
+            fault,
+            t_s,
+            from_s: time_s(0),
+            to_s: time_s(end_ms),
+        })
+    };
+    of_all.map(since_start).collect()
 }

@@ -194,6 +194,8 @@ pub(super) struct Fault {
     pub bit: Option<Spanned<i64>>,
     pub controller: Option<Spanned<i64>>,
     pub stream: Option<Spanned<i64>>,
+    pub line: Option<Spanned<i64>>,
+    pub level: Option<Spanned<i64>>,
 }
 
 #[derive(Deserialize)]

@@ -25,7 +25,8 @@ pub fn run(
         let ran = campaign.run(device);
         ran.with_context(|| format!("number {} of seed {}", campaign.number, arguments.seed))
     };
-    let ran = each(arguments, "campaigns", device, &campaigns, work).map_err(Failure::run)?;
+    let ran =
+        each(arguments, "campaigns", device.name(), &campaigns, work).map_err(Failure::run)?;
     let ran: Vec<CampaignResult> = ran.into_iter().flatten().collect();
     let failing = ran.iter().filter(|ran| !ran.trial.holds()).count();
     let report = RunsReport {

@@ -23,7 +23,7 @@ pub fn run(
     let references = each(
         arguments,
         "references",
-        device,
+        device.name(),
         &ReferenceRun::PLACES,
         of_place,
     )
@@ -48,7 +48,7 @@ pub fn run(
         }
         Ok(flipped)
     };
-    let ran = each(arguments, "flips", device, &flips, work).map_err(Failure::run)?;
+    let ran = each(arguments, "flips", device.name(), &flips, work).map_err(Failure::run)?;
     let failing = ran
         .iter()
         .filter(|run| run.class == FlipEffect::Broken)

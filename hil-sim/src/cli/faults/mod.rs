@@ -1,6 +1,7 @@
 //! `hil-sim faults`: the fault matrix, random campaigns, pairs, normal use and bit flips.
 
 mod campaign;
+mod five_fingers;
 mod flips;
 mod normal;
 mod pairs;
@@ -25,9 +26,12 @@ pub struct Arguments {
     /// Faults of these kinds only, such as thermistor-open
     #[arg(long, num_args = 1.., value_name = "KIND")]
     only: Vec<String>,
-    /// In these scenes only
+    /// In these scenes only; of one finger
     #[arg(long, num_args = 1.., value_parser = scenes())]
     scene: Vec<FaultScene>,
+    /// On the device for so many fingers only, 1 or 5 [default: on both, but with --scene or --elf on that for 1]
+    #[arg(long, value_parser = clap::value_parser!(u8).range(1..=5).try_map(one_or_five))]
+    fingers: Option<u8>,
     /// Moments of each fault, spread over the scenes
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..))]
     moments: u16,
@@ -53,13 +57,13 @@ pub struct Arguments {
     modes: Modes,
     /// Again the campaign of a number, or with --flips the flip; its scene goes to --out
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(..10_000_000),
-        conflicts_with_all = ["only", "scene", "moments", "campaign", "pairs", "normal"])]
+        conflicts_with_all = ["only", "scene", "moments", "fingers", "campaign", "pairs", "normal"])]
     replay: Option<u64>,
 }
 
 /// The mode that replaces the matrix; at most one.
 #[derive(Args)]
-#[group(multiple = false, conflicts_with_all = ["only", "scene", "moments"])]
+#[group(multiple = false, conflicts_with_all = ["only", "scene", "moments", "fingers"])]
 struct Modes {
     /// Instead of the matrix: N random campaigns (fault, moment, scene, plant) of the seed
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
@@ -74,6 +78,13 @@ struct Modes {
     /// Simulated hours of normal use over the parameter box, in which nothing may trip; scenes that do go to --out
     #[arg(long, value_name = "HOURS", value_parser = clap::value_parser!(u64).range(1..=10_000))]
     normal: Option<u64>,
+}
+
+fn one_or_five(fingers: u8) -> Result<u8, String> {
+    match fingers {
+        1 | 5 => Ok(fingers),
+        _ => Err("allowed are 1 and 5".into()),
+    }
 }
 
 fn scenes() -> impl TypedValueParser<Value = FaultScene> {
@@ -93,6 +104,8 @@ struct MatrixReport<'a> {
     moments: u16,
     holds: bool,
     faults: &'a [FaultSummary],
+    /// On the device for five fingers.
+    five_fingers: &'a [FaultSummary],
 }
 
 /// What `--json` prints of the other modes.
@@ -180,8 +193,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Runs the matrix, prints it and writes its page; a fault that does not hold is a failure.
 fn matrix(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure> {
+    let (has_one, has_five) = match arguments.fingers {
+        Some(fingers) => (fingers == 1, fingers != 1),
+        None => (true, arguments.scene.is_empty() && arguments.elf.is_none()),
+    };
+    let [one_cases, five_cases] = [
+        (has_one, faults::fault_cases as fn() -> _),
+        (has_five, faults::five_finger_cases),
+    ]
+    .map(|(chosen, cases)| if chosen { cases() } else { Vec::new() });
+    let (one_cases, five_cases) = of_kinds(&arguments.only, one_cases, five_cases)?;
     let plan = MatrixPlan {
-        fault_cases: fault_cases(&arguments.only)?,
+        fault_cases: one_cases,
         scenes: match arguments.scene.as_slice() {
             [] => FaultScene::ALL.to_vec(),
             chosen => chosen.to_vec(),
@@ -190,53 +213,64 @@ fn matrix(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure
         seed: arguments.seed,
     };
     let rows = outlines(arguments, &plan, device).map_err(Failure::run)?;
+    let five_rows = five_fingers::outlines(arguments, five_cases)?;
+    let all = || rows.iter().chain(&five_rows);
     let report = MatrixReport {
         engine: device.name(),
         seed: arguments.seed,
         moments: arguments.moments,
-        holds: rows.iter().all(|row| row.holds),
+        holds: all().all(|row| row.holds),
         faults: &rows,
+        five_fingers: &five_rows,
     };
+    let sections = [
+        ("One finger", rows.as_slice()),
+        ("Five fingers", &five_rows),
+    ];
+    let sections = sections.into_iter().filter(|(_, rows)| !rows.is_empty());
+    let sections: Vec<_> = sections.collect();
     let page = arguments.out.as_ref();
     if let Some(folder) = page {
-        output::write(folder, faults::HTML, faults::page(&rows, device.name()))
+        output::write(folder, faults::HTML, faults::page(&sections, device.name()))
             .map_err(Failure::run)?;
     }
-    output::print_report(
-        arguments.json,
-        &report,
-        || faults::table(&rows),
-        page.map(|folder| folder.join(faults::HTML)),
-    )?;
-    match rows.iter().filter(|row| !row.holds).count() {
+    let table = || {
+        let tables = sections
+            .iter()
+            .map(|(title, rows)| format!("{title}\n{}", faults::table(rows)));
+        tables.collect::<Vec<_>>().join("\n")
+    };
+    let page = page.map(|folder| folder.join(faults::HTML));
+    output::print_report(arguments.json, &report, table, page)?;
+    match all().filter(|row| !row.holds).count() {
         0 => Ok(()),
         failing => Err(Failure::run(anyhow!(
             "{failing} of {} faults do not hold",
-            rows.len()
+            all().count()
         ))),
     }
 }
 
-/// The fault cases of the chosen kinds.
-fn fault_cases(only: &[String]) -> Result<Vec<FaultCase>, Failure> {
-    let all = faults::fault_cases();
-    for kind in only {
-        if !all
-            .iter()
-            .any(|fault_case| fault_case.fault.kind() == *kind)
-        {
-            let mut known: Vec<_> = all
-                .iter()
-                .map(|fault_case| fault_case.fault.kind())
-                .collect();
-            known.dedup();
-            let problem = anyhow!("--only {kind}; known are {}", known.join(", "));
-            return Err(Failure::input(problem));
-        }
+/// The cases of the chosen kinds, of one finger and of five.
+fn of_kinds(
+    only: &[String],
+    mut one: Vec<FaultCase>,
+    mut five: Vec<FaultCase>,
+) -> Result<(Vec<FaultCase>, Vec<FaultCase>), Failure> {
+    let mut known: Vec<_> = (one.iter().chain(&five))
+        .map(|fault_case| fault_case.fault.kind())
+        .collect();
+    if let Some(kind) = only.iter().find(|kind| !known.contains(kind)) {
+        known.sort();
+        known.dedup();
+        let problem = anyhow!("--only {kind}; known are {}", known.join(", "));
+        return Err(Failure::input(problem));
     }
     let chosen =
         |fault_case: &FaultCase| only.is_empty() || only.contains(&fault_case.fault.kind());
-    Ok(all.into_iter().filter(chosen).collect())
+    one.retain(chosen);
+    five.retain(chosen);
+    Ok((one, five))
 }
 
 fn outlines(
@@ -244,10 +278,16 @@ fn outlines(
     plan: &MatrixPlan,
     device: &dyn SceneRunner,
 ) -> anyhow::Result<Vec<FaultSummary>> {
-    let trials = each(arguments, "faults", device, &plan.runs(), |(row, point)| {
-        let fault_case = &plan.fault_cases[*row];
-        Ok((*row, FaultRun::run(device, fault_case, *point, plan.seed)?))
-    });
+    let trials = each(
+        arguments,
+        "faults",
+        device.name(),
+        &plan.runs(),
+        |(row, point)| {
+            let fault_case = &plan.fault_cases[*row];
+            Ok((*row, FaultRun::run(device, fault_case, *point, plan.seed)?))
+        },
+    );
     let mut by_row: Vec<Vec<FaultRun>> = plan.fault_cases.iter().map(|_| Vec::new()).collect();
     for (row, trial) in trials? {
         by_row[row].extend(trial);
@@ -263,11 +303,11 @@ fn outlines(
 fn each<T: Sync, R: Send>(
     arguments: &Arguments,
     what: &str,
-    device: &dyn SceneRunner,
+    engine: &str,
     items: &[T],
     work: impl Fn(&T) -> anyhow::Result<R> + Sync,
 ) -> anyhow::Result<Vec<R>> {
-    let bar = output::run_counter(format!("{what} on engine {}", device.name()), items.len())?;
+    let bar = output::run_counter(format!("{what} on engine {engine}"), items.len())?;
     let threads = output::threads(arguments.threads);
     let twentieth = |count: usize| count * 20 / items.len().max(1);
     let done = AtomicUsize::new(0);

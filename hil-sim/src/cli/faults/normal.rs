@@ -17,7 +17,7 @@ pub fn run(arguments: &Arguments, device: &dyn SceneRunner, hours: u64) -> Resul
         }
         Ok(used)
     };
-    let used = each(arguments, "sessions", device, &numbers, work).map_err(Failure::run)?;
+    let used = each(arguments, "sessions", device.name(), &numbers, work).map_err(Failure::run)?;
     let failed = used.iter().filter(|used| used.failure.is_some()).count();
     let report = RunsReport {
         engine: Some(device.name()),

@@ -19,7 +19,7 @@ pub fn run(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failur
         }
         Ok(ran)
     };
-    let ran = each(arguments, "pairs", device, &pairs(seed), work).map_err(Failure::run)?;
+    let ran = each(arguments, "pairs", device.name(), &pairs(seed), work).map_err(Failure::run)?;
     let ran: Vec<_> = ran.into_iter().flatten().collect();
     let failing = ran.iter().filter(|pair| !pair.trial.holds()).count();
     let report = RunsReport {

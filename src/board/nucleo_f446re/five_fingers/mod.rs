@@ -16,7 +16,7 @@
 //! |------------------|---------------------------------------------------------------------------|
 //! | PC10, PC11, PC12 | selected finger, bits 0 to 2; external pull-downs                         |
 //! | PB2              | side of the comparators' tests: low hot, high cold; external pull-down    |
-//! | PA5              | not used; each finger's LED is on the enable line of its bridge           |
+//! | PA5              | parity of the select lines at the multiplexers, high if odd; see below    |
 //!
 //! IN1, IN2, enable and test have external pull-downs, so all bridges are high-impedance from the
 //! reset on; PA15, which has a weak pull-up from the reset on, needs 4.7k. nFAULT has a 4.7k pull-up; the bridge and the comparator of the second display
@@ -29,6 +29,12 @@
 //! line low for at least 3 ms, the retry time of the bridge, and the processor reads the line every
 //! millisecond. If the clock fails, hardware stops TIM1 and TIM8, and the non-maskable interrupt
 //! turns all five bridges off.
+//!
+//! A select line that is broken or shorted would give a finger the sensors of another one. A gate at
+//! the far end of the lines returns the parity of their levels (74LVC1G386 class), which each tick
+//! compares with that of the finger whose samples it takes; if it differs, all fingers trip. Two
+//! fingers whose indices differ in one line have different parities. Each finger's LED is on the
+//! enable line of its bridge.
 //!
 //! # Time
 //! The 16 scans of a finger are consecutive, so the multiplexers switch only five times a

@@ -45,6 +45,11 @@ impl NoMultiplexer {
 
     /// Does nothing, because a single finger needs no multiplexer.
     pub fn select(&mut self, _finger: FingerIndex<FINGERS>) {}
+
+    /// Always true, because a single finger needs no multiplexer.
+    pub fn can_have_selected(&self, _finger: FingerIndex<FINGERS>) -> bool {
+        true
+    }
 }
 
 /// Makes the outputs of the bridge high-impedance by direct writes to the registers, in any state

@@ -176,6 +176,9 @@ faults! {
     /// In the self-test, the bridge's supply was still above 6 V 19 ms after the comparator was told to cut it: the
     /// switch of the supply is shorted.
     SupplySwitch = "supply-switch",
+    /// With five fingers: the multiplexers did not select the finger whose samples were taken, because one of their
+    /// select lines is broken or shorted.
+    SelectLines = "select-lines",
 }
 
 /// One of the five thermistors of a finger's station, by the place where it measures; selects the fault that

@@ -128,8 +128,9 @@ impl BitFlip {
         };
         let (class, assessment, deviation_k) = match device.run(&scene) {
             Ok((outcome, figures)) => {
+                let rows = outcome.trace.rows();
                 let mut assessment =
-                    RunAssessment::new(&fault_case, self.point, &outcome, &figures, &[]);
+                    RunAssessment::new(&fault_case, self.point, &outcome, rows, &figures, &[]);
                 // Any trip cause is correct.
                 assessment
                     .breaches

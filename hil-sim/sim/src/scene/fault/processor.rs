@@ -22,6 +22,10 @@ named_enum! {
         Controller = "controller",
         /// Stream of the controller; by default 0, the sampler's.
         Stream = "stream",
+        /// Select line of the multiplexers, 0 to 2.
+        Line = "line",
+        /// Level at which a select line is stuck, 0 or 1.
+        Level = "level",
     }
 }
 
@@ -50,6 +54,8 @@ impl ProcessorKey {
             Self::Bit => number(&row.bit),
             Self::Controller => number(&row.controller),
             Self::Stream => number(&row.stream),
+            Self::Line => number(&row.line),
+            Self::Level => number(&row.level),
         }
     }
 }
@@ -65,7 +71,7 @@ pub struct ProcessorKind {
 
 impl ProcessorKind {
     /// All kinds.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::new("hung-core", &[]),
         Self::new("debugger-halt", &[]),
         Self::new("hse-stopped", &[]),
@@ -83,6 +89,11 @@ impl ProcessorKind {
         Self::new("ram-bit", &[ProcessorKey::Address, ProcessorKey::Bit]),
         Self::new("core-bit", &[ProcessorKey::Register, ProcessorKey::Bit]),
         Self::new("register-bit", &[ProcessorKey::Address, ProcessorKey::Bit]),
+        Self::new(
+            "select-line-stuck",
+            &[ProcessorKey::Line, ProcessorKey::Level],
+        ),
+        Self::new("select-line-open", &[ProcessorKey::Line]),
     ];
 
     const fn new(name: &'static str, keys: &'static [ProcessorKey]) -> Self {
