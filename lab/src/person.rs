@@ -191,6 +191,20 @@ impl<L: Link> Surroundings<L> for Person<'_> {
         }
     }
 
+    fn put_probe_on_display(
+        &mut self,
+        client: &mut Client<L>,
+        on: bool,
+    ) -> Result<(), SurroundingsError> {
+        let what = if on {
+            "Put the probe of the reference thermometer on the display"
+        } else {
+            "Take the probe off the display, and touch nothing"
+        };
+        self.ask(client, &format!("  {what}, then press Enter: "))
+            .map(drop)
+    }
+
     fn put_into_bath(
         &mut self,
         client: &mut Client<L>,

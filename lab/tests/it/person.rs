@@ -72,6 +72,14 @@ impl<'b> Surroundings<Bench<'b>> for AtTheBench<'_> {
         self.person.reference_c(client, thermistor)
     }
 
+    fn put_probe_on_display(
+        &mut self,
+        client: &mut Client<Bench<'b>>,
+        on: bool,
+    ) -> Result<(), SurroundingsError> {
+        self.person.put_probe_on_display(client, on)
+    }
+
     fn put_into_bath(
         &mut self,
         client: &mut Client<Bench<'b>>,
@@ -149,6 +157,8 @@ fn a_person_who_mistypes_is_asked_again_and_gets_the_operators_result() {
         "If 30.620 C is right, enter it again.",
         "Put the skin thermistor and the reference thermometer into a bath of about 26.7 C",
         "Bring the sink to about 40.7 C",
+        "Put the probe of the reference thermometer on the display, then press Enter",
+        "Take the probe off the display, and touch nothing, then press Enter",
         "tune again, with calibrated sensors",
     ] {
         assert!(screen.contains(text), "{text}:\n{screen}");

@@ -189,7 +189,9 @@ impl<L: Link> Procedure<'_, L> {
         self.start_step(
             "calibrate the display's thermistors, held at temperature after temperature",
         );
+        self.surroundings.put_probe_on_display(self.client, true)?;
         self.calibrate_display()?;
+        self.surroundings.put_probe_on_display(self.client, false)?;
         arm(self.client, self.finger)?;
         self.start_step("tune again, with calibrated sensors");
         let tile = self.tune()?;

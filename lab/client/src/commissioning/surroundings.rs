@@ -18,6 +18,19 @@ pub trait Surroundings<L> {
         thermistor: ThermistorId,
     ) -> Result<f64, SurroundingsError>;
 
+    /// Puts the probe of the reference thermometer on the display, or takes it off: its weight would count as a finger when the
+    /// tile is identified. A simulated one has no weight.
+    ///
+    /// # Errors
+    /// The person has ended the procedure.
+    fn put_probe_on_display(
+        &mut self,
+        _client: &mut Client<L>,
+        _on: bool,
+    ) -> Result<(), SurroundingsError> {
+        Ok(())
+    }
+
     /// Puts a thermistor into a bath of about this temperature, °C, and the reference thermometer beside it; the sink's
     /// instead gets a coolant of this temperature.
     ///
