@@ -127,10 +127,10 @@ impl Finger {
     }
 
     /// The samples of the tick whose scans are complete.
-    fn samples(&mut self) -> Samples {
+    fn samples(&mut self, emergency_stop: bool) -> Samples {
         let inputs = DigitalInputs {
             bridge_fault: self.fault,
-            emergency_stop: self.world.emergency_stop(),
+            emergency_stop,
         };
         self.fault = self.world.bridge_fault();
         Samples::from_scans(&self.scans, inputs)
@@ -202,8 +202,10 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
     /// Runs the tick of a finger, at this time.
     fn tick(&mut self, index: FingerIndex<FINGERS>, at_ns: u64) {
         self.execute_received_lines(at_ns);
+        // One button for all fingers.
+        let emergency_stop = (self.fingers.iter()).any(|finger| finger.world.emergency_stop());
         let finger = &mut self.fingers[index.index()];
-        let samples = finger.samples();
+        let samples = finger.samples(emergency_stop);
         finger.set_outputs(self.device.step_finger(index, &samples));
         if let Some(telemetry) = self.device.finger_telemetry_if_due(index) {
             self.send_line(&wrap_as_telemetry_line(telemetry));
