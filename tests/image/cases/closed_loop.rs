@@ -51,10 +51,7 @@ fn assert_equation_6_12(scene: &Scene, outcome: &Outcome) {
             let device = row.device.as_ref().expect("telemetry of every tick");
             let exact_c = scene.exact_setpoint_c(row.t_s - LANDED_S, row.force_n);
             let error_k = device.setpoint_c.expect("a set-point in contact") - exact_c;
-            assert_eq!(
-                (device.state.as_str(), device.remark.as_deref()),
-                ("contact", None)
-            );
+            assert_eq!((device.state.name(), device.remark()), ("contact", None));
             worst_k = worst_k.max(error_k.abs());
         }
         let material = &scene.object.name;
@@ -142,7 +139,7 @@ fn without_commissioning_the_set_point_obeys_equation_6_12_within_60_mk() {
         let device = row.device.as_ref().expect("telemetry of every tick");
         let exact_c = scene.exact_setpoint_c(row.t_s - 0.5, row.force_n);
         let error_k = device.setpoint_c.expect("a set-point in contact") - exact_c;
-        assert_eq!(device.state, "contact");
+        assert_eq!(device.state.name(), "contact");
         assert!(error_k.abs() < 0.06, "at {} s: {error_k} K", row.t_s);
     }
 }

@@ -186,7 +186,7 @@ fn a_fault_and_an_abort_stop_only_their_own_finger() {
         let outcome: &Outcome = &outcomes[finger];
         let devices = outcome.trace.rows().iter().filter(|row| row.t_s >= t_s);
         let device = devices.filter_map(|row| row.device.as_ref()).next();
-        device.expect("telemetry").state.clone()
+        device.expect("telemetry").state.name()
     };
     for finger in 0..FINGERS {
         let (early, late) = match finger {

@@ -23,7 +23,7 @@ fn assert_displayed(name: &str) {
     assert!(skin_k <= 0.02, "{name}: {skin_k} K");
     for row in between(&outcome, 1.01, 11.0) {
         let device = row.device.as_ref().expect("telemetry of every tick");
-        let reported = (device.state.as_str(), device.remark.as_deref());
+        let reported = (device.state.name(), device.remark());
         assert_eq!(reported, ("contact", None), "{name} at {} s", row.t_s);
     }
 }
@@ -56,7 +56,7 @@ fn the_set_point_of_an_object_of_44_c_is_limited_to_42_c_and_reported() {
         let device = row.device.as_ref().expect("telemetry of every tick");
         let state = if row.t_s < 1.0 { "preset" } else { "contact" };
         if !(1.0..1.01).contains(&row.t_s) {
-            let reported = (device.state.as_str(), device.remark.as_deref());
+            let reported = (device.state.name(), device.remark());
             assert_eq!(reported, (state, Some("limited")), "at {} s", row.t_s);
             assert_eq!(device.setpoint_c, Some(LIMIT_C), "at {} s", row.t_s);
         }

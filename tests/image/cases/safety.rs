@@ -21,7 +21,7 @@ fn a_broken_display_thermistor_ends_the_current_and_is_reported() {
             let device = row.device.as_ref().expect("telemetry of every tick");
             assert_eq!(row.current_a, 0.0, "{kind} at {} s", row.t_s);
             assert_eq!(
-                (device.state.as_str(), device.remark.as_deref()),
+                (device.state.name(), device.remark()),
                 ("tripped", Some(named))
             );
             assert_eq!(device.setpoint_c, None);
@@ -40,11 +40,11 @@ fn swapped_polarity_trips_before_the_skin_leaves_13_to_45_c() {
         .last()
         .and_then(|row| row.device.as_ref())
         .expect("telemetry");
-    assert_eq!(last.state, "tripped");
+    assert_eq!(last.state.name(), "tripped");
     let tripped = |row: &&TraceRow| {
         row.device
             .as_ref()
-            .is_some_and(|device| device.state == "tripped")
+            .is_some_and(|device| device.state.name() == "tripped")
     };
     // The tick that trips is followed by at most one step of the plant with its old duty.
     for row in outcome.trace.rows().iter().filter(tripped).skip(2) {
@@ -74,7 +74,7 @@ fn a_frozen_converter_trips_before_the_display_drifts() {
     let frozen = outcome.trace.rows().iter().find(|row| {
         row.device
             .as_ref()
-            .is_some_and(|device| device.remark.as_deref() == Some("samples-frozen"))
+            .is_some_and(|device| device.remark() == Some("samples-frozen"))
     });
     assert!(
         frozen.is_some_and(|row| row.t_s < 0.86),

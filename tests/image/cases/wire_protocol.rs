@@ -19,7 +19,7 @@ fn answers(lines: &[&str], more: &str) -> Vec<String> {
     let outcome = on_image(&scene);
     for row in between(&outcome, 2.5, 3.0) {
         assert_eq!(
-            row.device.as_ref().map(|device| device.state.as_str()),
+            row.device.as_ref().map(|device| device.state.name()),
             Some("contact")
         );
     }
