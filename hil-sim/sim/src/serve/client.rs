@@ -37,41 +37,58 @@ impl IncomingBytes {
     }
 }
 
+/// Bytes that wait for a client: 0.6 s of a full line. A serial port has about as many, a pseudo-terminal 4 KiB.
+const UNREAD_MAX: usize = 65_536;
 /// Interval at which a stream that is full is tried again.
 const RETRY: Duration = Duration::from_millis(1);
 
-/// Writes to a stream that does not block, as far as it takes the bytes within this time. Returns the number of bytes that
-/// are lost; those of a stream that is closed are not counted.
-pub fn write_or_lose(stream: &mut impl Write, mut bytes: &[u8], patience: Duration) -> usize {
-    let begin = Instant::now();
-    while !bytes.is_empty() {
-        match stream.write(bytes) {
-            Ok(written) => bytes = bytes.get(written..).unwrap_or_default(),
-            Err(error) if error.kind() == ErrorKind::Interrupted => {}
-            Err(error) if error.kind() == ErrorKind::WouldBlock => {
-                if begin.elapsed() >= patience {
-                    return bytes.len();
-                }
-                sleep(RETRY);
+/// Bytes of the device that its client has not taken yet, in order.
+#[derive(Debug, Default)]
+pub struct OutgoingBytes {
+    unread: VecDeque<u8>,
+    notice: LossNotice,
+}
+
+impl OutgoingBytes {
+    /// Sends bytes on a stream that does not block, after those that wait. What there is no room for within this time is lost;
+    /// returns the number of bytes that are.
+    pub fn send(&mut self, stream: &mut impl Write, bytes: &[u8], patience: Duration) -> usize {
+        let begin = Instant::now();
+        self.unread.extend(bytes);
+        self.flush(stream);
+        while self.unread.len() > UNREAD_MAX && begin.elapsed() < patience {
+            sleep(RETRY);
+            self.flush(stream);
+        }
+        let lost = self.unread.len().saturating_sub(UNREAD_MAX);
+        self.unread.truncate(UNREAD_MAX);
+        self.notice.note(lost);
+        lost
+    }
+
+    /// Writes what waits, as far as the stream takes it. Nothing waits for a stream that is closed.
+    pub fn flush(&mut self, stream: &mut impl Write) {
+        while !self.unread.is_empty() {
+            match stream.write(self.unread.as_slices().0) {
+                Ok(written) => drop(self.unread.drain(..written)),
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) if error.kind() == ErrorKind::WouldBlock => return,
+                Err(_closed) => self.unread.clear(),
             }
-            Err(_closed) => return 0,
         }
     }
-    0
 }
 
 /// Says once for each client that it does not read.
 #[derive(Debug, Default)]
-pub struct LossNotice(bool);
+struct LossNotice(bool);
 
 impl LossNotice {
-    /// Notes bytes that a client did not take, and returns their number.
-    pub fn note(&mut self, lost: usize) -> usize {
+    fn note(&mut self, lost: usize) {
         if lost > 0 && !std::mem::replace(&mut self.0, true) {
             eprintln!(
                 "hil-sim: the client does not read; what the device sends is lost until it does"
             );
         }
-        lost
     }
 }

@@ -14,7 +14,7 @@ mod tcp;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-pub use client::{IncomingBytes, LossNotice, write_or_lose};
+pub use client::{IncomingBytes, OutgoingBytes};
 pub use clock::{Clock, Speed};
 pub use device::{
     FiveFingers, OneFinger, ServeError, ServedDevice, read_scene, scenes_of_five_fingers,

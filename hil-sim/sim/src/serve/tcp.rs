@@ -5,7 +5,7 @@ use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::time::Duration;
 
 use super::ClientLine;
-use super::client::{IncomingBytes, LossNotice, write_or_lose};
+use super::client::{IncomingBytes, OutgoingBytes};
 
 /// Why a device cannot be served at an address.
 #[derive(Debug, thiserror::Error)]
@@ -34,7 +34,7 @@ pub enum TcpLineError {
 #[derive(Debug)]
 pub struct TcpLine {
     listener: TcpListener,
-    client: Option<(TcpStream, SocketAddr, LossNotice)>,
+    client: Option<(TcpStream, SocketAddr, OutgoingBytes)>,
     /// Clients so far.
     clients: u64,
     incoming: IncomingBytes,
@@ -88,7 +88,7 @@ impl TcpLine {
             self.refused = Some(stream);
         } else {
             stream.set_nodelay(true)?;
-            self.client = Some((stream, peer, LossNotice::default()));
+            self.client = Some((stream, peer, OutgoingBytes::default()));
             self.clients += 1;
         }
         Ok(())
@@ -98,10 +98,11 @@ impl TcpLine {
 impl ClientLine for TcpLine {
     fn poll(&mut self) -> Option<u64> {
         // First, so that a client that comes right after another one has gone is accepted.
-        if let Some((stream, ..)) = &mut self.client
-            && !self.incoming.receive(stream)
-        {
-            self.client = None;
+        if let Some((stream, _, outgoing)) = &mut self.client {
+            outgoing.flush(stream);
+            if !self.incoming.receive(stream) {
+                self.client = None;
+            }
         }
         loop {
             match self.listener.accept() {
@@ -120,7 +121,7 @@ impl ClientLine for TcpLine {
 
     fn write(&mut self, bytes: &[u8], patience: Duration) -> usize {
         match &mut self.client {
-            Some((stream, _, notice)) => notice.note(write_or_lose(stream, bytes, patience)),
+            Some((stream, _, outgoing)) => outgoing.send(stream, bytes, patience),
             None => 0,
         }
     }

@@ -13,7 +13,7 @@ use thermal_sim::World;
 use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::scene::Scene;
 use thermal_sim::serve::{
-    ClientLine, Clock, OneFinger, ServedDevice, Speed, TcpLine, read_scene, serve, write_or_lose,
+    ClientLine, Clock, OneFinger, OutgoingBytes, ServedDevice, Speed, TcpLine, read_scene, serve,
 };
 
 /// A finger lands when the device has been on for 10 s; 2 s later a thermistor breaks.
@@ -406,14 +406,14 @@ fn at_full_speed_time_stands_still_before_the_first_client_and_10_s_after_the_la
 }
 
 #[test]
-fn what_a_stream_does_not_take_is_lost_and_what_it_takes_is_in_order() {
-    /// Takes this many bytes, three at a time, and is then full, or closed.
-    struct Slow(usize, Vec<u8>, ErrorKind);
+fn what_a_client_does_not_take_waits_in_order_as_far_as_there_is_room_and_is_lost_beyond() {
+    /// Takes this many bytes, three at a time, and is then full.
+    struct Slow(usize, Vec<u8>);
     impl Write for Slow {
         fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
             let taken = bytes.len().min(self.0).min(3);
             if taken == 0 {
-                return Err(self.2.into());
+                return Err(ErrorKind::WouldBlock.into());
             }
             self.0 -= taken;
             self.1.extend(&bytes[..taken]);
@@ -424,17 +424,14 @@ fn what_a_stream_does_not_take_is_lost_and_what_it_takes_is_in_order() {
             Ok(())
         }
     }
-    for (room, end, lost) in [
-        (10, ErrorKind::WouldBlock, 0),
-        (4, ErrorKind::WouldBlock, 6),
-        (0, ErrorKind::WouldBlock, 10),
-        (4, ErrorKind::BrokenPipe, 0),
-    ] {
-        let mut stream = Slow(room, Vec::new(), end);
-        assert_eq!(
-            write_or_lose(&mut stream, b"0123456789", Duration::ZERO),
-            lost
-        );
-        assert_eq!(stream.1, b"0123456789"[..room]);
-    }
+    let bytes: Vec<u8> = (0..70_000).map(|i| (i % 251) as u8).collect();
+    let (mut outgoing, mut stream) = (OutgoingBytes::default(), Slow(100, Vec::new()));
+    let mut send = |stream: &mut Slow, bytes| outgoing.send(stream, bytes, Duration::ZERO);
+    // 100 are taken, and 65536 wait.
+    assert_eq!(send(&mut stream, &bytes), 70_000 - 100 - 65_536);
+    assert_eq!(send(&mut stream, b"lost"), 4);
+    stream.0 = 70_000;
+    assert_eq!(send(&mut stream, b"end"), 0);
+    assert_eq!(stream.1[..65_636], bytes[..65_636]);
+    assert_eq!(stream.1[65_636..], *b"end");
 }

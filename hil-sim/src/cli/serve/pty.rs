@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
-use thermal_sim::serve::{ClientLine, IncomingBytes, LossNotice, write_or_lose};
+use thermal_sim::serve::{ClientLine, IncomingBytes, OutgoingBytes};
 
 /// The end of a pseudo-terminal that no program opens.
 pub struct PtyLine {
@@ -17,7 +17,7 @@ pub struct PtyLine {
     /// Programs that have opened it so far, and whether one has it open.
     clients: u64,
     connected: bool,
-    notice: LossNotice,
+    outgoing: OutgoingBytes,
 }
 
 impl PtyLine {
@@ -44,7 +44,7 @@ impl PtyLine {
             incoming: IncomingBytes::default(),
             clients: 0,
             connected: false,
-            notice: LossNotice::default(),
+            outgoing: OutgoingBytes::default(),
         };
         Ok((line, PathBuf::from(path.into_string()?)))
     }
@@ -55,8 +55,11 @@ impl ClientLine for PtyLine {
         // Reading fails while no program has the other end open.
         let connected = self.incoming.receive(&mut self.file);
         if connected && !self.connected {
-            self.notice = LossNotice::default();
+            self.outgoing = OutgoingBytes::default();
             self.clients += 1;
+        }
+        if connected {
+            self.outgoing.flush(&mut self.file);
         }
         self.connected = connected;
         connected.then_some(self.clients)
@@ -71,7 +74,6 @@ impl ClientLine for PtyLine {
             // The terminal would keep them for the next program.
             return 0;
         }
-        self.notice
-            .note(write_or_lose(&mut self.file, bytes, patience))
+        self.outgoing.send(&mut self.file, bytes, patience)
     }
 }
