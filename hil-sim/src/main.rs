@@ -21,6 +21,9 @@ enum Cli {
     Run(run::Arguments),
     /// Be a device on a serial line or a TCP port, for other programs
     Serve(serve::Arguments),
+    /// Measure how soon a client of a served device is told of a landing, in real time
+    #[cfg(unix)]
+    ServeLatency(serve::latency::Arguments),
     /// Calibrate and tune a simulated device as an operator does, and print its settings as lines
     Commission(commission::Arguments),
     /// Run five scenes side by side, on the five fingers of one device
@@ -52,6 +55,8 @@ fn main() -> ExitCode {
     let done = match Cli::parse() {
         Cli::Run(arguments) => run::run(&arguments),
         Cli::Serve(arguments) => serve::run(&arguments),
+        #[cfg(unix)]
+        Cli::ServeLatency(arguments) => serve::latency::run(&arguments),
         Cli::Commission(arguments) => commission::run(&arguments),
         Cli::Hand(arguments) => five_fingers::run(&arguments),
         #[cfg(feature = "emulator")]

@@ -1,6 +1,8 @@
 //! `hil-sim serve`: the device as any program sees it, on a TCP port or a pseudo-terminal.
 
 #[cfg(unix)]
+pub mod latency;
+#[cfg(unix)]
 mod pty;
 
 use std::io::{Write as _, stdout};
