@@ -60,7 +60,8 @@ impl ControlLoop {
             bridge_fault: stage.poll_fault_line_low(),
             emergency_stop: self.emergency_stop.is_pressed(),
         };
-        let samples = Samples::from_scans(scans, inputs);
+        let needs_scatter = device.finger_needs_scatter(finger);
+        let samples = Samples::from_scans(scans, inputs, needs_scatter);
         if host_is_active.swap(false, Ordering::Relaxed) {
             device.note_host_activity();
         }

@@ -96,6 +96,12 @@ impl<const FINGERS: usize, S: BorrowMut<Station>> Device<FINGERS, S> {
         self.station_mut(finger).restore_thermal_dose(dose);
     }
 
+    /// Whether a finger's next samples must say [how many thermistors scatter](Samples::scattering_thermistors).
+    #[must_use]
+    pub fn finger_needs_scatter(&self, finger: FingerIndex<FINGERS>) -> bool {
+        self.stations[finger.index()].borrow().needs_scatter()
+    }
+
     /// Runs one control tick of a finger's station with the samples of the last millisecond. Returns what the board
     /// must set at the finger's bridge and comparator until the next tick.
     pub fn step_finger(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {

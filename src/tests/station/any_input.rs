@@ -56,6 +56,7 @@ fn samples() -> impl Strategy<Value = Samples> {
             supply,
             bridge_fault,
             emergency_stop,
+            scattering_thermistors: 5,
         },
     )
 }

@@ -4,6 +4,7 @@ use super::TestBench;
 use crate::device::StateName;
 use crate::device::drive::Drive;
 use crate::device::safety::Fault;
+use crate::device::sense::Samples;
 
 /// The name of a fault, and the change of the bench that causes it.
 type FaultCase = (&'static str, fn(&mut TestBench));
@@ -282,22 +283,47 @@ fn the_bridge_voltage_is_the_feed_forward_of_the_demanded_current() {
     }
 }
 
-/// Without noise, every sample equals the previous one.
-#[test]
-fn frozen_samples_trip_within_50_ms() {
-    let mut bench = TestBench::presenting("copper");
-    // To the first tick after the last noise.
-    while bench.tick % 40 != 22 {
-        bench.step();
+/// Advances by ticks with the same sums, but for `noise` in every second one.
+fn repeat_samples(bench: &mut TestBench, samples: &Samples, ticks: u16, noise: u16) -> Drive {
+    let mut drive = Drive::Off;
+    for tick in 0..ticks {
+        let mut noisy = *samples;
+        for sum in [
+            &mut noisy.display,
+            &mut noisy.display_check,
+            &mut noisy.sink,
+            &mut noisy.skin,
+            &mut noisy.room,
+            &mut noisy.force,
+        ] {
+            *sum += tick % 2 * noise;
+        }
+        bench.station.note_host_activity();
+        drive = bench.station.step(&noisy).drive;
     }
-    bench.noise = 0;
-    bench.steps(45);
+    drive
+}
+
+#[test]
+fn samples_that_stop_to_change_trip_within_50_ms() {
+    let mut bench = TestBench::presenting("copper");
+    let samples = bench.samples();
+    repeat_samples(&mut bench, &samples, 20, 3);
+    repeat_samples(&mut bench, &samples, 46, 0);
     assert_eq!(bench.state(), StateName::Preset);
-    let (drive, _) = bench.steps(1);
+    let drive = repeat_samples(&mut bench, &samples, 1, 0);
     assert_eq!(
         (bench.state().fault().map(Fault::name), drive),
         (Some("samples-frozen"), Drive::Off)
     );
+}
+
+#[test]
+fn samples_without_noise_trip_nothing() {
+    let mut bench = TestBench::presenting("copper");
+    let samples = bench.samples();
+    repeat_samples(&mut bench, &samples, 1000, 0);
+    assert_eq!(bench.state(), StateName::Preset);
 }
 
 #[test]

@@ -172,6 +172,7 @@ impl TestBench {
             supply: (16.0 * 4096.0 / 3.3 * 10.0 / 43.0 * self.supply_v).round() as u16,
             bridge_fault: self.bridge_fault,
             emergency_stop: self.emergency_stop,
+            scattering_thermistors: 0,
         }
     }
 

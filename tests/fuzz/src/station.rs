@@ -285,6 +285,7 @@ pub fn run(input: &[u8]) -> bool {
                     supply,
                     bridge_fault,
                     emergency_stop,
+                    scattering_thermistors: 5,
                 };
                 device.step(FINGER, &samples);
             }
@@ -299,7 +300,7 @@ pub fn run(input: &[u8]) -> bool {
                     .any(|count| matches!(count, 0 | 4095));
                 let outputs = device.step(
                     FINGER,
-                    &Samples::from_scans(&scans, DigitalInputs::default()),
+                    &Samples::from_scans(&scans, DigitalInputs::default(), true),
                 );
                 assert!(
                     !broken || outputs.drive == Drive::Off,

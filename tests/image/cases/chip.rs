@@ -12,8 +12,8 @@ const MS: u64 = 180_000;
 const APB1_FREEZE: u32 = 0xe004_2008;
 const APB2_FREEZE: u32 = 0xe004_200c;
 const TIM1_BDTR: u32 = 0x4001_0044;
-/// The fault of a device whose sensors are not connected.
-const NO_SENSORS: &str = "excitation";
+/// The fault of a device without anything at its pins.
+const NO_SENSORS: &str = "emergency-stop";
 
 fn started(chip: &ChipState) -> Bare {
     let firmware = Firmware::from_file(image()).expect("an image for this chip");

@@ -126,14 +126,14 @@ impl Finger {
         self.filled += count;
     }
 
-    /// The samples of the tick whose scans are complete.
-    fn samples(&mut self, emergency_stop: bool) -> Samples {
+    /// The samples of the tick whose scans are complete, with the scatter of the thermistors if the device needs it.
+    fn samples(&mut self, emergency_stop: bool, needs_scatter: bool) -> Samples {
         let inputs = DigitalInputs {
             bridge_fault: self.fault,
             emergency_stop,
         };
         self.fault = self.world.bridge_fault();
-        Samples::from_scans(&self.scans, inputs)
+        Samples::from_scans(&self.scans, inputs, needs_scatter)
     }
 
     fn set_outputs(&mut self, outputs: BoardOutputs) {
@@ -205,7 +205,8 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         // One button for all fingers.
         let emergency_stop = (self.fingers.iter()).any(|finger| finger.world.emergency_stop());
         let finger = &mut self.fingers[index.index()];
-        let samples = finger.samples(emergency_stop);
+        let needs_scatter = self.device.finger_needs_scatter(index);
+        let samples = finger.samples(emergency_stop, needs_scatter);
         finger.set_outputs(self.device.step_finger(index, &samples));
         if let Some(telemetry) = self.device.finger_telemetry_if_due(index) {
             self.send_line(&wrap_as_telemetry_line(telemetry));

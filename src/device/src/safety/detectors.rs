@@ -97,14 +97,22 @@ impl FaultDetectors {
         self.dose = dose;
     }
 
+    /// Whether the next tick's [`Samples::scattering_thermistors`] is needed.
+    pub const fn needs_scatter(&self) -> bool {
+        self.frozen.needs_scatter()
+    }
+
     /// Compares the samples of this tick with those of the tick before, even if their readings are invalid. To be
     /// called in every tick.
     ///
     /// # Errors
-    /// The sum of one thermistor or of the force sensor has repeated unchanged for 46 ticks: the frozen fault of that
-    /// channel, or [`Fault::SamplesFrozen`] if by then all channels have repeated for 30 ticks.
-    pub fn check_frozen_samples(&mut self, samples: &Samples) -> Result<(), Fault> {
-        self.frozen.check_samples(samples)
+    /// As [`FrozenSampleDetector::check_samples`].
+    pub fn check_frozen_samples(
+        &mut self,
+        samples: &Samples,
+        bridge_is_driven: bool,
+    ) -> Result<(), Fault> {
+        self.frozen.check_samples(samples, bridge_is_driven)
     }
 
     /// Counts this tick in the thermal dose; every 256th tick adds the interval's dose at the higher valid reading of

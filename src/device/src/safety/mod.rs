@@ -25,7 +25,7 @@
 //! |                              | sink hot                               | 42 °C                                         |
 //! |                              | over-current                           | 3 A above the largest demand                  |
 //! | bridge fault line            | bridge                                 | the driver or the comparator pulls it         |
-//! | `FrozenSampleDetector`             | one channel frozen, or all             | a sum repeats 46 times                        |
+//! | `FrozenSampleDetector`             | one channel frozen, or all             | a sum repeats 46 times, although there is noise |
 //! | `JumpDetector`               | display, second display or sink jump   | 0.5 K in 4 ms                                 |
 //! | [`FaultDetectors`]           | display thermistors disagree           | 3 K for 40 ms                                 |
 //! |                              | room above skin                        | 8 K for 40 ms                                 |

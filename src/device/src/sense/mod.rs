@@ -70,6 +70,9 @@ pub struct Samples {
     pub bridge_fault: bool,
     /// Whether the emergency stop is pressed, which also disconnects the bridge's supply. One for all fingers.
     pub emergency_stop: bool,
+    /// Number of thermistors, 0 to 5, whose 16 conversions differ by two codes or more, which shows that the converter
+    /// has noise. 0 if it was not [needed](crate::Device::finger_needs_scatter).
+    pub scattering_thermistors: u8,
 }
 
 /// Levels of the digital inputs in one control tick.
@@ -95,13 +98,18 @@ impl Samples {
         ]
     }
 
-    /// Adds up the 16 scans of one tick, channel by channel.
+    /// Adds up the 16 scans of one tick, channel by channel. Looks at the scatter only if `needs_scatter`, as it takes
+    /// several hundred cycles.
     ///
     /// If the last conversion of a thermistor is that of an open or shorted wire, the thermistor's sum becomes 16 times
     /// that conversion. The plain sum of a tick in which a wire breaks mixes valid and invalid conversions, and could
     /// pass for a temperature.
     #[must_use]
-    pub fn from_scans(scans: &[Scan; SCANS_PER_TICK], inputs: DigitalInputs) -> Self {
+    pub fn from_scans(
+        scans: &[Scan; SCANS_PER_TICK],
+        inputs: DigitalInputs,
+        needs_scatter: bool,
+    ) -> Self {
         let mut sums = channel_sums(scans);
         let [.., last] = scans;
         for (sum, &code) in sums.iter_mut().zip(last).take(THERMISTOR_COUNT) {
@@ -134,8 +142,29 @@ impl Samples {
             supply,
             bridge_fault,
             emergency_stop,
+            scattering_thermistors: match needs_scatter {
+                true => scattering_thermistors(scans),
+                false => 0,
+            },
         }
     }
+}
+
+/// Number of thermistors whose conversions in a tick differ by two codes or more.
+#[inline(never)]
+fn scattering_thermistors(scans: &[Scan; SCANS_PER_TICK]) -> u8 {
+    let [first, ..] = scans;
+    let (mut lowest, mut highest) = (*first, *first);
+    for scan in scans {
+        for ((lowest, highest), code) in lowest.iter_mut().zip(&mut highest).zip(scan) {
+            *lowest = (*lowest).min(*code);
+            *highest = (*highest).max(*code);
+        }
+    }
+    let ranges = lowest.iter().zip(&highest).take(THERMISTOR_COUNT);
+    ranges
+        .map(|(low, high)| u8::from(high.abs_diff(*low) >= 2))
+        .sum()
 }
 
 /// Sum of each channel over the 16 scans of a tick. One addition of 32-bit words adds two codes at once: a sum of 16

@@ -159,6 +159,11 @@ impl Station {
         self.estimator.plate.set_parameters(&parameters.observer);
     }
 
+    /// Whether [`Samples::scattering_thermistors`] is needed in the next tick.
+    pub const fn needs_scatter(&self) -> bool {
+        self.detectors.needs_scatter()
+    }
+
     /// Runs one control tick; to be called every millisecond, with the sums of the 16 scans since the last tick.
     /// Returns what the board must set at bridge and comparator until the next tick. In a tick that detects a fault the
     /// bridge is off.
@@ -224,7 +229,9 @@ impl Station {
             residual_is_large: self.estimator.plate.residual_is_large(),
             supply_should_be_on: !self.comparator_may_keep_the_supply_off(),
         };
-        let frozen = self.detectors.check_frozen_samples(samples);
+        let frozen = self
+            .detectors
+            .check_frozen_samples(samples, self.last.demanded != Current::ZERO);
         let dose = self.detectors.update_and_check_dose(readings);
         let valid = safety::validate_readings(readings, self.controller.current_limit());
         let over_ticks = match &valid {

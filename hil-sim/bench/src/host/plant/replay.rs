@@ -35,7 +35,7 @@ impl Replay {
                 bridge_fault: finger.fault(),
                 ..DigitalInputs::default()
             };
-            Samples::from_scans(&scans(&mut finger.plant()), inputs)
+            Samples::from_scans(&scans(&mut finger.plant()), inputs, false)
         };
         for ms in 0..READY_MS {
             for (_, line) in LINES.iter().filter(|(at, _)| *at == ms) {
