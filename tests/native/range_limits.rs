@@ -106,7 +106,7 @@ fn a_finger_that_warms_a_display_at_its_current_limit_trips_nothing() {
             state.starts_with("ok state=contact fault=-"),
             "{law}: {state}"
         );
-        let reading_c = |row: &TraceRow| row.device.as_ref().and_then(|device| device.sensor_c);
+        let reading_c = |row: &TraceRow| row.device.as_ref().and_then(|device| device.display_c);
         let mut coldest_c = f64::INFINITY;
         let mut back_k = 0.0f64;
         for reading_c in between(&outcome, 1.0, 2.5).filter_map(reading_c) {

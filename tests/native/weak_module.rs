@@ -24,6 +24,6 @@ fn a_weak_module_trips_while_its_display_is_near_that_of_a_sound_one() {
         assert!(apart_k < NEAR_K, "{apart_k} K at {} s, driven", weak.t_s);
     }
     let last = weak.trace.rows().last().and_then(|row| row.device.as_ref());
-    let remark = last.and_then(|device| device.remark.as_deref());
+    let remark = last.and_then(|device| device.remark());
     assert_eq!(remark, Some("unlike-model"));
 }
