@@ -145,6 +145,11 @@ impl Comparator {
         self.latched = self.is_outside();
     }
 
+    /// Sets the latch, as the microcontroller's reset line does.
+    pub fn set_latch(&mut self) {
+        (self.latched, self.clear_in_s) = (true, None);
+    }
+
     /// Sets the defects.
     pub fn set_defects(&mut self, defects: &ComparatorDefects) {
         self.defects = *defects;

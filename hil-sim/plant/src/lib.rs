@@ -19,7 +19,7 @@ pub mod thermal;
 pub mod tile;
 mod tr_bdf2;
 
-use bridge::{Bridge, BridgeOutputs, InductorRipple};
+use bridge::{Bridge, BridgeOutputs, Current, InductorRipple, Load, Output};
 use comparator::{Comparator, ComparatorTest};
 pub use config::{ConfigError, HostParams, Params, PlantConfig};
 use contact::{ContactLaw, SkinContact};
@@ -53,6 +53,8 @@ pub struct Plant {
     resistance_factor: f64,
     vessels: Option<Vessels>,
     bridge: Bridge,
+    /// Current out of the bridge in the last step.
+    bridge_current: Current,
     /// Nominal voltage of the source, V.
     source_v: f64,
     supply: Supply,
@@ -138,6 +140,7 @@ impl Plant {
             resistance_factor: params.finger.resistance_factor,
             vessels: params.finger.vessels,
             bridge: Bridge::new(params.bridge, params.tile.resistance_ohm()),
+            bridge_current: Current::default(),
             source_v: params.bridge.supply_v,
             supply: Supply::new(params.supply),
             ripple_share: (params.sensors.mirror).ripple_share(params.bridge.pwm_hz),
@@ -182,6 +185,11 @@ impl Plant {
         self.comparator.set_test(test);
     }
 
+    /// Sets the comparator's latch, as the microcontroller's reset line does.
+    pub fn set_latch(&mut self) {
+        self.comparator.set_latch();
+    }
+
     /// Clears the comparator's latch and connects the supply at once, as a passed self-test does in 80 ms. For what uses
     /// the plant without a device.
     pub fn connect_supply(&mut self) {
@@ -189,10 +197,31 @@ impl Plant {
         self.supply.set_node(self.source_v);
     }
 
-    /// Whether the emergency stop is pressed.
+    /// Whether the emergency stop's sense line reads as pressed.
     #[must_use]
     pub const fn emergency_stop(&self) -> bool {
-        self.defects.supply.emergency_stop
+        self.defects.supply.emergency_stop || self.defects.supply.stop_sense_open
+    }
+
+    /// Current out of the bridge in the last step.
+    #[must_use]
+    pub const fn bridge_current(&self) -> Current {
+        self.bridge_current
+    }
+
+    /// The resistor in place of the tile, ohm, if there is one.
+    #[must_use]
+    pub const fn load_ohm(&self) -> Option<f64> {
+        match self.defects.bridge.output {
+            Output::Resistor(ohm) => Some(ohm),
+            Output::Tile | Output::Open => None,
+        }
+    }
+
+    /// Voltage of the bridge's supply behind its switch, V.
+    #[must_use]
+    pub const fn supply_v(&self) -> f64 {
+        self.supply.node_v()
     }
 
     /// Sensed voltage of the bridge's supply behind its switch, V.
@@ -210,7 +239,7 @@ impl Plant {
     pub fn step(&mut self, legs: &BridgeOutputs) {
         self.update_contacts();
         let source_v = self.defects.bridge.supply_v.unwrap_or(self.source_v);
-        let taken_a = self.heat.tile().current().supply_a;
+        let taken_a = self.bridge_current.supply_a;
         (self.supply).step(STEP_S, source_v, self.comparator.tripped(), taken_a);
         // Without its driver the bridge carries no current: the Seebeck voltage stays below that of two diodes.
         let legs = if self.supply.driver_is_on() {
@@ -219,12 +248,27 @@ impl Plant {
         } else {
             BridgeOutputs::default()
         };
+        let (tile_legs, load_ohm) = match self.defects.bridge.output {
+            Output::Tile => (legs, None),
+            Output::Open => (BridgeOutputs::default(), None),
+            Output::Resistor(ohm) => (BridgeOutputs::default(), Some(ohm)),
+        };
         for index in substeps::of_step(self.steps_since_change) {
-            self.heat.step(index, &mut self.bridge, &legs);
+            self.heat.step(index, &mut self.bridge, &tile_legs);
         }
+        self.bridge_current = match load_ohm {
+            None => self.heat.tile().current(),
+            Some(resistance_ohm) => {
+                let load = Load {
+                    seebeck_v: 0.0,
+                    resistance_ohm,
+                };
+                self.bridge.current(STEP_S, &legs, &load)
+            }
+        };
         self.steps += 1;
         self.steps_since_change = self.steps_since_change.saturating_add(1);
-        let current = self.heat.tile().current();
+        let current = self.bridge_current;
         let state = SensorInputs {
             display_c: self.display_c(),
             sink_c: self.sink_c(),

@@ -60,6 +60,8 @@ pub struct SupplyDefects {
     pub switch: SwitchDefect,
     /// The emergency stop is pressed.
     pub emergency_stop: bool,
+    /// Its sense wire is open, which reads as pressed.
+    pub stop_sense_open: bool,
     /// The wire from the sense divider to the converter is open; the pin is at ground.
     pub sense_open: bool,
 }
@@ -84,6 +86,7 @@ impl Supply {
             defects: SupplyDefects {
                 switch: SwitchDefect::None,
                 emergency_stop: false,
+                stop_sense_open: false,
                 sense_open: false,
             },
             node_v: 0.0,

@@ -3,6 +3,7 @@
 #[macro_use]
 mod named_enum;
 
+pub mod board;
 pub mod commissioning;
 pub mod dose;
 pub mod engine;

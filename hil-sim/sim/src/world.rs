@@ -6,7 +6,7 @@ use thermal_plant::bridge::BridgeOutputs;
 use thermal_plant::comparator::ComparatorTest;
 use thermal_plant::infrared::{Camera, ParameterError, Reading};
 use thermal_plant::sensors::Channel;
-use thermal_plant::{ConfigError, Plant, PlantConfig};
+use thermal_plant::{ConfigError, Defects, Plant, PlantConfig};
 
 use crate::processor::ChipState;
 use crate::scene::{ActiveFault, Infrared, Scene};
@@ -19,8 +19,21 @@ pub struct World {
     defects: ActiveDefects,
     camera: Option<(Infrared, Camera)>,
     chip: ChipState,
+    /// Largest current through a resistor in place of the tile.
+    pulse: Pulse,
     /// Last code of every channel.
     codes: [u16; Channel::ALL.len()],
+}
+
+/// What an oscilloscope has caught of a pulse through a resistor in place of the tile.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pulse {
+    /// Mean voltage across the resistor, V, without its sign.
+    pub mean_v: f64,
+    /// Ripple of that voltage, RMS, V.
+    pub ripple_v: f64,
+    /// Half of the peak-to-peak ripple of the inductors' current, A.
+    pub inductor_half_a: f64,
 }
 
 /// Why a world cannot be built.
@@ -67,6 +80,7 @@ impl World {
             defects: ActiveDefects::default(),
             camera,
             chip: ChipState::default(),
+            pulse: Pulse::default(),
             codes: [0; Channel::ALL.len()],
         }
     }
@@ -116,6 +130,11 @@ impl World {
         self.plant.comparator_test(test);
     }
 
+    /// Sets the comparator's latch, as the microcontroller's reset line does.
+    pub fn set_latch(&mut self) {
+        self.plant.set_latch();
+    }
+
     /// Connects the bridge's supply without a self-test, for what uses the world without a device.
     pub fn connect_supply(&mut self) {
         self.plant.connect_supply();
@@ -130,6 +149,54 @@ impl World {
     /// Advances the plant by one step with the bridge legs driven as given.
     pub fn step(&mut self, legs: BridgeOutputs) {
         self.plant.step(&legs);
+        if let Some(ohm) = self.plant.load_ohm() {
+            let current = self.plant.bridge_current();
+            let mean_v = current.mean_a.abs() * ohm;
+            if mean_v > self.pulse.mean_v {
+                self.pulse = Pulse {
+                    mean_v,
+                    ripple_v: current.ripple_a2.sqrt() * ohm,
+                    inductor_half_a: current.inductor.half_a,
+                };
+            }
+        }
+    }
+
+    /// The largest pulse through a resistor in place of the tile.
+    #[must_use]
+    pub const fn pulse(&self) -> Pulse {
+        self.pulse
+    }
+
+    /// Arms the oscilloscope for another pulse.
+    pub fn forget_pulse(&mut self) {
+        self.pulse = Pulse::default();
+    }
+
+    /// Replaces the defects of the plant.
+    pub fn set_plant_defects(&mut self, defects: Defects) {
+        self.defects = ActiveDefects {
+            plant: defects,
+            ..ActiveDefects::default()
+        };
+        self.plant.set_defects(&self.defects.plant);
+    }
+
+    /// The same world with this microcontroller, before its program starts.
+    #[must_use]
+    pub fn with_chip(self, chip: ChipState) -> Self {
+        Self { chip, ..self }
+    }
+
+    /// Moves the device to another world. Its comparator's latch and its bridge supply stay as they are.
+    pub fn move_to(&mut self, mut place: Self) {
+        if !self.plant.supply_cut() {
+            place.connect_supply();
+        }
+        *self = Self {
+            chip: self.chip,
+            ..place
+        };
     }
 
     /// Whether nFAULT is low, pulled by the bridge driver or the comparator.

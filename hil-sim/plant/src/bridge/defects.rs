@@ -30,6 +30,18 @@ impl LegDefect {
     }
 }
 
+/// What is connected to the output of a bridge.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Output {
+    /// The tile.
+    #[default]
+    Tile,
+    /// Nothing.
+    Open,
+    /// A resistor of so many ohm.
+    Resistor(f64),
+}
+
 /// Defects of a bridge and its wiring; none by default.
 ///
 /// A single stuck leg drives no current while the enable line is low, since the other leg is then high-impedance.
@@ -45,6 +57,8 @@ pub struct BridgeDefects {
     pub swapped: bool,
     /// Supply voltage instead of the nominal one, V.
     pub supply_v: Option<f64>,
+    /// What is connected to its output.
+    pub output: Output,
     /// nFAULT stays high although driver or comparator pull it low.
     pub fault_pin_dead: bool,
 }

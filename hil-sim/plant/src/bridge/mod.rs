@@ -19,7 +19,7 @@ mod defects;
 mod params;
 mod ripple;
 
-pub use defects::{BridgeDefects, LegDefect};
+pub use defects::{BridgeDefects, LegDefect, Output};
 pub use params::BridgeParams;
 
 use dead_time::{DeadTime, Pulses};

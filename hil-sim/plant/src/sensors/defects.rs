@@ -3,7 +3,7 @@
 use super::THERMISTORS;
 
 /// Circuit of a thermistor.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Circuit {
     /// Intact.
     #[default]
@@ -12,6 +12,8 @@ pub enum Circuit {
     Open,
     /// Shorted to ground, which reads very hot; also the state of the pin when the divider has no supply.
     Short,
+    /// A resistor of so many ohm is in its place.
+    Resistor(f64),
 }
 
 /// Defects of one thermistor.

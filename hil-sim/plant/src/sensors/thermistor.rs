@@ -113,6 +113,7 @@ impl Thermistor {
             Circuit::Closed => self.params.ratio(self.reached_c + self.defect.offset_k),
             Circuit::Open => 1.0,
             Circuit::Short => 0.0,
+            Circuit::Resistor(ohm) => ohm / (ohm + self.params.pull_up_ohm),
         };
     }
 
@@ -121,7 +122,7 @@ impl Thermistor {
         self.ratio
     }
 
-    /// Reading, deg C; none if its circuit is open or shorted.
+    /// Reading, deg C; none if its circuit is open or shorted, or a resistor is in its place.
     pub fn reading_c(&self) -> Option<f64> {
         (self.defect.circuit == Circuit::Closed).then_some(self.reached_c + self.defect.offset_k)
     }

@@ -66,6 +66,19 @@ impl CommissioningSetup {
         self.world(self.params.clone(), SKIN_C, self.room_c, "at work")
     }
 
+    /// The place of use with the skin thermistor in the air.
+    ///
+    /// # Errors
+    /// The plant does not accept a value.
+    pub fn on_the_bench(&self) -> Result<World, ConfigError> {
+        self.world(
+            self.params.clone(),
+            self.room_c,
+            self.room_c,
+            "on the bench",
+        )
+    }
+
     /// The skin thermistor in a bath, deg C.
     ///
     /// # Errors

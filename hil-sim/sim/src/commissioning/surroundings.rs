@@ -12,6 +12,7 @@ use thermal_plant::ConfigError;
 
 use super::CommissioningSetup;
 use crate::World;
+use crate::board::BoardBench;
 use crate::engine::Engine;
 use crate::simulated_link::SimulatedLink;
 
@@ -25,6 +26,8 @@ pub struct SimulatedSurroundings {
     random: Xoshiro256PlusPlus,
     /// Temperature of the bath of skin or room, deg C.
     bath_c: f64,
+    /// The board that is brought up, if one is.
+    board: Option<BoardBench>,
 }
 
 impl SimulatedSurroundings {
@@ -35,6 +38,16 @@ impl SimulatedSurroundings {
             setup: setup.clone(),
             random: Xoshiro256PlusPlus::seed_from_u64(setup.operator_seed()),
             bath_c: setup.room_c(),
+            board: None,
+        }
+    }
+
+    /// Surroundings of a board that is brought up.
+    #[must_use]
+    pub fn of_board(board: BoardBench) -> Self {
+        Self {
+            board: Some(board.clone()),
+            ..Self::new(&board.setup())
         }
     }
 
@@ -62,13 +75,16 @@ impl SimulatedSurroundings {
         thermistor: ThermistorId,
         bath_c: f64,
     ) -> Result<(), ConfigError> {
-        *world = match thermistor {
+        world.move_to(match thermistor {
             ThermistorId::Skin => self.setup.skin_in_bath(bath_c)?,
             ThermistorId::Room => self.setup.room_in_bath(bath_c)?,
             ThermistorId::Sink | ThermistorId::Display | ThermistorId::Check => {
                 self.setup.sink_on_coolant(bath_c)?
             }
-        };
+        });
+        if let Some(board) = &self.board {
+            board.apply(world);
+        }
         self.bath_c = bath_c;
         Ok(())
     }
@@ -146,6 +162,12 @@ impl SimulatedSurroundings {
             SurroundingsRequest::Force(force_n) => {
                 world.set_force_and_faults(force_n, std::iter::empty());
                 "ok".into()
+            }
+            SurroundingsRequest::Bench(request) => {
+                let board = self.board.as_mut();
+                let board = board.ok_or("no board is on the bench; serve one with --board")?;
+                let answer = board.execute(&request, world);
+                format!("ok{}", answer.map_err(|error| error.to_string())?)
             }
             SurroundingsRequest::Wait { ms, sent } => {
                 return Ok(SurroundingsAction::Wait { ms, sent });

@@ -183,7 +183,7 @@ impl NativeFiveFingers {
 impl<const FINGERS: usize> NativeDevice<FINGERS> {
     fn with_fingers(fingers: [Finger; FINGERS], pwm_period_steps: u16) -> Self {
         let settings = Settings::default();
-        Self {
+        let mut native = Self {
             fingers,
             handler: CommandHandler::new(settings),
             device: Device::new(&settings),
@@ -196,7 +196,9 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
             stored: None,
             now_ns: 0,
             boundaries: 0,
-        }
+        };
+        native.read_chip();
+        native
     }
 
     /// Runs the tick of a finger, at this time.
@@ -210,6 +212,16 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         finger.set_outputs(self.device.step_finger(index, &samples));
         if let Some(telemetry) = self.device.finger_telemetry_if_due(index) {
             self.send_line(&wrap_as_telemetry_line(telemetry));
+        }
+    }
+
+    /// Reports what differs between chips, though the logic without a chip does not react to it.
+    fn read_chip(&mut self) {
+        if let Some(finger) = self.fingers.first() {
+            let chip = finger.world.chip();
+            let board = &mut self.handler.board;
+            board.brown_out_level = 3_u8.saturating_sub(chip.brown_out_code);
+            board.clock_is_external = chip.external_clock;
         }
     }
 
@@ -244,6 +256,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
             }
             None => CommandHandler::new(Settings::default()),
         };
+        self.read_chip();
         self.reader = LineReader::new();
         self.hung_ms = None;
         for finger in &mut self.fingers {

@@ -14,6 +14,7 @@ use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use thermal_sim::World;
+use thermal_sim::board::{Board, BoardBench, LossyLine};
 use thermal_sim::commissioning::{CommissioningSetup, SimulatedSurroundings};
 use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, NativeFiveFingers};
@@ -56,6 +57,18 @@ pub struct Arguments {
     /// client of the surroundings says
     #[arg(long, value_name = "ADDR")]
     surroundings: Option<String>,
+    /// A bare board in place of the scene, for `bring-up`: sound, or with an error of assembly; --surroundings then connect
+    /// its parts and read meters, too
+    #[arg(
+        long,
+        value_name = "NAME",
+        requires = "surroundings",
+        conflicts_with = "scene"
+    )]
+    board: Option<String>,
+    /// Draw the parts of that board from their tolerances
+    #[arg(long, value_name = "SEED", requires = "board")]
+    draw: Option<u64>,
     /// Whether the device's time is real time, or passes as fast as it goes while a client is connected
     #[arg(long, value_enum, default_value_t = SpeedArgument::RealTime)]
     speed: SpeedArgument,
@@ -107,9 +120,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         announcement += &format!("surroundings on {place}\n");
         surroundings = Some(line);
     }
+    let board = arguments.board.as_deref();
+    let board = board
+        .map(|name| Board::named(name, arguments.draw))
+        .transpose();
+    let board = board.map_err(|error| Failure::input(anyhow!("--board: {error}")))?;
     let server = Server {
         line,
         surroundings,
+        board,
         announcement,
         speed: match arguments.speed {
             SpeedArgument::RealTime => Speed::RealTime,
@@ -179,6 +198,7 @@ fn listen(option: &'static str, address: &str) -> Result<Place, Failure> {
 struct Server<'a> {
     line: Box<dyn ClientLine>,
     surroundings: Option<Box<dyn ClientLine>>,
+    board: Option<Board>,
     /// Where these are, as it is printed when the device runs.
     announcement: String,
     speed: Speed,
@@ -195,9 +215,23 @@ impl Server<'_> {
             let world = World::new(&scene).map_err(Failure::input)?;
             return self.serve(OneFinger::new(start(world)?, scene));
         };
-        let setup = CommissioningSetup::new(&scene.params, scene.room_c, scene.seed);
-        let mut engine = start(setup.in_use().map_err(Failure::input)?)?;
-        let mut surroundings = SimulatedSurroundings::new(&setup);
+        let (world, mut surroundings, lost_bytes_interval) = match self.board.take() {
+            Some(board) => {
+                let interval = board.lost_bytes_interval;
+                let bench = BoardBench::new(board);
+                (
+                    bench.world(),
+                    SimulatedSurroundings::of_board(bench),
+                    interval,
+                )
+            }
+            None => {
+                let setup = CommissioningSetup::new(&scene.params, scene.room_c, scene.seed);
+                (setup.in_use(), SimulatedSurroundings::new(&setup), None)
+            }
+        };
+        let engine = start(world.map_err(Failure::input)?)?;
+        let mut engine = LossyLine::new(engine, lost_bytes_interval);
         self.announce()?;
         let mut clock = Clock::start(self.speed);
         let lines: [&mut dyn ClientLine; 2] = [&mut *self.line, &mut *surroundings_line];

@@ -1,6 +1,7 @@
 //! Commissioning of a device: calibration of its sensors with a reference thermometer, identification of its tile, and
 //! storage of its settings. The one procedure of the person at a bench and of the simulated operator.
 
+mod bench_line;
 mod procedure;
 mod record;
 mod surroundings;
@@ -9,6 +10,7 @@ mod surroundings_line;
 use crate::client::ClientError;
 use crate::link::LinkError;
 
+pub use bench_line::{BenchRequest, Button, MeterPoint, Part, Removal};
 pub use procedure::{arm, clear_calibration, commission, restore, settings};
 pub use record::{CalibrationPoint, CommissioningEvent, CommissioningRecord};
 pub use surroundings::{Surroundings, SurroundingsError};

@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use thermal_device::safety::ThermistorId;
 
+use super::BenchRequest;
 use crate::client::{thermistor, thermistor_word};
 
 /// Largest force on the display, N.
@@ -31,6 +32,8 @@ pub enum SurroundingsRequest {
         /// Bytes sent.
         sent: u64,
     },
+    /// What hands and instruments do at a board that is brought up.
+    Bench(BenchRequest),
 }
 
 impl fmt::Display for SurroundingsRequest {
@@ -42,6 +45,7 @@ impl fmt::Display for SurroundingsRequest {
             }
             Self::Force(force_n) => write!(f, "force {force_n}"),
             Self::Wait { ms, sent } => write!(f, "wait {ms} {sent}"),
+            Self::Bench(request) => request.fmt(f),
         }
     }
 }
@@ -82,8 +86,10 @@ impl FromStr for SurroundingsRequest {
                 let sent = sent.map_err(|_| format!("'{line}'; wait MS SENT, whole numbers"))?;
                 Ok(Self::Wait { ms, sent })
             }
+            ["meter" | "fit" | "remove" | "press" | "release", ..] => line.parse().map(Self::Bench),
             _ => Err(format!(
-                "'{line}'; known: reference SENSOR, bath SENSOR CELSIUS, force NEWTON, wait MS SENT"
+                "'{line}'; known: reference SENSOR, bath SENSOR CELSIUS, force NEWTON, wait MS SENT, meter POINT, fit PART, \
+                 remove PART, press BUTTON, release BUTTON"
             )),
         }
     }
