@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use cli::{Failure, Target, commission, info, log, ports, send};
+use cli::{Failure, Target, bring_up, commission, info, log, ports, send};
 
 /// The operator's side of a thermal display.
 #[derive(Parser)]
@@ -30,6 +30,8 @@ enum Command {
     Log(log::Arguments),
     /// Calibrate and tune a new device, step by step, and store the result
     Commission(commission::Arguments),
+    /// Bring up a board, from the bare board to sign-off
+    BringUp(bring_up::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
         Command::Send(arguments) => send::run(&target, &arguments),
         Command::Log(arguments) => log::run(&target, &arguments),
         Command::Commission(arguments) => commission::run(&target, &arguments),
+        Command::BringUp(arguments) => bring_up::run(&target, &arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,7 +1,7 @@
 //! The person at the bench: is told what to do, and asked for what the reference thermometer shows.
 
 use std::io::{self, BufRead, Write};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, TryRecvError};
 use std::thread;
 use std::time::Duration;
 
@@ -25,6 +25,9 @@ const TELEMETRY_MS: u32 = 20;
 const TELEMETRY_TIMEOUT: Duration = Duration::from_millis(500);
 /// Time between two looks at the device while the person types.
 const LOOK: Duration = Duration::from_millis(100);
+
+/// What the person enters to end a procedure.
+const ABORT: &str = "abort";
 
 /// Lines that the person enters.
 pub type Lines = Receiver<io::Result<String>>;
@@ -65,14 +68,14 @@ impl<'a> Person<'a> {
         }
     }
 
-    fn tell(&mut self, text: &str) {
+    pub(crate) fn tell(&mut self, text: &str) {
         // What is on the screen changes nothing of the procedure.
         let _ignored = self.screen.write_all(text.as_bytes());
         let _ignored = self.screen.flush();
     }
 
-    /// Asks until the person has entered a line. The link is looked after meanwhile.
-    fn ask<L: Link>(
+    /// Asks until the person has entered a line. The link is looked after meanwhile. `abort` ends the procedure.
+    pub(crate) fn ask<L: Link>(
         &mut self,
         client: &mut Client<L>,
         question: &str,
@@ -80,14 +83,19 @@ impl<'a> Person<'a> {
         self.tell(question);
         loop {
             match self.lines.recv_timeout(LOOK) {
-                Ok(Ok(line)) => return Ok(line.trim().to_owned()),
-                Ok(Err(error)) => return Err(SurroundingsError::Failed(error.to_string())),
-                Err(RecvTimeoutError::Disconnected) => {
-                    let why = "standard input has ended before the procedure";
-                    return Err(SurroundingsError::Failed(why.into()));
-                }
+                Ok(line) => return entered(line),
+                Err(RecvTimeoutError::Disconnected) => return Err(no_more_lines()),
                 Err(RecvTimeoutError::Timeout) => client.wait(LOOK / 100).map_err(ended)?,
             }
+        }
+    }
+
+    /// The line that the person has entered meanwhile, if any.
+    pub(crate) fn typed(&mut self) -> Result<Option<String>, SurroundingsError> {
+        match self.lines.try_recv() {
+            Ok(line) => entered(line).map(Some),
+            Err(TryRecvError::Empty) => Ok(None),
+            Err(TryRecvError::Disconnected) => Err(no_more_lines()),
         }
     }
 
@@ -130,6 +138,19 @@ fn device_reads_c<L: Link>(
         ThermistorId::Skin => line.telemetry.skin_c,
         ThermistorId::Room => line.telemetry.room_c,
     }))
+}
+
+fn entered(line: io::Result<String>) -> Result<String, SurroundingsError> {
+    let line = line.map_err(|error| SurroundingsError::Failed(error.to_string()))?;
+    let line = line.trim();
+    if line.eq_ignore_ascii_case(ABORT) {
+        return Err(SurroundingsError::Interrupted);
+    }
+    Ok(line.to_owned())
+}
+
+fn no_more_lines() -> SurroundingsError {
+    SurroundingsError::Failed("standard input has ended before the procedure".into())
 }
 
 fn ended(error: LinkError) -> SurroundingsError {
@@ -236,7 +257,9 @@ impl<L: Link> Surroundings<L> for Person<'_> {
     fn notice(&mut self, event: &CommissioningEvent) {
         let mut text = format!("{event}\n");
         match event {
-            CommissioningEvent::StepStarted(_) => (self.asked_c, self.points) = (None, 0),
+            CommissioningEvent::StepStarted(_) => {
+                (self.asked_c, self.entered_c, self.points) = (None, None, 0);
+            }
             CommissioningEvent::HoldStarted(hold_c) => {
                 (self.asked_c, self.entered_c) = (Some(*hold_c), None);
             }

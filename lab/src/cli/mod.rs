@@ -1,5 +1,6 @@
 //! The subcommands, and what they have in common.
 
+pub mod bring_up;
 pub mod commission;
 pub mod info;
 pub mod log;

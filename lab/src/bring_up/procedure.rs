@@ -1,0 +1,369 @@
+//! Runs the procedure.
+
+use std::time::Duration;
+
+use thermal_client::client::{
+    Client, ClientError, Order, QueryBoard, QueryRaw, QuerySelfTest, QueryState, SelfTestReport,
+};
+use thermal_client::commissioning::{CommissionError, SurroundingsError};
+use thermal_client::link::{Link, LinkError};
+use thermal_device::safety::SelfTestResult;
+
+use super::bench::{Bench, BenchError, Measurement};
+use super::check::{Check, Expected, Hand, Judgement, Kept, Reading, Stage, StageId, Step, Value};
+use super::fault_words::explanation;
+use super::report::{GoOn, Record, Report, Verdict};
+use super::stages::STAGES;
+
+/// Time-out of a self-test, and interval of polling, ms.
+const SELF_TEST_MS: u64 = 4000;
+const POLL_MS: u64 = 50;
+
+/// Why the procedure cannot go on at all.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Interruption {
+    /// The person has ended it.
+    #[error("ended by the person")]
+    Aborted,
+    /// The bench does not do what is needed.
+    #[error("{0}")]
+    Bench(String),
+    /// The device does not answer.
+    #[error("{0}")]
+    Client(ClientError),
+}
+
+impl From<BenchError> for Interruption {
+    fn from(error: BenchError) -> Self {
+        match error {
+            BenchError::Aborted => Self::Aborted,
+            BenchError::Failed(why) => Self::Bench(why),
+        }
+    }
+}
+
+impl From<ClientError> for Interruption {
+    fn from(error: ClientError) -> Self {
+        match error {
+            ClientError::Link(LinkError::Interrupted) => Self::Aborted,
+            other => Self::Client(other),
+        }
+    }
+}
+
+impl From<LinkError> for Interruption {
+    fn from(error: LinkError) -> Self {
+        ClientError::from(error).into()
+    }
+}
+
+impl From<CommissionError> for Interruption {
+    fn from(error: CommissionError) -> Self {
+        match error {
+            CommissionError::Client(error) => error.into(),
+            CommissionError::Surroundings(SurroundingsError::Interrupted) => Self::Aborted,
+            other => Self::Bench(other.to_string()),
+        }
+    }
+}
+
+/// Leads through all stages from the one with the name `from` on, or from the first, and adds to a report. `saved` is called
+/// with the report after each stage. When it ends, by whatever reason, the bridge is off if the device can be reached.
+pub fn bring_up<L: Link, B: Bench<L>>(
+    client: &mut Client<L>,
+    bench: &mut B,
+    report: Report,
+    from: Option<&Stage>,
+    saved: &mut dyn FnMut(&Report),
+) -> Report {
+    let mut procedure = Procedure {
+        client,
+        bench,
+        report,
+        kept: Kept::new(),
+        self_test: None,
+        self_test_failed: false,
+        blocked: None,
+    };
+    procedure.report.go_on = None;
+    let first = from.map_or(StageId::BareBoard, |stage| stage.id);
+    for stage in STAGES.iter().filter(|stage| stage.id >= first) {
+        if procedure.is_blocked(stage) {
+            break;
+        }
+        let resumed = from.is_some_and(|from| from.id == stage.id);
+        if let Err(why) = procedure.stage(stage, resumed) {
+            let because = procedure.interrupted(stage, &why);
+            procedure.report.go_on = Some(GoOn {
+                stage: stage.name.into(),
+                because,
+            });
+            break;
+        }
+        saved(&procedure.report);
+    }
+    procedure.go_on_at_first_failure();
+    let Procedure { client, report, .. } = procedure;
+    // Why the procedure ended is in the report; a device that cannot be reached cannot be told either.
+    let _ignored = client.ask(&Order::Abort);
+    saved(&report);
+    report
+}
+
+/// The procedure while it runs.
+pub(super) struct Procedure<'a, L, B> {
+    pub client: &'a mut Client<L>,
+    pub bench: &'a mut B,
+    pub report: Report,
+    pub kept: Kept,
+    /// The last self-test.
+    self_test: Option<SelfTestReport>,
+    /// Whether a check of it has failed, so that what it did not reach is no failure of its own.
+    self_test_failed: bool,
+    /// The first stage that must not be started, or not be continued.
+    blocked: Option<StageId>,
+}
+
+impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
+    fn stage(&mut self, stage: &'static Stage, resumed: bool) -> Result<(), Interruption> {
+        self.bench.begin(stage);
+        if resumed {
+            self.bench.act(self.client, &stage.needs)?;
+        }
+        for step in stage.steps {
+            if self.is_blocked(stage) {
+                break;
+            }
+            match step {
+                Step::Hand(hand) => self.act(hand)?,
+                Step::Check(check) => self.check(stage, check)?,
+                Step::Routine(routine) => self.routine(stage, routine)?,
+            }
+        }
+        // Before a person connects something for the next stage.
+        if stage.id >= StageId::Latch {
+            self.client.ask(&Order::Abort)?;
+        }
+        Ok(())
+    }
+
+    /// Whether this stage must not be started, or not be continued.
+    fn is_blocked(&self, stage: &Stage) -> bool {
+        self.blocked.is_some_and(|blocked| blocked <= stage.id)
+    }
+
+    /// After a failure the procedure goes on at its stage.
+    fn go_on_at_first_failure(&mut self) {
+        let mut records = self.report.records.iter();
+        if let Some(failed) = records.find(|record| record.verdict == Verdict::Failed) {
+            self.report.go_on = Some(GoOn {
+                stage: failed.stage.clone(),
+                because: format!("'{}' has failed", failed.what),
+            });
+        }
+    }
+
+    pub(super) fn act(&mut self, hand: &Hand) -> Result<(), Interruption> {
+        Ok(self.bench.act(self.client, hand)?)
+    }
+
+    fn check(&mut self, stage: &Stage, check: &'static Check) -> Result<(), Interruption> {
+        let value = match check.reading {
+            Reading::Meter { point, how } => Some(Value::Number(self.meter(check, point, how)?)),
+            Reading::Raw(read) => Some(read(&self.client.ask(&QueryRaw)?)),
+            Reading::Board(read) => Some(read(&self.client.ask(&QueryBoard)?)),
+            Reading::Kept => self.kept.get(check.name).copied().map(Value::Number),
+            Reading::Derived(read) => read(&self.kept)
+                .filter(|value| value.is_finite())
+                .map(Value::Number),
+            Reading::SelfTest(read) => self.self_test.as_ref().and_then(read),
+        };
+        let is_self_test = matches!(check.reading, Reading::SelfTest(_));
+        let tells = match check.reading {
+            Reading::SelfTest(_) => self.missing_value_tells(),
+            Reading::Derived(_) => false,
+            _ => true,
+        };
+        if value.is_none() && !tells {
+            self.add(
+                record(stage, check, "-".into(), Verdict::NotReached, None),
+                None,
+            );
+            return Ok(());
+        }
+        let Some(value) = value else {
+            self.self_test_failed |= is_self_test;
+            let finding = format!("{}: none; {}", check.what, check.low);
+            self.fail(stage, check, "-".into(), finding);
+            return Ok(());
+        };
+        if let Value::Number(number) = &value {
+            self.kept.insert(check.name.into(), *number);
+        }
+        let found = check.expected.text_of(&value);
+        let broken = match check.expected.judge(&value) {
+            Judgement::Good => {
+                self.add(record(stage, check, found, Verdict::Passed, None), None);
+                return Ok(());
+            }
+            Judgement::Low => check.low,
+            Judgement::High => check.high,
+        };
+        self.self_test_failed |= is_self_test;
+        let why = match &value {
+            Value::Word(word) => explanation(word),
+            Value::Number(_) => None,
+        };
+        let why = [Some(broken), why].into_iter().flatten();
+        let why: Vec<_> = why.filter(|why| !why.is_empty()).collect();
+        let finding = format!(
+            "{}: {found} in place of {}; {}",
+            check.what,
+            check.expected,
+            why.join(": ")
+        );
+        self.fail(stage, check, found, finding);
+        Ok(())
+    }
+
+    /// Whether a value that the self-test did not reach is the reason why it ended, and not a consequence.
+    fn missing_value_tells(&self) -> bool {
+        let ended_by_its_own = self.self_test.as_ref().is_some_and(|report| {
+            let own = ["comparator", "supply-switch", "supply"];
+            own.contains(&report.result.name())
+        });
+        ended_by_its_own && !self.self_test_failed
+    }
+
+    fn meter(
+        &mut self,
+        check: &Check,
+        point: &'static str,
+        how: &'static str,
+    ) -> Result<f64, Interruption> {
+        let Expected::Range(least, most, unit) = check.expected else {
+            return Err(Interruption::Bench(format!(
+                "{}: an instrument shows no words",
+                check.name
+            )));
+        };
+        let measurement = Measurement {
+            what: check.what,
+            point,
+            how,
+            unit,
+            allowed: (least, most),
+            basis: check.basis,
+        };
+        Ok(self.bench.read(self.client, &measurement)?)
+    }
+
+    fn fail(&mut self, stage: &Stage, check: &Check, found: String, finding: String) {
+        let record = record(stage, check, found, Verdict::Failed, Some(finding));
+        self.add(record, check.blocks);
+    }
+
+    /// Adds a result. A failure that makes a stage unsafe keeps it and all later ones from being started.
+    pub(super) fn add(&mut self, record: Record, blocks: Option<StageId>) {
+        if let Some(stage) = blocks.filter(|_| record.verdict == Verdict::Failed) {
+            let known = self.blocked.unwrap_or(stage);
+            self.blocked = Some(known.min(stage));
+        }
+        self.bench.record(&record);
+        self.report.records.push(record);
+    }
+
+    /// Says why a stage was not finished.
+    fn interrupted(&mut self, stage: &Stage, why: &Interruption) -> String {
+        let finding = match why {
+            Interruption::Aborted => return why.to_string(),
+            Interruption::Bench(why) => why.clone(),
+            Interruption::Client(error @ ClientError::Refused { .. }) => {
+                format!("{error}: not the firmware of this repository, or a step was left out")
+            }
+            Interruption::Client(error @ ClientError::NotUnderstood { .. }) => format!(
+                "{error}: the serial line loses or damages bytes: try another USB port or isolator, and a shorter cable"
+            ),
+            Interruption::Client(error) => format!(
+                "{error}: USB and isolator, the probe's serial port (PA2, PA3; SB13, SB14 closed, SB62, SB63 open), 5 V and 3.3 V, \
+                 the flashed firmware; if it has answered before, the serial line loses bytes"
+            ),
+        };
+        let record = Record {
+            stage: stage.name.into(),
+            check: "interruption".into(),
+            what: "the stage is finished".into(),
+            expected: "yes".into(),
+            found: "no".into(),
+            basis: String::new(),
+            verdict: Verdict::Failed,
+            finding: Some(finding.clone()),
+        };
+        self.add(record, None);
+        finding
+    }
+
+    /// Clears the device, arms it, and keeps what its self-test reports. The bridge is off again afterwards.
+    pub(super) fn self_test(&mut self, stage: &Stage) -> Result<(), Interruption> {
+        (self.self_test, self.self_test_failed) = (None, false);
+        let tripped = self.client.ask(&QueryState)?.state.fault();
+        let started = match tripped {
+            Some(_) => self.client.ask(&Order::Clear),
+            None => Ok(()),
+        };
+        let started = started.and_then(|()| self.client.ask(&Order::Arm));
+        if let Err(error) = started {
+            let Some(why) = error.refusal() else {
+                return Err(error.into());
+            };
+            let fault = tripped.map_or("", |fault| fault.name());
+            let explained = explanation(fault).unwrap_or("mend that first");
+            let finding =
+                format!("the device refuses its self-test (fault `{fault}`; '{why}'): {explained}");
+            self.add(refused(stage, why, finding), Some(StageId::Load));
+            return Ok(());
+        }
+        for _ in 0..SELF_TEST_MS / POLL_MS {
+            self.client.wait(Duration::from_millis(POLL_MS))?;
+            let report = self.client.ask(&QuerySelfTest)?;
+            if report.result != SelfTestResult::Running {
+                self.self_test = Some(report);
+                break;
+            }
+        }
+        Ok(self.client.ask(&Order::Abort)?)
+    }
+}
+
+/// A result of a check.
+fn record(
+    stage: &Stage,
+    check: &Check,
+    found: String,
+    verdict: Verdict,
+    finding: Option<String>,
+) -> Record {
+    Record {
+        stage: stage.name.into(),
+        check: check.name.into(),
+        what: check.what.into(),
+        expected: check.expected.to_string(),
+        found,
+        basis: check.basis.into(),
+        verdict,
+        finding,
+    }
+}
+
+fn refused(stage: &Stage, why: &str, finding: String) -> Record {
+    Record {
+        stage: stage.name.into(),
+        check: "self-test".into(),
+        what: "the device runs its self-test".into(),
+        expected: "yes".into(),
+        found: why.into(),
+        basis: "no fault is present".into(),
+        verdict: Verdict::Failed,
+        finding: Some(finding),
+    }
+}

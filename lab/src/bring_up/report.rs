@@ -1,0 +1,124 @@
+//! What a bring-up has found.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::check::Stage;
+use super::stages::STAGES;
+
+/// What became of a check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// As expected.
+    Passed,
+    /// Not as expected.
+    Failed,
+    /// An earlier failure has kept it from being measured.
+    NotReached,
+}
+
+/// A check with its result.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Record {
+    /// Name of the stage.
+    pub stage: String,
+    /// Name of the check.
+    pub check: String,
+    /// What was measured.
+    pub what: String,
+    /// What was expected.
+    pub expected: String,
+    /// What was found; `-` for nothing.
+    pub found: String,
+    /// Where the limits come from.
+    pub basis: String,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// What is broken, if it failed.
+    pub finding: Option<String>,
+}
+
+impl fmt::Display for Record {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            what,
+            expected,
+            found,
+            ..
+        } = self;
+        match self.verdict {
+            Verdict::Passed => write!(f, "  ok      {what}: {found} ({expected})"),
+            Verdict::Failed => write!(
+                f,
+                "  FAILED  {what}: {found} ({expected})\n          {}",
+                self.finding.as_deref().unwrap_or_default()
+            ),
+            Verdict::NotReached => write!(f, "  -       {what}: not reached"),
+        }
+    }
+}
+
+/// Where an unfinished bring-up goes on.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GoOn {
+    /// Name of the stage.
+    pub stage: String,
+    /// Why it was not finished.
+    pub because: String,
+}
+
+/// A bring-up, finished or not.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Report {
+    /// The device's answer to `id`.
+    pub device: Option<String>,
+    /// CRC-32 of the image that was flashed, eight hexadecimal digits.
+    pub image: Option<String>,
+    /// Whether the board is emulated.
+    pub emulated: bool,
+    /// All checks in their order.
+    pub records: Vec<Record>,
+    /// Settings that commissioning has found, as lines.
+    pub settings: Vec<String>,
+    /// Where it goes on; `None` if all stages have been done.
+    pub go_on: Option<GoOn>,
+}
+
+impl Report {
+    /// Forgets the results of a stage and of all later ones, because it is done again.
+    pub fn keep_before(&mut self, stage: &Stage) {
+        let earlier = STAGES.iter().take_while(|known| known.id < stage.id);
+        let earlier: Vec<_> = earlier.map(|stage| stage.name).collect();
+        self.records
+            .retain(|record| earlier.contains(&record.stage.as_str()));
+        self.go_on = None;
+    }
+
+    /// Whether every stage was done and every check passed.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        let is_done =
+            |stage: &Stage| (self.records.iter()).any(|record| record.stage == stage.name);
+        let mut records = self.records.iter();
+        self.go_on.is_none()
+            && STAGES.iter().all(is_done)
+            && records.all(|record| record.verdict == Verdict::Passed)
+    }
+
+    /// What is broken, in the order in which it was found.
+    #[must_use]
+    pub fn findings(&self) -> Vec<&str> {
+        let records = self.records.iter();
+        records
+            .filter_map(|record| record.finding.as_deref())
+            .collect()
+    }
+
+    /// The result for another program.
+    #[must_use]
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::json!({ "passed": self.passed(), "findings": self.findings() })
+    }
+}
