@@ -4,6 +4,7 @@
 //! tool, 2 a wrong command line.
 mod auxiliary_image;
 mod bench;
+mod bring_up;
 mod demo;
 mod docs;
 mod firmware;
@@ -113,6 +114,13 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
     },
+    /// Bring up a board, step by step, from the bare board to sign-off; --emulated does it unattended on an emulated one
+    BringUp {
+        #[command(flatten)]
+        set_up: SetUp,
+        #[command(flatten)]
+        options: bring_up::Options,
+    },
     /// Check the image's machine code (panics, stack, loops, floating point) and measure its ticks in the emulator
     Proof {
         #[command(flatten)]
@@ -200,6 +208,7 @@ fn main() -> ExitCode {
             ..
         } => report::run(set_up.permission(), ("hil-sim", "faults"), report, rest),
         Task::Hardware { set_up, json, rest } => hardware::run(set_up.permission(), json, rest),
+        Task::BringUp { set_up, options } => bring_up::run(set_up.permission(), options),
         Task::Proof {
             set_up,
             fingers,

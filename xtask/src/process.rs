@@ -2,8 +2,9 @@
 use std::ffi::OsString;
 use std::fmt;
 use std::fs::{File, OpenOptions};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -154,6 +155,43 @@ impl Invocation {
             return None;
         }
         text.join().ok()?.ok()
+    }
+}
+
+/// A program that runs beside this one until it is dropped.
+pub struct Background {
+    child: Child,
+    stdout: BufReader<ChildStdout>,
+}
+
+impl Background {
+    /// Starts a command without standard input.
+    pub fn start(invocation: &Invocation) -> Result<Self> {
+        let mut command = invocation.command();
+        command.stdin(Stdio::null()).stdout(Stdio::piped());
+        let child = command.spawn();
+        let mut child = child.with_context(|| format!("`{invocation}` did not start"))?;
+        let stdout = child.stdout.take().context("no standard output")?;
+        Ok(Self {
+            child,
+            stdout: BufReader::new(stdout),
+        })
+    }
+
+    /// The next line that it prints; `None` after the last.
+    pub fn line(&mut self) -> Option<String> {
+        let mut line = String::new();
+        let read = self.stdout.read_line(&mut line).ok()?;
+        (read > 0).then(|| line.trim_end().into())
+    }
+}
+
+impl Drop for Background {
+    /// Ends the program. On Unix `cargo run` becomes the program that it runs, so that is ended, too.
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ignored = self.child.kill();
+        let _ignored = self.child.wait();
     }
 }
 
