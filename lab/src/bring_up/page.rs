@@ -72,11 +72,14 @@ fn write_page(html: &mut String, report: &Report) -> std::fmt::Result {
         let lines = escaped(&report.settings.join("\n"));
         write!(html, "<h2>Settings</h2>\n<pre>{lines}</pre>\n")?;
     }
-    html.write_str(
-        "<h2>Sign-off</h2>\n<p>A finger may touch the display only if this page says passed, after everything was switched \
-         off and on again without a debugger.</p>\n<table class=\"sign\"><tr><td>Name</td><td>Date</td><td>Signature</td></tr>\
-         </table>\n</body></html>\n",
-    )
+    html.write_str("<h2>Sign-off</h2>\n")?;
+    html.write_str(if report.emulated {
+        "<p>None: no finger can touch an emulated board.</p>\n</body></html>\n"
+    } else {
+        "<p>A finger may touch the display only if this page says passed, after everything was switched off and on again \
+         without a debugger.</p>\n<table class=\"sign\"><tr><td>Name</td><td>Date</td><td>Signature</td></tr></table>\n\
+         </body></html>\n"
+    })
 }
 
 fn write_stage(html: &mut String, report: &Report, name: &str, title: &str) -> std::fmt::Result {

@@ -2,7 +2,7 @@
 
 use std::thread;
 
-use thermal_lab::bring_up::{Report, Verdict};
+use thermal_lab::bring_up::{Report, STAGES, Verdict};
 use thermal_sim::board::{BROKEN_BOARDS, Board, SOUND};
 
 use super::brought_up;
@@ -168,5 +168,20 @@ fn no_stage_with_a_current_is_started_with_a_failed_comparator() {
             .iter()
             .find(|record| DRIVEN.contains(&record.stage.as_str()));
         assert!(driven.is_none(), "{name}: {driven:?}");
+    }
+}
+
+#[test]
+fn the_document_lists_every_broken_board_with_its_stage() {
+    let document = include_str!("../../../docs/bring-up.md");
+    for (name, stage, _) in FOUND {
+        let row = document
+            .lines()
+            .find(|line| line.starts_with(&format!("| `{name}` |")));
+        let row = row.unwrap_or_else(|| panic!("no row of {name}"));
+        assert!(row.ends_with(&format!("| `{stage}` |")), "{row}");
+    }
+    for stage in &STAGES {
+        assert!(document.contains(&format!("| `{}` |", stage.name)));
     }
 }

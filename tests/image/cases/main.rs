@@ -1,5 +1,6 @@
 //! Tests of the release image on the emulated microcontroller.
 
+mod bring_up;
 mod chip;
 mod closed_loop;
 mod contact_transients;
