@@ -44,7 +44,7 @@ fn each_wrong_line_is_answered_with_its_error_and_the_contact_goes_on() {
     let cases = [
         (
             "frobnicate",
-            "err unknown command 'frobnicate'; known: id state",
+            "err unknown command 'frobnicate'; known: id board state",
         ),
         (
             "material gold",
