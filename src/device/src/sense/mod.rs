@@ -39,7 +39,9 @@ pub type Scan = [u16; ADC_CHANNELS_PER_FINGER];
 
 /// One finger's input of one control tick of 1 ms: for each analogue channel the sum of its 16 conversions of 12 bits,
 /// 0 to 65520, and the levels of the digital inputs. The sum of a thermistor falls as its temperature rises.
+// Aligned to words, so that a copy of it takes a few cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(align(4))]
 pub struct Samples {
     /// Sum of 16 conversions, 0 to 65520, of the display's first thermistor, in the contact patch; the control law
     /// controls its temperature.
