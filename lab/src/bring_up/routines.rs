@@ -36,6 +36,8 @@ const INPUTS: [(ThermistorId, &str, &str); 5] = [
 /// Time that the display takes for a change of a degree, and to settle then, ms.
 const MS_PER_DEGREE: f64 = 1000.0;
 const SETTLE_MS: u64 = 6000;
+/// Largest distance of a held temperature from where the display is, K.
+const DISTANCE_MAX_K: f64 = 30.0;
 /// Interval of telemetry while the display is held, ms.
 const HOLD_STREAM_MS: u32 = 20;
 /// Longest time in which the emergency stop must show, and interval of polling, ms.
@@ -56,6 +58,12 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             Routine::Commission => self.commission(stage),
             Routine::StopWhileDriving => self.stop_while_driving(),
         }
+    }
+
+    /// Forgets telemetry that belongs to an earlier stream.
+    fn discard_telemetry(&mut self) -> Result<(), Interruption> {
+        while self.client.next_telemetry(Duration::ZERO)?.is_some() {}
+        Ok(())
     }
 
     fn keep(&mut self, name: impl Into<String>, value: f64) {
@@ -183,6 +191,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
 
     fn serial_line(&mut self, ms: u64) -> Result<(), Interruption> {
         self.client.ask(&Order::Checksum(true))?;
+        self.discard_telemetry()?;
         let before = self.client.counts();
         self.client.ask(&Order::Stream(1))?;
         let end = self.client.link().now() + Duration::from_millis(ms);
@@ -227,10 +236,11 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         arm(self.client, None)?;
         self.client.ask(&Order::Hold(celsius))?;
         self.bench.notice(&CommissioningEvent::HoldStarted(celsius));
+        self.discard_telemetry()?;
         self.client.ask(&Order::Stream(HOLD_STREAM_MS))?;
-        let start_c = self.client.next_telemetry(Duration::from_secs(1))?;
-        let start_c = start_c.and_then(|line| line.telemetry.display_c);
-        let distance_k = (celsius - start_c.unwrap_or(celsius)).abs();
+        let start = self.client.next_telemetry(Duration::from_secs(1))?;
+        let start_c = start.and_then(|line| line.telemetry.display_c);
+        let distance_k = start_c.map_or(DISTANCE_MAX_K, |start_c| (celsius - start_c).abs());
         let settle_ms = (distance_k * MS_PER_DEGREE) as u64 + SETTLE_MS;
         let end = self.client.link().now() + Duration::from_millis(settle_ms);
         let mut last = None;

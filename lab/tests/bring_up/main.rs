@@ -4,6 +4,7 @@ mod boards;
 mod interruptions;
 mod procedure_data;
 mod typed_values;
+mod typist;
 
 use thermal_client::client::Client;
 use thermal_lab::bring_up::{EmulatedBench, Report, SimulatedBoard, Stage, bring_up};

@@ -1,0 +1,166 @@
+//! A person who types everything: the whole procedure at a terminal.
+
+use std::cell::RefCell;
+use std::io::{self, Write};
+use std::rc::Rc;
+use std::sync::mpsc::{self, Sender};
+
+use thermal_client::client::Client;
+use thermal_client::commissioning::{CommissioningEvent, Surroundings, SurroundingsError};
+use thermal_device::safety::ThermistorId;
+use thermal_lab::bring_up::{
+    AskSurroundings, Bench, BenchError, EmulatedBench, Hand, Measurement, Record, Report,
+    SimulatedBoard, Stage, Terminal, bring_up,
+};
+use thermal_lab::link::Link;
+use thermal_lab::person::Person;
+use thermal_sim::board::{Board, SOUND};
+
+use super::on_the_bench;
+
+/// A screen whose reader types an answer to each question, which ends with a colon.
+struct Screen {
+    answer: Rc<RefCell<String>>,
+    keys: Sender<io::Result<String>>,
+    shown: Rc<RefCell<String>>,
+}
+
+impl Write for Screen {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let text = String::from_utf8_lossy(bytes);
+        self.shown.borrow_mut().push_str(&text);
+        if text.ends_with(": ") {
+            let answer = self.answer.borrow().clone();
+            self.shown.borrow_mut().push_str(&format!("{answer}\n"));
+            self.keys.send(Ok(answer)).map_err(io::Error::other)?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Hands that do what the terminal says, and type what the instruments show.
+struct Typist<'a> {
+    terminal: Terminal<'a>,
+    hands: EmulatedBench<'a>,
+    answer: Rc<RefCell<String>>,
+}
+
+impl Typist<'_> {
+    fn type_next(&self, text: impl ToString) {
+        *self.answer.borrow_mut() = text.to_string();
+    }
+}
+
+impl<L: AskSurroundings + Link> Bench<L> for Typist<'_> {
+    fn begin(&mut self, stage: &Stage) {
+        Bench::<L>::begin(&mut self.terminal, stage);
+    }
+
+    fn act(&mut self, client: &mut Client<L>, hand: &Hand) -> Result<(), BenchError> {
+        self.hands.act(client, hand)?;
+        self.type_next("");
+        self.terminal.act(client, hand)
+    }
+
+    fn read(
+        &mut self,
+        client: &mut Client<L>,
+        measurement: &Measurement,
+    ) -> Result<f64, BenchError> {
+        let value = self.hands.read(client, measurement)?;
+        self.type_next(value);
+        self.terminal.read(client, measurement)
+    }
+
+    fn turn(
+        &mut self,
+        client: &mut Client<L>,
+        ohm: (f64, f64),
+        tripped: &mut dyn FnMut(&mut Client<L>) -> Result<bool, BenchError>,
+    ) -> Result<Option<f64>, BenchError> {
+        let at_ohm = self.hands.turn(client, ohm, tripped)?;
+        let typed = at_ohm.map_or_else(String::new, |ohm| ohm.to_string());
+        // The first question is whether the resistor is set, the second one what it is.
+        self.type_next("");
+        let answer = Rc::clone(&self.answer);
+        self.terminal.turn(client, ohm, &mut |client| {
+            answer.borrow_mut().clone_from(&typed);
+            tripped(client)
+        })
+    }
+
+    fn record(&mut self, record: &Record) {
+        Bench::<L>::record(&mut self.terminal, record);
+    }
+}
+
+impl<L: AskSurroundings + Link> Surroundings<L> for Typist<'_> {
+    fn reference_c(
+        &mut self,
+        client: &mut Client<L>,
+        thermistor: ThermistorId,
+    ) -> Result<f64, SurroundingsError> {
+        let shown_c = self.hands.reference_c(client, thermistor)?;
+        self.type_next(format!("{shown_c:.3}"));
+        self.terminal.reference_c(client, thermistor)
+    }
+
+    fn put_into_bath(
+        &mut self,
+        client: &mut Client<L>,
+        thermistor: ThermistorId,
+        bath_c: f64,
+    ) -> Result<(), SurroundingsError> {
+        self.hands.put_into_bath(client, thermistor, bath_c)?;
+        self.type_next("");
+        self.terminal.put_into_bath(client, thermistor, bath_c)
+    }
+
+    fn reads_again(&mut self, why: &str) -> bool {
+        Surroundings::<L>::reads_again(&mut self.terminal, why)
+    }
+
+    fn notice(&mut self, event: &CommissioningEvent) {
+        Surroundings::<L>::notice(&mut self.terminal, event);
+    }
+}
+
+#[test]
+fn a_person_who_types_every_value_comes_to_a_pass() {
+    let (keys, lines) = mpsc::channel();
+    let (answer, shown) = <(Rc<RefCell<String>>, Rc<RefCell<String>>)>::default();
+    let mut screen = Screen {
+        answer: Rc::clone(&answer),
+        keys,
+        shown: Rc::clone(&shown),
+    };
+    let mut typist = Typist {
+        terminal: Terminal::new(Person::new(None, lines, &mut screen)),
+        hands: EmulatedBench { watch: &mut |_| () },
+        answer,
+    };
+    let board = Board::named(SOUND, None).expect("a board");
+    let (mut engine, bench) = on_the_bench(board);
+    let mut client = Client::new(SimulatedBoard::new(&mut engine, bench));
+    let report = bring_up(
+        &mut client,
+        &mut typist,
+        Report::default(),
+        None,
+        &mut |_| (),
+    );
+    let shown = shown.borrow();
+    assert!(report.passed(), "{:#?}\n{shown}", report.findings());
+    for part in [
+        "== Bare board: continuity, pull-downs, short circuits (bare-board) ==",
+        "bridge enable, PB10 (D6): ohm meter from the point to analog ground",
+        "Stop: the comparator has tripped.",
+        "Press the emergency stop now, while the display is driven.",
+    ] {
+        assert!(shown.contains(part), "{part}");
+    }
+}
