@@ -193,15 +193,7 @@ fn by_a_person(
         lines(BufReader::new(stdin())),
         &mut screen,
     ));
-    target.with_client(|client| {
-        Ok(bring_up(
-            client,
-            &mut terminal,
-            report,
-            arguments.from,
-            saved,
-        ))
-    })
+    target.with_late_client(|client| bring_up(client, &mut terminal, report, arguments.from, saved))
 }
 
 /// On an emulated board that another program serves.

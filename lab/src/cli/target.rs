@@ -8,7 +8,7 @@ use anyhow::{Context, anyhow};
 use clap::Args;
 use thermal_client::client::{Client, Order};
 use thermal_client::link::{Interruptible, Link};
-use thermal_lab::link::{self, SimulatedLink};
+use thermal_lab::link::{self, LateLink, SimulatedLink};
 use thermal_plant::Params;
 use thermal_sim::commissioning::CommissioningSetup;
 use thermal_sim::engine::NativeEngine;
@@ -49,27 +49,12 @@ impl Target {
     ) -> Result<T, Failure> {
         let (requested, interrupted) = interruptions()?;
         let mut engine;
-        let link: Box<dyn Link + '_> = match (&self.port, &self.tcp, self.simulated) {
-            (Some(port), _, _) => {
-                let link = link::serial(port);
-                let hint = || format!("--port {}: `thermal-lab ports` lists them", port.display());
-                Box::new(link.with_context(hint).map_err(Failure::input)?)
-            }
-            (_, Some(address), _) => {
-                let link = link::tcp(address.as_str());
-                let what = || format!("--tcp {address}");
-                Box::new(link.with_context(what).map_err(Failure::input)?)
-            }
-            (_, _, true) => {
-                let world = self.simulated_setup()?.in_use().map_err(Failure::input)?;
-                engine = NativeEngine::new(world);
-                Box::new(SimulatedLink::new(&mut engine))
-            }
-            _ => {
-                return Err(Failure::input(anyhow!(
-                    "which device? --port NAME (`thermal-lab ports` lists them), --tcp ADDR or --simulated"
-                )));
-            }
+        let link: Box<dyn Link + '_> = if self.simulated {
+            let world = self.simulated_setup()?.in_use().map_err(Failure::input)?;
+            engine = NativeEngine::new(world);
+            Box::new(SimulatedLink::new(&mut engine))
+        } else {
+            self.open().map_err(Failure::input)?
         };
         let link = Interruptible::new(link, requested);
         let mut client = Client::attach(link).map_err(Failure::run)?;
@@ -79,6 +64,38 @@ impl Target {
             let _ignored = client.ask(&Order::Abort);
         }
         done
+    }
+
+    /// Does something with a client of a device that may not be there yet: the line is opened when the first command is
+    /// sent. Ctrl-C interrupts it.
+    pub fn with_late_client<T>(
+        &self,
+        work: impl FnOnce(&mut AnyClient<'_>) -> T,
+    ) -> Result<T, Failure> {
+        if self.port.is_none() && self.tcp.is_none() {
+            return Err(Failure::input(which_device()));
+        }
+        let (requested, _) = interruptions()?;
+        let link = LateLink::new(|| self.open().map_err(|error| format!("{error:#}")));
+        let link: Box<dyn Link + '_> = Box::new(link);
+        Ok(work(&mut Client::new(Interruptible::new(link, requested))))
+    }
+
+    /// Opens the line of `--port` or `--tcp`.
+    fn open(&self) -> anyhow::Result<Box<dyn Link>> {
+        match (&self.port, &self.tcp) {
+            (Some(port), _) => {
+                let link = link::serial(port);
+                let hint = || format!("--port {}: `thermal-lab ports` lists them", port.display());
+                Ok(Box::new(link.with_context(hint)?))
+            }
+            (_, Some(address)) => {
+                let link = link::tcp(address.as_str());
+                let what = || format!("--tcp {address}");
+                Ok(Box::new(link.with_context(what)?))
+            }
+            (None, None) => Err(which_device()),
+        }
     }
 
     /// Device and surroundings of `--simulated`.
@@ -93,6 +110,10 @@ impl Target {
             scene.seed,
         ))
     }
+}
+
+fn which_device() -> anyhow::Error {
+    anyhow!("which device? --port NAME (`thermal-lab ports` lists them), --tcp ADDR or --simulated")
 }
 
 /// Two flags that Ctrl-C and the signals that end a program set: one that the link takes back when it ends a wait, and one

@@ -3,6 +3,7 @@
 mod boards;
 mod interruptions;
 mod procedure_data;
+mod program;
 mod typed_values;
 mod typist;
 
