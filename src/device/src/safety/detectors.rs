@@ -106,7 +106,7 @@ impl FaultDetectors {
     /// called in every tick.
     ///
     /// # Errors
-    /// As [`FrozenSampleDetector::check_samples`].
+    /// As `FrozenSampleDetector::check_samples`.
     pub fn check_frozen_samples(
         &mut self,
         samples: &Samples,
