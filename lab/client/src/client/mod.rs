@@ -198,6 +198,10 @@ impl<L: Link> Client<L> {
             return Err(ClientError::Unsendable { line: line.into() });
         }
         if self.out_of_step {
+            if split_finger(line).1.trim() == "abort" {
+                // The bridge is switched off even if no answer comes through.
+                self.transmit(line)?;
+            }
             self.synchronize()?;
         }
         self.transmit(line)?;
@@ -249,6 +253,10 @@ impl<L: Link> Client<L> {
     /// no other answer has; everything before that answer is discarded.
     fn synchronize(&mut self) -> Result<(), ClientError> {
         self.out_of_step = true;
+        if self.checksums {
+            // A device that has restarted meanwhile has forgotten it.
+            self.transmit("checksum on")?;
+        }
         self.synchronizations += 1;
         let line = format!("synchronize-{}", self.synchronizations);
         self.transmit(&line)?;

@@ -189,6 +189,45 @@ fn with_checksums_damaged_answers_are_not_taken() {
 }
 
 #[test]
+fn abort_is_sent_to_a_device_whose_answers_do_not_come_through() {
+    let mut client = FakeDevice::client(|_| Vec::new());
+    client.ask(&Order::Hold(41.0)).unwrap_err();
+    client.ask(&Order::Abort).unwrap_err();
+    client.ask_finger(Some(2), &Order::Abort).unwrap_err();
+    let sent = &client.link().sent;
+    for abort in ["abort", "@2 abort"] {
+        assert!(sent.iter().any(|(_, line)| line == abort), "{sent:?}");
+    }
+}
+
+/// A restarted device sends no checksums, until it is told to again.
+#[test]
+fn a_device_that_restarts_while_checksums_are_on_is_reached_again() {
+    let (mut on, mut answered) = (false, 0);
+    let mut client = FakeDevice::client(move |line| {
+        let (line, _) = line.split_once('*').unwrap_or((line, ""));
+        answered += 1;
+        on = answered != 3 && (on || line == "checksum on");
+        let answer = match line {
+            "checksum on" => "ok".into(),
+            "law" => "ok law=pi".into(),
+            other => format!("err unknown command '{other}'; known: id"),
+        };
+        let sum = answer.bytes().fold(0, |sum, byte| sum ^ byte);
+        answers(&if on {
+            format!("{answer}*{sum:02X}")
+        } else {
+            answer
+        })
+    });
+    client.ask(&Order::Checksum(true)).unwrap();
+    assert_eq!(client.query("law").unwrap(), "ok law=pi");
+    // Restarts before this line.
+    assert!(client.query("law").is_err());
+    assert_eq!(client.query("law").unwrap(), "ok law=pi");
+}
+
+#[test]
 fn the_answers_for_diagnosis_are_read() {
     let mut client = knows(&[
         (
