@@ -243,6 +243,9 @@ fn the_longest_answers_fit_their_limit() {
         unknown.len() == ANSWER_MAX_BYTES && unknown.ends_with(" forget"),
         "{unknown}"
     );
+    let documentation = include_str!("../../../docs/protocol.md");
+    let limit = std::format!("at most {ANSWER_MAX_BYTES} bytes without address and checksum");
+    assert!(documentation.contains(&limit), "docs/protocol.md: {limit}");
     let side = ComparatorSideReport {
         cut_ms: Some(19),
         cut_supply: Some(SupplyVoltage::from_sum(u16::MAX)),
