@@ -25,6 +25,10 @@ const PULL_UP_OHM: f64 = 10e3;
 const KNOWN_COUNTS: f64 = 16.0;
 /// Counts of the current measurement per ampere.
 const COUNTS_PER_A: f64 = 400.0;
+/// Counts of the sensed supply per volt: 3.3 V are 4096 counts, behind 33 and 10 kΩ.
+const COUNTS_PER_V: f64 = CODES / 3.3 * 10.0 / 43.0;
+/// Time in which the driver alone discharges the capacitors of the bridge supply.
+const STOP_DECAY: Duration = Duration::from_millis(300);
 /// Thermistors with their names and the pins of their inputs, in the order of the converter's channels.
 const INPUTS: [(ThermistorId, &str, &str); 5] = [
     (ThermistorId::Display, "display", "PA0, A0"),
@@ -330,6 +334,9 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         self.client.wait(Duration::from_millis(20))?;
         let current = self.client.ask(&QueryRaw)?.current;
         self.keep("stop-current", current / COUNTS_PER_A);
+        self.client.wait(STOP_DECAY)?;
+        let supply = self.client.ask(&QueryRaw)?.supply;
+        self.keep("stop-supply", supply / COUNTS_PER_V);
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use thermal_client::client::SelfTestReport;
 
 use super::super::check::{Hand, Reading, Routine, Stage, StageId, Step, Value};
-use super::super::unit::Unit::{Ampere, Celsius, Kelvin, Millisecond, Ratio};
+use super::super::unit::Unit::{Ampere, Celsius, Kelvin, Millisecond, Ratio, Volt};
 use super::{hand, read, routine};
 
 /// Current of a pulse of the self-test.
@@ -309,6 +309,18 @@ pub const RUN: Stage = Stage {
             .high("a current still flows after the emergency stop: switch everything off; the stop is \
                  not in the 12 V line")
             .step(),
+        read(
+            "stop-supply",
+            "sensed bridge supply 0.3 s after that",
+            Reading::Kept,
+        )
+        .range(0.0, 6.0, Volt)
+        .basis("the driver's 7.5 mA discharge 120 µF by 60 V/s; 36 V/s with their tolerances")
+        .high(
+            "the bridge supply stays although the emergency stop is pressed: the stop is bridged, or its relay is welded; switch \
+             everything off",
+        )
+        .step(),
         hand("Release the emergency stop.", &["release stop"]),
         read(
             "seen-hottest",
