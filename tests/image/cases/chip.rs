@@ -13,7 +13,7 @@ const APB1_FREEZE: u32 = 0xe004_2008;
 const APB2_FREEZE: u32 = 0xe004_200c;
 const TIM1_BDTR: u32 = 0x4001_0044;
 /// The fault of a device without anything at its pins.
-const NO_SENSORS: &str = "emergency-stop";
+const NO_SENSORS: &str = "excitation";
 
 fn started(chip: &ChipState) -> Bare {
     let firmware = Firmware::from_file(image()).expect("an image for this chip");

@@ -21,7 +21,7 @@ fn cause(device: &mut Bare) -> String {
     name.unwrap_or_else(|| panic!("{answer}")).to_owned()
 }
 
-const NO_RESET_FAULT: &str = "emergency-stop";
+const NO_RESET_FAULT: &str = "excitation";
 
 /// A device whose program counter is corrupted while it reads the flash, before the watchdogs run.
 fn with_a_failed_start() -> Bare {
