@@ -25,7 +25,7 @@ pub fn explanation(word: &str) -> Option<&'static str> {
         }
         "current-low" => {
             "hardly any current is measured: load not connected, MOSFETs M1 to M4, gate driver \
-                 X3, inductors L1, L2 of block bridge, or the current measurement (block current, \
+                 X3, inductors L1, L2 of block bridge, or the current measurement (block mirror, \
                  PC2)"
         }
         "current-high" => {
@@ -44,7 +44,10 @@ pub fn explanation(word: &str) -> Option<&'static str> {
             "the display thermistors do not follow the tile: off the plate, or the tile does not \
                  pump"
         }
-        "clock" => "the 8 MHz clock of the probe is missing (SB16, SB50) or came after 12 V",
+        "clock" => {
+            "the 8 MHz clock of the probe is missing: USB not plugged in, or SB16, SB50 open"
+        }
+        "unasked-reset" => "a probe or a failure has restarted the program: send `clear`",
         "brown-out-level" => "BOR_LEV of the option bytes is not 00",
         "watchdogs-frozen" => {
             "a debugger has frozen the watchdogs: remove it, switch everything off, USB included"

@@ -28,7 +28,7 @@ pub use check::{Check, Expected, Hand, Reading, Routine, Stage, StageId, Step, V
 pub use emulated::{AskSurroundings, EmulatedBench};
 pub use page::page;
 pub use procedure::{Interruption, bring_up};
-pub use report::{GoOn, Record, Report, Verdict};
+pub use report::{Record, Report, Resume, Verdict};
 pub use simulated::SimulatedBoard;
 pub use stages::STAGES;
 pub use terminal::Terminal;

@@ -25,16 +25,16 @@ pub fn page(report: &Report) -> String {
 
 fn write_page(html: &mut String, report: &Report) -> std::fmt::Result {
     let passed = report.passed();
-    let (class, verdict) = match (&report.go_on, passed) {
+    let (class, verdict) = match (&report.resume, passed) {
         (_, true) => ("passed", "Passed: every check of every stage".to_owned()),
         (None, false) => ("failed", "Not passed".to_owned()),
-        (Some(go_on), false) => (
+        (Some(resume), false) => (
             "failed",
             format!(
-                "Not finished: ended before or in stage {}, because {}. Mend what is listed, then go on with --from {}",
-                escaped(&go_on.stage),
-                escaped(&go_on.because),
-                escaped(&go_on.stage)
+                "Not finished: ended before or in stage {}: {}. Mend what is listed, then go on with --from {}",
+                escaped(&resume.stage),
+                escaped(&resume.reason),
+                escaped(&resume.stage)
             ),
         ),
     };

@@ -12,7 +12,7 @@ use thermal_device::safety::SelfTestResult;
 use super::bench::{Bench, BenchError, Measurement};
 use super::check::{Check, Expected, Hand, Judgement, Kept, Reading, Stage, StageId, Step, Value};
 use super::fault_words::explanation;
-use super::report::{GoOn, Record, Report, Verdict};
+use super::report::{Record, Report, Resume, Verdict};
 use super::stages::STAGES;
 
 /// Time-out of a self-test, and interval of polling, ms.
@@ -85,7 +85,7 @@ pub fn bring_up<L: Link, B: Bench<L>>(
         self_test_failed: false,
         blocked: None,
     };
-    procedure.report.go_on = None;
+    procedure.report.resume = None;
     let first = from.map_or(StageId::BareBoard, |stage| stage.id);
     for stage in STAGES.iter().filter(|stage| stage.id >= first) {
         if procedure.is_blocked(stage) {
@@ -93,16 +93,16 @@ pub fn bring_up<L: Link, B: Bench<L>>(
         }
         let resumed = from.is_some_and(|from| from.id == stage.id);
         if let Err(why) = procedure.stage(stage, resumed) {
-            let because = procedure.interrupted(stage, &why);
-            procedure.report.go_on = Some(GoOn {
+            let reason = procedure.interrupted(stage, &why);
+            procedure.report.resume = Some(Resume {
                 stage: stage.name.into(),
-                because,
+                reason,
             });
             break;
         }
         saved(&procedure.report);
     }
-    procedure.go_on_at_first_failure();
+    procedure.resume_at_first_failure();
     let Procedure { client, report, .. } = procedure;
     // Why the procedure ended is in the report; a device that cannot be reached cannot be told either.
     let _ignored = client.ask(&Order::Abort);
@@ -152,13 +152,13 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         self.blocked.is_some_and(|blocked| blocked <= stage.id)
     }
 
-    /// After a failure the procedure goes on at its stage.
-    fn go_on_at_first_failure(&mut self) {
+    /// After a failure the procedure resumes at the stage of that failure.
+    fn resume_at_first_failure(&mut self) {
         let mut records = self.report.records.iter();
         if let Some(failed) = records.find(|record| record.verdict == Verdict::Failed) {
-            self.report.go_on = Some(GoOn {
+            self.report.resume = Some(Resume {
                 stage: failed.stage.clone(),
-                because: format!("'{}' has failed", failed.what),
+                reason: format!("'{}' has failed", failed.what),
             });
         }
     }

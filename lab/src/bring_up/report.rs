@@ -60,13 +60,13 @@ impl fmt::Display for Record {
     }
 }
 
-/// Where an unfinished bring-up goes on.
+/// Where an unfinished bring-up resumes, and why it was not finished.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct GoOn {
+pub struct Resume {
     /// Name of the stage.
     pub stage: String,
     /// Why it was not finished.
-    pub because: String,
+    pub reason: String,
 }
 
 /// A bring-up, finished or not.
@@ -82,8 +82,8 @@ pub struct Report {
     pub records: Vec<Record>,
     /// Settings that commissioning has found, as lines.
     pub settings: Vec<String>,
-    /// Where it goes on; `None` if all stages have been done.
-    pub go_on: Option<GoOn>,
+    /// Where it resumes; `None` if all stages have been done.
+    pub resume: Option<Resume>,
 }
 
 impl Report {
@@ -93,7 +93,7 @@ impl Report {
         let earlier: Vec<_> = earlier.map(|stage| stage.name).collect();
         self.records
             .retain(|record| earlier.contains(&record.stage.as_str()));
-        self.go_on = None;
+        self.resume = None;
     }
 
     /// Whether every stage was done and every check passed.
@@ -102,7 +102,7 @@ impl Report {
         let is_done =
             |stage: &Stage| (self.records.iter()).any(|record| record.stage == stage.name);
         let mut records = self.records.iter();
-        self.go_on.is_none()
+        self.resume.is_none()
             && STAGES.iter().all(is_done)
             && records.all(|record| record.verdict == Verdict::Passed)
     }

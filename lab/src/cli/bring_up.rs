@@ -168,12 +168,12 @@ fn summary(report: &Report) -> String {
     for finding in report.findings() {
         text += &format!("- {finding}\n");
     }
-    text += match (&report.go_on, report.passed()) {
+    text += match (&report.resume, report.passed()) {
         (_, true) => "passed: every check of every stage".to_owned(),
         (None, _) => "not passed".to_owned(),
-        (Some(go_on), _) => format!(
-            "not finished, because {}; go on with --from {}",
-            go_on.because, go_on.stage
+        (Some(resume), _) => format!(
+            "not finished: {}; go on with --from {}",
+            resume.reason, resume.stage
         ),
     }
     .as_str();

@@ -8,7 +8,7 @@ use anyhow::{Context, anyhow};
 use clap::Args;
 use thermal_client::client::{Client, Order};
 use thermal_client::link::{Interruptible, Link};
-use thermal_lab::link::{self, LateLink, SimulatedLink};
+use thermal_lab::link::{self, LazyLink, SimulatedLink};
 use thermal_plant::Params;
 use thermal_sim::commissioning::CommissioningSetup;
 use thermal_sim::engine::NativeEngine;
@@ -76,7 +76,7 @@ impl Target {
             return Err(Failure::input(which_device()));
         }
         let (requested, _) = interruptions()?;
-        let link = LateLink::new(|| self.open().map_err(|error| format!("{error:#}")));
+        let link = LazyLink::new(|| self.open().map_err(|error| format!("{error:#}")));
         let link: Box<dyn Link + '_> = Box::new(link);
         Ok(work(&mut Client::new(Interruptible::new(link, requested))))
     }

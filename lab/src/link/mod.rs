@@ -1,12 +1,12 @@
 //! Lines to a device: serial port, TCP, and a device that another program simulates and serves. That of a device simulated in
 //! this program is [`SimulatedLink`].
 
-mod late;
+mod lazy;
 mod ports;
 mod served;
 mod stream;
 
-pub use late::LateLink;
+pub use lazy::LazyLink;
 pub use ports::{PortInfo, UsbId, ports};
 pub use served::{ServedLink, ServedOperator};
 pub use stream::{StreamLink, serial, tcp};

@@ -152,7 +152,7 @@ fn each_broken_board_is_found_in_its_stage_and_named() {
             let is_named = |finding: &&str| words.iter().all(|word| finding.contains(word));
             assert!(findings.iter().any(is_named), "{name}: {findings:#?}");
             assert_eq!(
-                report.go_on.map(|go_on| go_on.stage).as_deref(),
+                report.resume.map(|resume| resume.stage).as_deref(),
                 Some(*stage)
             );
         }

@@ -115,16 +115,16 @@ fn ending_while_the_display_is_driven_switches_the_bridge_off() {
     let (report, state) = ended_in("run", true);
     assert_eq!(state, StateName::Ready);
     assert!(!report.passed());
-    let go_on = report.go_on.expect("where to go on");
-    assert_eq!(go_on.stage, "run");
-    assert_eq!(go_on.because, "ended by the person");
+    let resume = report.resume.expect("where to resume");
+    assert_eq!(resume.stage, "run");
+    assert_eq!(resume.reason, "ended by the person");
 }
 
 #[test]
 fn an_ended_bring_up_goes_on_at_its_stage_and_can_pass() {
     let (mut report, _) = ended_in("load", false);
     assert_eq!(
-        report.go_on.as_ref().map(|go_on| go_on.stage.as_str()),
+        report.resume.as_ref().map(|resume| resume.stage.as_str()),
         Some("load")
     );
     assert!(!report.passed());

@@ -75,7 +75,7 @@ fn a_person_begins_without_a_device_and_ends_with_abort() {
     assert!(shown.contains("ok      touched plate"), "{shown}");
     assert_eq!(
         result,
-        "not finished, because ended by the person; go on with --from bare-board\n"
+        "not finished: ended by the person; go on with --from bare-board\n"
     );
     assert!(folder.join("bring-up.json").exists());
 }

@@ -37,8 +37,8 @@ impl<'a> Fields<'a> {
     }
 
     /// The number behind `name=`, or `Some(None)` for `-`.
-    pub(super) fn known_number(&self, name: &str) -> Option<Option<f64>> {
-        known_number(self.word(name)?)
+    pub(super) fn number_or_unknown(&self, name: &str) -> Option<Option<f64>> {
+        number_or_unknown(self.word(name)?)
     }
 
     /// `0` or `1` behind `name=`.
@@ -52,7 +52,7 @@ impl<'a> Fields<'a> {
 }
 
 /// A number, or `Some(None)` for `-`.
-pub fn known_number(word: &str) -> Option<Option<f64>> {
+pub fn number_or_unknown(word: &str) -> Option<Option<f64>> {
     match word {
         "-" => Some(None),
         word => finite(word).map(Some),

@@ -19,7 +19,7 @@ use std::time::Duration;
 use thermal_protocol::{LINE_MAX_BYTES, line_checksum, strip_checksum};
 
 use crate::link::{Link, LinkError, ReceivedLine};
-use streams::Streams;
+use streams::TelemetryStreams;
 
 pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
@@ -70,7 +70,7 @@ pub struct LineCounts {
 pub struct Client<L> {
     link: L,
     telemetry: VecDeque<ReceivedTelemetry>,
-    streams: Streams,
+    streams: TelemetryStreams,
     clock: DeviceClock,
     counts: LineCounts,
     last_sent: Duration,
@@ -88,7 +88,7 @@ impl<L: Link> Client<L> {
             last_sent: link.now(),
             link,
             telemetry: VecDeque::new(),
-            streams: Streams::default(),
+            streams: TelemetryStreams::default(),
             clock: DeviceClock::default(),
             counts: LineCounts::default(),
             checksums: false,
@@ -377,7 +377,7 @@ impl<L: Link> Client<L> {
             }
             (Some("checksum"), Some(switch)) => self.checksums = switch == "on",
             (Some("save" | "forget"), None) => {
-                self.streams = Streams::default();
+                self.streams = TelemetryStreams::default();
                 self.clock.restart();
             }
             _ => {}

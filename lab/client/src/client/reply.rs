@@ -93,7 +93,7 @@ impl Status {
                 word => Some(finite(word)?),
             },
             mode: in_table(&CONTACT_MODEL_WORDS, reply.word("mode")?)?,
-            setpoint_c: reply.known_number("setpoint_c")?,
+            setpoint_c: reply.number_or_unknown("setpoint_c")?,
             limited: reply.words().any(|word| word == "limited"),
             body: reply.word("body")?.into(),
         })
@@ -129,9 +129,9 @@ impl Cause {
         Some(Some(Self {
             fault: fault(word)?,
             tick: reply.number("tick")?,
-            display_c: reply.known_number("display_c")?,
-            check_c: reply.known_number("check_c")?,
-            sink_c: reply.known_number("sink_c")?,
+            display_c: reply.number_or_unknown("display_c")?,
+            check_c: reply.number_or_unknown("check_c")?,
+            sink_c: reply.number_or_unknown("sink_c")?,
             current_a: reply.number("current_a")?,
             asked_a: reply.number("asked_a")?,
         }))
@@ -280,17 +280,17 @@ fn result_word<S: Serializer>(result: &SelfTestResult, serializer: S) -> Result<
 impl SelfTestReport {
     pub(super) fn read(reply: &Fields<'_>) -> Option<Self> {
         Some(Self {
-            hot_cut_ms: reply.known_number("hot_cut_ms")?,
-            hot_supply_v: reply.known_number("hot_supply_v")?,
-            hot_release_ms: reply.known_number("hot_release_ms")?,
-            cold_cut_ms: reply.known_number("cold_cut_ms")?,
-            cold_supply_v: reply.known_number("cold_supply_v")?,
-            cold_release_ms: reply.known_number("cold_release_ms")?,
-            supply_v: reply.known_number("supply_v")?,
-            cool_a: reply.known_number("cool_a")?,
-            warm_a: reply.known_number("warm_a")?,
-            display_k: reply.known_number("display_k")?,
-            check_k: reply.known_number("check_k")?,
+            hot_cut_ms: reply.number_or_unknown("hot_cut_ms")?,
+            hot_supply_v: reply.number_or_unknown("hot_supply_v")?,
+            hot_release_ms: reply.number_or_unknown("hot_release_ms")?,
+            cold_cut_ms: reply.number_or_unknown("cold_cut_ms")?,
+            cold_supply_v: reply.number_or_unknown("cold_supply_v")?,
+            cold_release_ms: reply.number_or_unknown("cold_release_ms")?,
+            supply_v: reply.number_or_unknown("supply_v")?,
+            cool_a: reply.number_or_unknown("cool_a")?,
+            warm_a: reply.number_or_unknown("warm_a")?,
+            display_k: reply.number_or_unknown("display_k")?,
+            check_k: reply.number_or_unknown("check_k")?,
             result: self_test_result(reply.word("result")?)?,
         })
     }

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-/// The streams that a client has ordered.
+/// The streams of telemetry that a client has asked for.
 #[derive(Clone, Debug, Default)]
-pub struct Streams {
+pub struct TelemetryStreams {
     /// Interval of all fingers that have none of their own, ms.
     interval_ms: u32,
     /// Interval of single fingers, ms.
@@ -13,7 +13,7 @@ pub struct Streams {
     last: BTreeMap<Option<u8>, u32>,
 }
 
-impl Streams {
+impl TelemetryStreams {
     /// Takes note of an interval, ms, 0 for none, of a finger or of all.
     pub fn set(&mut self, finger: Option<u8>, interval_ms: u32) {
         match finger {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use thermal_device::StateName;
 use thermal_device::safety::Fault;
 
-use super::fields::{known_number, state, state_word};
+use super::fields::{number_or_unknown, state, state_word};
 
 /// All fields of a telemetry line; what the device does not know is `None`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -78,14 +78,14 @@ impl Telemetry {
         Some(Self {
             tick: tick.parse().ok()?,
             state: state(state_name, remark)?,
-            setpoint_c: known_number(setpoint)?,
-            display_c: known_number(display)?,
-            sink_c: known_number(sink)?,
-            skin_c: known_number(skin)?,
-            room_c: known_number(room)?,
-            force_n: known_number(force)?,
-            demand_a: known_number(demand)?,
-            current_a: known_number(current)?,
+            setpoint_c: number_or_unknown(setpoint)?,
+            display_c: number_or_unknown(display)?,
+            sink_c: number_or_unknown(sink)?,
+            skin_c: number_or_unknown(skin)?,
+            room_c: number_or_unknown(room)?,
+            force_n: number_or_unknown(force)?,
+            demand_a: number_or_unknown(demand)?,
+            current_a: number_or_unknown(current)?,
             evaluations: evaluations.parse().ok()?,
             limited: remark == "limited",
         })

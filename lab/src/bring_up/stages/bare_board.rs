@@ -169,7 +169,7 @@ pub const STAGE: Stage = Stage {
         )
         .range(0.0, 0.2, Ohm)
         .basis("supply.cir R2, 8 mΩ; resolution of a hand-held meter")
-        .high("fuse F1 (10 A) is blown or not seated")
+        .high("fuse F1 (7.5 A) is blown or not seated")
         .blocks(StageId::Rails)
         .step(),
         meter(

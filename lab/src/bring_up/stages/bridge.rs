@@ -59,7 +59,7 @@ pub const LOAD: Stage = Stage {
             .basis("bench `current`: 0.0002 A by the phase of sampling; 0.03 A, 10 mV, are allowed; \
                  noise of the oscilloscope")
             .high("the current measurement has no filter: C1 (68 nF) with R1, R2 (10 kΩ), or C2, C3 \
-                 (4.7 µF) of block current missing")
+                 (4.7 µF) of block mirror missing")
             .blocks(StageId::Tile)
             .step(),
         read(
@@ -80,10 +80,10 @@ pub const LOAD: Stage = Stage {
             .range(0.43, 1.05, Ampere)
             .basis("the voltage above over 1.5 Ω; 0.05 A and 2 % of the measurement")
             .low("the measured current is too low: sense resistors R5, R6 (5 mΩ, block bridge) \
-                 smaller or bridged, amplifiers X1, X2 (INA240A2, block current) dead, PC2 (CN7-35), \
+                 smaller or bridged, amplifiers X1, X2 (INA240A2, block mirror) dead, PC2 (CN7-35), \
                  or the filter of the measurement missing")
             .high("the measured current is too high: sense resistors R5, R6 (5 mΩ, block bridge) \
-                 larger, or R3, R4 of block current wrong")
+                 larger, or R3, R4 of block mirror wrong")
             .blocks(StageId::Tile)
             .step(),
         read(
@@ -95,10 +95,10 @@ pub const LOAD: Stage = Stage {
         .basis("bench `current`: 0.05 A and 2 % of 0.8 A, 8 %; 2 % of the load, 3 % of the \
                  oscilloscope")
         .low("the current measurement shows too little: sense resistors R5, R6 (5 mΩ, block \
-                 bridge) smaller than that, R3 (15.8 kΩ) or R4 (10 kΩ) of block current, or its \
+                 bridge) smaller than that, R3 (15.8 kΩ) or R4 (10 kΩ) of block mirror, or its \
                  filter (C1 68 nF, C2, C3 4.7 µF) is missing")
         .high("the current measurement shows too much: sense resistors R5, R6 (5 mΩ, block bridge) \
-                 larger than that, R3 (15.8 kΩ) or R4 (10 kΩ) of block current, or its filter (C1 68 \
+                 larger than that, R3 (15.8 kΩ) or R4 (10 kΩ) of block mirror, or its filter (C1 68 \
                  nF, C2, C3 4.7 µF) is missing")
         .blocks(StageId::Tile)
         .step(),

@@ -20,8 +20,8 @@ pub const CHIP: Stage = Stage {
             Reading::Board(|board| Value::Word(board.bor.to_string())),
         )
             .words(&["3"])
-            .basis("level 3 resets below 2.7 V, from where on flash wait states at 180 MHz are \
-                 specified")
+            .basis("level 3 resets below some 2.8 V; flash wait states at 180 MHz are specified from \
+                 2.7 V on")
             .low("the brown-out level is not 3: set BOR_LEV of the option bytes to 00, \
                  `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=0`, then switch everything off and on")
             .blocks(StageId::Latch)
@@ -34,7 +34,8 @@ pub const CHIP: Stage = Stage {
             .words(&["hse"])
             .basis("8 MHz from the probe")
             .low("the 8 MHz clock of the probe does not reach PH0: close SB16 and SB50 (open on \
-                 MB1136 C-01), or USB came after 12 V; then reset")
+                 MB1136 C-01), or USB is not plugged in. The device restarts by itself one second after the \
+                 clock has come")
             .blocks(StageId::Latch)
             .step(),
         read(

@@ -120,8 +120,8 @@ pub const LATCH: Stage = Stage {
         .range(11.0, 13.0, Volt)
         .basis("12 V of the laboratory supply; 1 % resistors, 2 % of the 3.3 V")
         .low(
-            "the bridge supply does not come back: high-side switch M1, its gate drive M2, Q1, \
-                 R5, R6 of block switch, or the laboratory supply is in its limit",
+            "the bridge supply does not come back: high-side switch M1, its gate drive M2, M4, \
+                 Q1, R1 to R4, R11, R12 of block switch, or the laboratory supply is in its limit",
         )
         .high("the sensed supply is too high: R9 (33 kΩ) or R10 (10 kΩ) of block switch is wrong")
         .blocks(StageId::Edges)

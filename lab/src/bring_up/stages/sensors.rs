@@ -87,7 +87,7 @@ pub const STAGE: Stage = Stage {
                  the load cell are swapped, its excitation is missing, or RG (137 Ω, block force) is \
                  larger")
             .high("the gain of the force sensor is too high: RG (137 Ω, block force) is smaller, or \
-                 the load cell is not one of 1 mV/V and 10 N")
+                 the load cell is not one of 10 N with 1 mV/V or 20 N with 2 mV/V")
             .blocks(StageId::Tile)
             .step(),
         hand("Take the weight away.", &["remove weight"]),

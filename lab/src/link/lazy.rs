@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::{Link, LinkError, ReceivedLine};
 
 /// A line that is opened when the first bytes are sent: for a board whose power, and with it its serial port, comes later.
-pub struct LateLink<F> {
+pub struct LazyLink<F> {
     open: F,
     link: Option<Opened>,
     created: Instant,
@@ -18,7 +18,7 @@ struct Opened {
     since: Duration,
 }
 
-impl<F: FnMut() -> Result<Box<dyn Link>, String>> LateLink<F> {
+impl<F: FnMut() -> Result<Box<dyn Link>, String>> LazyLink<F> {
     /// A line that `open` opens, or says why it cannot.
     pub fn new(open: F) -> Self {
         Self {
@@ -29,7 +29,7 @@ impl<F: FnMut() -> Result<Box<dyn Link>, String>> LateLink<F> {
     }
 }
 
-impl<F: FnMut() -> Result<Box<dyn Link>, String>> Link for LateLink<F> {
+impl<F: FnMut() -> Result<Box<dyn Link>, String>> Link for LazyLink<F> {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         if self.link.is_none() {
             let link = (self.open)().map_err(LinkError::Gone)?;
@@ -96,7 +96,7 @@ mod tests {
     fn it_waits_without_a_device_and_opens_when_something_is_sent() {
         let sent = Rc::new(RefCell::new(Vec::new()));
         let (noted, mut is_there) = (Rc::clone(&sent), false);
-        let mut link = LateLink::new(move || {
+        let mut link = LazyLink::new(move || {
             if std::mem::replace(&mut is_there, true) {
                 Ok(Box::new(Noted(Rc::clone(&noted))) as Box<dyn Link>)
             } else {
