@@ -1,4 +1,4 @@
-//! Pictures of what a bench simulates, for whoever would rather see than read.
+//! Pictures of the waveforms that a bench simulates.
 
 use std::ops::Range;
 

@@ -72,7 +72,8 @@ impl BridgeDefects {
         } else {
             let (a, b) = legs.leg_levels();
             match (self.a.apply(a), self.b.apply(b)) {
-                // Both low is as good as both high, which does not read as inputs that are low.
+                // Both legs low drive nothing, as both legs high do. Two duties of 0 would mean inputs that are low, which make
+                // the legs high-impedance.
                 (Leg::Duty(0.0), Leg::Duty(0.0)) => (Leg::Duty(1.0), Leg::Duty(1.0)),
                 legs => legs,
             }

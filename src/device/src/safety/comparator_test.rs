@@ -24,7 +24,7 @@ const PHASE_TICKS: u16 = 20;
 /// Length of the tests of both sides, ticks of 1 ms.
 pub const COMPARATOR_TEST_TICKS: u16 = 4 * PHASE_TICKS;
 /// Ticks of 1 ms after which the fault line must show each change: pulled by a test, released after it. The release
-/// takes 3 to 8 ms, because the circuit filters the end of a test and the supply rises slowly.
+/// takes 3 to 7 ms, because the circuit filters the end of a test and the supply rises slowly.
 const FAULT_LINE_DELAY_MAX_TICKS: u16 = 10;
 /// The tests begin in ticks whose numbers are multiples of this. A power of two, so that the numbers can wrap.
 const BEGIN_INTERVAL_TICKS: u32 = 64;

@@ -108,7 +108,8 @@ impl FrozenSampleDetector {
         }
         let (changed, longest) = self.count_repeats(samples);
         if changed != 0 {
-            // A disturbance of all channels in the rest of a quiet converter is no noise.
+            // After a tick without a change the history begins anew: a single disturbance of all channels of a quiet
+            // converter does not count as its noise.
             let before = if self.nothing_changed {
                 0
             } else {
