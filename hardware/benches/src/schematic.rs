@@ -27,10 +27,11 @@ const PIN: f64 = 14.0;
 const P_CHANNEL: &str = "ipd90p03";
 
 /// What the colours mean.
-const KEY: [&str; 4] = [
+const KEY: [&str; 5] = [
     "Terminals of the same name within a block are connected. Red names leave the block; green ones do not. Ground is the block's own: power board or analog board (ground.cir).",
     "Grey, dashed: no part, but what the simulation has in its place. Numbers at boxes: pins of the usual package, recalled, check with the data sheet of the package that you buy.",
-    "Not drawn: 100 nF at every supply pin of an integrated circuit; inputs of unused gates and amplifiers go to ground. Blocks of one finger come first, then those of five.",
+    "To be built, a grey resistor or inductor is a wire that joins its two names, and a grey capacitor is nothing. 0 is ground.",
+    "Not drawn: 100 nF at every supply pin of an integrated circuit, capacitors of the gate driver (bom.csv); inputs of unused gates and amplifiers go to ground. Blocks of one finger come first, then those of five.",
     "Values: ohm, farad, henry; m is milli, M is mega.",
 ];
 
