@@ -166,11 +166,12 @@ pub enum Routine {
     },
     /// Commissions the device.
     Commission,
-    /// Looks at the state while the emergency stop is pressed, and keeps the time until the current has ended.
+    /// With the emergency stop pressed while the display is driven: keeps the time until the device has tripped by it, and
+    /// the current and the bridge supply after that.
     StopWhileDriving,
 }
 
-/// Values by the names of what has left them.
+/// Measured values, each by the name of its check or by the name that a routine gives it.
 pub type Kept = BTreeMap<String, f64>;
 
 impl Expected {

@@ -105,7 +105,7 @@ impl DeviceClock {
         }
     }
 
-    /// Makes each two spans one.
+    /// Doubles the length of a span: of the minima of two spans the less late one stays.
     fn halve(&mut self) {
         self.span_s *= 2.0;
         let mut merged: Vec<(f64, f64)> = Vec::new();
