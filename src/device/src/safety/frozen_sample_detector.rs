@@ -6,7 +6,8 @@
 //!
 //! - One channel repeats: meanwhile conversions of other thermistors scatter by two codes or more, as those of a quiet
 //!   converter do not.
-//! - All channels repeat: they have begun to do so together, and before that most of them changed in most ticks.
+//! - All channels repeat: they have begun to do so together, and before that most of them changed in most ticks. What has
+//!   begun when the bridge was turned off, or just after, does not count, because its noise may have ended with it.
 //!
 //! On a quiet converter, this detector finds nothing; the limits of the display, its second thermistor, the model of the
 //! tile and the current mirror then find what matters of a frozen channel, later.
@@ -36,9 +37,6 @@ const SCATTER_SCORE: u8 = 4;
 /// Score from which on the converter counts as noisy. One conversion with a noise of 0.4 counts gives it within 15 ticks.
 const NOISY_SCORE: u8 = 48;
 const SCORE_MAX: u8 = 200;
-/// Number of repeats of a channel that is not judged until its sum changes: it has repeated since the start, or since the
-/// bridge was turned on or off, whose noise may have ended with it.
-const NOT_JUDGED: u8 = u8::MAX;
 /// Number of signals that are monitored: five thermistors and the force sensor. The current mirror is not monitored,
 /// because its sum is zero, and thus repeats, while the bridge is off.
 const MONITORED_CHANNEL_COUNT: usize = 6;
@@ -58,7 +56,7 @@ const FROZEN_CHANNEL_FAULTS: [Fault; MONITORED_CHANNEL_COUNT] = [
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrozenSampleDetector {
     previous: [u16; MONITORED_CHANNEL_COUNT],
-    /// 0 to 254, or [`NOT_JUDGED`].
+    /// At most 255.
     repeats: [u8; MONITORED_CHANNEL_COUNT],
     /// Which channels changed in each of the last eight ticks, a byte for each tick, up to the last tick in which any did and
     /// back to the last one before it in which none did.
@@ -73,7 +71,7 @@ impl Default for FrozenSampleDetector {
     fn default() -> Self {
         Self {
             previous: [0; MONITORED_CHANNEL_COUNT],
-            repeats: [NOT_JUDGED; MONITORED_CHANNEL_COUNT],
+            repeats: [0; MONITORED_CHANNEL_COUNT],
             changes: 0,
             nothing_changed: true,
             scatter_score: 0,
@@ -104,7 +102,12 @@ impl FrozenSampleDetector {
     ) -> Result<(), Fault> {
         if bridge_is_driven != self.bridge_was_driven {
             self.bridge_was_driven = bridge_is_driven;
-            self.repeats = [NOT_JUDGED; MONITORED_CHANNEL_COUNT];
+            if bridge_is_driven {
+                // The scatter of the others may be the bridge's, which must reach all channels first.
+                self.repeats = [0; MONITORED_CHANNEL_COUNT];
+            } else if !self.nothing_changed {
+                self.changes = 0;
+            }
         }
         let (changed, longest) = self.count_repeats(samples);
         if changed != 0 {
@@ -133,7 +136,7 @@ impl FrozenSampleDetector {
     }
 
     /// Updates the repeats of all channels. Returns which channels changed, a bit for each, and the largest number of
-    /// repeats of a channel that is judged.
+    /// repeats.
     fn count_repeats(&mut self, samples: &Samples) -> (u8, u8) {
         let [display, check, sink, skin, room] = samples.thermistor_sums();
         let now = [display, check, sink, skin, room, samples.force];
@@ -144,22 +147,19 @@ impl FrozenSampleDetector {
                 *previous = now;
                 *repeats = 0;
                 changed |= 1 << i;
-            } else if *repeats < NOT_JUDGED - 1 {
-                *repeats += 1;
+            } else {
+                *repeats = repeats.saturating_add(1);
             }
-            if *repeats != NOT_JUDGED {
-                longest = longest.max(*repeats);
-            }
+            longest = longest.max(*repeats);
         }
         (changed, longest)
     }
 
     /// The fault of channels of which at least one has repeated for [`FROZEN_TICKS`], unless the converter is quiet.
     fn judge(&self) -> Result<(), Fault> {
-        let frozen = |repeats: u8| (FROZEN_TICKS..NOT_JUDGED).contains(&repeats);
         let shortest = self.repeats.iter().copied().min().unwrap_or(0);
         let longest = self.repeats.iter().copied().max().unwrap_or(0);
-        let began_together = longest < NOT_JUDGED - 1 && longest - shortest <= BEGAN_TOGETHER_TICKS;
+        let began_together = longest < u8::MAX && longest - shortest <= BEGAN_TOGETHER_TICKS;
         let had_noise = self.changes.count_ones() >= CHANGES_OF_NOISY_CHANNELS;
         if began_together && had_noise {
             return Err(Fault::SamplesFrozen);
@@ -171,7 +171,8 @@ impl FrozenSampleDetector {
             return Err(Fault::SamplesFrozen);
         }
         let first = self.repeats.iter().zip(FROZEN_CHANNEL_FAULTS);
-        let mut faults = first.filter_map(|(repeats, fault)| frozen(*repeats).then_some(fault));
+        let mut faults =
+            first.filter_map(|(repeats, fault)| (*repeats >= FROZEN_TICKS).then_some(fault));
         faults.next().map_or(Ok(()), Err)
     }
 }

@@ -110,3 +110,42 @@ fn a_quiet_converter_trips_nothing() {
         }
     }
 }
+
+/// Counted from the freeze on, or from when the bridge is turned on.
+#[test]
+fn what_has_frozen_before_the_bridge_is_turned_on_or_off_is_found_too() {
+    for driven_before in [true, false] {
+        // The first of these ticks has a last new sum.
+        for before in [2, 5, 20, 45] {
+            for (stuck, fault) in [(1 << 2, Fault::SinkFrozen), (0x3f, Fault::SamplesFrozen)] {
+                let mut converter = Converter::new(0.7, LEVELS);
+                assert!((0..2000).all(|_| converter.tick(0, driven_before).is_ok()));
+                assert!((0..before).all(|_| converter.tick(stuck, driven_before).is_ok()));
+                let found = (1..=48).find_map(|tick| {
+                    let fault = converter.tick(stuck, !driven_before).err()?;
+                    Some((tick, fault))
+                });
+                let (tick, found) = found.expect("found");
+                let at_most = if driven_before { 47 - before } else { 47 };
+                assert!(
+                    tick <= at_most && found == fault,
+                    "{driven_before} {before}: {tick} {found:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Noise that comes from the bridge comes and goes with it.
+#[test]
+fn a_bridge_whose_noise_ends_when_it_is_turned_off_trips_nothing() {
+    for quiet_counts in [0.0, 0.05, 0.1] {
+        let mut converter = Converter::new(quiet_counts, LEVELS);
+        for tick in 0..20_000 {
+            let driven = tick % 2000 < 1000;
+            converter.noise_counts = if driven { 0.7 } else { quiet_counts };
+            let checked = converter.tick(0, driven);
+            assert_eq!(checked, Ok(()), "{quiet_counts} counts, tick {tick}");
+        }
+    }
+}
