@@ -23,6 +23,9 @@ const FAR_CALIBRATED_K: f64 = 0.05;
 /// Interval of the telemetry from which the device's reading is taken, ms, and its timeout.
 const TELEMETRY_MS: u32 = 20;
 const TELEMETRY_TIMEOUT: Duration = Duration::from_millis(500);
+/// Interval of the telemetry while a person commissions, ms: a device that streams and is driven trips by `host-silent`
+/// when this program or its computer stops.
+pub const WATCHED_STREAM_MS: u32 = 500;
 /// Time between two looks at the device while the person types.
 const LOOK: Duration = Duration::from_millis(100);
 
@@ -131,7 +134,7 @@ fn device_reads_c<L: Link>(
     while line.is_some_and(|line| finger.is_some() && line.finger != finger) {
         line = client.next_telemetry(TELEMETRY_TIMEOUT)?;
     }
-    client.ask_finger(finger, &Order::Stream(0))?;
+    client.ask_finger(finger, &Order::Stream(WATCHED_STREAM_MS))?;
     Ok(line.and_then(|line| match thermistor {
         ThermistorId::Display | ThermistorId::Check => line.telemetry.display_c,
         ThermistorId::Sink => line.telemetry.sink_c,

@@ -265,9 +265,10 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             highest_c = highest_c.max(line.telemetry.display_c.unwrap_or(f64::NEG_INFINITY));
             last = Some(line.telemetry);
         }
-        self.client.ask(&Order::Stream(0))?;
+        // The stream goes on while the person reads: the device trips if this program or its computer stops.
         let reference_c = self.reference_c(ThermistorId::Display)?;
         let check_c = class_c(self.client.ask(&QueryRaw)?.check);
+        self.client.ask(&Order::Stream(0))?;
         self.keep(format!("{keep}-check"), check_c - reference_c);
         self.keep(format!("{keep}-highest"), highest_c);
         let Some(last) = last else { return Ok(()) };

@@ -126,6 +126,68 @@ fn commissioned(
     (done, screen.text)
 }
 
+/// A simulated operator who holds the thermometer into another bath than the skin's thermistor, and gives up after one try
+/// in each bath.
+struct WrongBath {
+    surroundings: SimulatedSurroundings,
+    tries: u32,
+}
+
+impl<'b> Surroundings<Bench<'b>> for WrongBath {
+    fn reference_c(
+        &mut self,
+        client: &mut Client<Bench<'b>>,
+        thermistor: ThermistorId,
+    ) -> Result<f64, SurroundingsError> {
+        let world = client.link().world();
+        let shown_c = self.surroundings.reference_c(world, thermistor);
+        let is_skin = thermistor == ThermistorId::Skin;
+        Ok(if is_skin { shown_c + 8.0 } else { shown_c })
+    }
+
+    fn put_probe_on_display(
+        &mut self,
+        _client: &mut Client<Bench<'b>>,
+        _on: bool,
+    ) -> Result<(), SurroundingsError> {
+        Ok(())
+    }
+
+    fn put_into_bath(
+        &mut self,
+        client: &mut Client<Bench<'b>>,
+        thermistor: ThermistorId,
+        bath_c: f64,
+    ) -> Result<(), SurroundingsError> {
+        let world = client.link().world();
+        (self.surroundings.put_into_bath(world, thermistor, bath_c)).unwrap();
+        Ok(())
+    }
+
+    fn reads_again(&mut self, _why: &str) -> bool {
+        self.tries += 1;
+        self.tries % 2 == 1
+    }
+
+    fn notice(&mut self, _event: &CommissioningEvent) {}
+}
+
+#[test]
+fn a_thermistor_whose_points_are_all_refused_is_named() {
+    let setup = CommissioningSetup::new(&Params::nominal(), 24.0, 1);
+    let mut engine = NativeEngine::new(setup.in_use().unwrap());
+    let mut client = Client::new(SimulatedLink::new(&mut engine));
+    let mut bath = WrongBath {
+        surroundings: SimulatedSurroundings::new(&setup),
+        tries: 0,
+    };
+    let error = commission(&mut client, None, &mut bath).unwrap_err();
+    let CommissionError::FewPoints { sensor, points, .. } = &error else {
+        panic!("{error}");
+    };
+    assert_eq!((*sensor, *points), ("skin", 0), "{error}");
+}
+
 /// The numbers of a line of settings.
 fn numbers(line: &str) -> Vec<f64> {
     line.parse::<SettingsLine>().expect("a line of settings");

@@ -41,9 +41,11 @@ pub enum CommissionError {
     TooLong(&'static str),
     /// The display reached a steady state at too few temperatures.
     #[error(
-        "commissioning: the display came to rest at {points} temperatures; needed are {needed} (the last: {why})"
+        "commissioning: the {sensor} thermistor was calibrated at {points} temperatures; needed are {needed} (refused last: {why})"
     )]
     FewPoints {
+        /// The word of the thermistor.
+        sensor: &'static str,
         /// Points that were accepted.
         points: usize,
         /// Required number of points.

@@ -26,6 +26,8 @@ const FROM_BORDER_CODES: u32 = 22;
 const MS_PER_DEGREE: f64 = 1000.0;
 /// Required number of points of the display.
 const POINTS_REQUIRED: usize = 9;
+/// Required number of points of every other thermistor: those of a straight line that does not pass through all of them.
+const LINE_POINTS_REQUIRED: usize = 3;
 /// Settling time of the display at a point, ms, and interval and number of further attempts.
 const SETTLE_MS: u64 = 2500;
 const RETRY_MS: u64 = 800;
@@ -245,7 +247,7 @@ impl<L: Link> Procedure<'_, L> {
 
     /// Calibrates both thermistors of the display, from warm to cold.
     fn calibrate_display(&mut self) -> Result<(), CommissionError> {
-        let (mut points, mut why) = (0, String::new());
+        let (mut points, mut check_points, mut why) = (0, 0, String::new());
         for hold_c in hold_temperatures_c() {
             let distance_k = (hold_c - self.reference_c(ThermistorId::Display)?).abs();
             self.client.ask_finger(self.finger, &Order::Hold(hold_c))?;
@@ -264,7 +266,10 @@ impl<L: Link> Procedure<'_, L> {
                 match self.calibrate_point(ThermistorId::Display)? {
                     None => {
                         points += 1;
-                        self.calibrate_point(ThermistorId::Check)?;
+                        match self.calibrate_point(ThermistorId::Check)? {
+                            None => check_points += 1,
+                            Some(refused) => why = refused,
+                        }
                         break;
                     }
                     Some(refused) => why = refused,
@@ -272,14 +277,8 @@ impl<L: Link> Procedure<'_, L> {
                 self.wait_ms(RETRY_MS)?;
             }
         }
-        if points < POINTS_REQUIRED {
-            return Err(CommissionError::FewPoints {
-                points,
-                needed: POINTS_REQUIRED,
-                why,
-            });
-        }
-        Ok(())
+        require_points(ThermistorId::Display, points, POINTS_REQUIRED, why.clone())?;
+        require_points(ThermistorId::Check, check_points, LINE_POINTS_REQUIRED, why)
     }
 
     /// Calibrates a thermistor in one bath after another; a point at a step of the converter may be refused.
@@ -288,17 +287,25 @@ impl<L: Link> Procedure<'_, L> {
         thermistor: ThermistorId,
         baths_c: [f64; 5],
     ) -> Result<(), CommissionError> {
+        let (mut points, mut why) = (0, String::new());
         for bath_c in baths_c {
             self.surroundings
                 .put_into_bath(self.client, thermistor, bath_c)?;
             self.wait_ms(BATH_MS)?;
-            while let Some(refused) = self.calibrate_point(thermistor)? {
-                if !self.surroundings.reads_again(&refused) {
+            loop {
+                match self.calibrate_point(thermistor)? {
+                    None => {
+                        points += 1;
+                        break;
+                    }
+                    Some(refused) => why = refused,
+                }
+                if !self.surroundings.reads_again(&why) {
                     break;
                 }
             }
         }
-        Ok(())
+        require_points(thermistor, points, LINE_POINTS_REQUIRED, why)
     }
 
     fn reference_c(&mut self, thermistor: ThermistorId) -> Result<f64, CommissionError> {
@@ -348,4 +355,23 @@ impl<L: Link> Procedure<'_, L> {
             }
         }
     }
+}
+
+/// Refuses a thermistor with too few points.
+fn require_points(
+    thermistor: ThermistorId,
+    points: usize,
+    needed: usize,
+    why: String,
+) -> Result<(), CommissionError> {
+    if points < needed {
+        let sensor = thermistor_word(thermistor);
+        return Err(CommissionError::FewPoints {
+            sensor,
+            points,
+            needed,
+            why,
+        });
+    }
+    Ok(())
 }
