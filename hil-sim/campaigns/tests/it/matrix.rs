@@ -47,7 +47,7 @@ fn every_kind_of_fault_has_an_entry_of_its_own() {
 }
 
 /// What the guard can name is the right answer to something, but for what cannot be injected: settings that are stored
-/// wrong, and force samples that repeat themselves.
+/// wrong, force samples that repeat themselves, and option bytes, which a start reads (see the tests of the chip).
 #[test]
 fn every_reason_of_the_guard_is_right_for_an_entry() {
     let fault_cases: Vec<_> = fault_cases()
@@ -67,7 +67,14 @@ fn every_reason_of_the_guard_is_right_for_an_entry() {
         .iter()
         .filter(|fault| !right.contains(fault))
         .collect();
-    assert_eq!(left, [&Fault::ForceFrozen, &Fault::SettingsCorrupt]);
+    assert_eq!(
+        left,
+        [
+            &Fault::ForceFrozen,
+            &Fault::BrownOutLevel,
+            &Fault::SettingsCorrupt
+        ]
+    );
 }
 
 #[test]
