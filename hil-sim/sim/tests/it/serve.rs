@@ -285,11 +285,11 @@ fn a_client_that_floods_the_line_is_held_to_its_baud_rate_and_the_next_one_is_an
     let client = served.connect();
     let mut reading = client.0.get_ref().try_clone().expect("a second handle");
     let mut flooding = client.0.get_ref().try_clone().expect("a third handle");
+    let before = served.ms.load(Ordering::Relaxed);
     // Ends with an error when the client vanishes.
     let flood =
         thread::spawn(move || while flooding.write_all(&b"state\n".repeat(1000)).is_ok() {});
     let mut received = [0; 100_000];
-    let before = served.ms.load(Ordering::Relaxed);
     reading.read_exact(&mut received).expect("answers");
     let answers = received.iter().filter(|byte| **byte == b'\n').count();
     // A line of six bytes takes 0.06 ms; `Counted` asserts that no more bytes arrive.
