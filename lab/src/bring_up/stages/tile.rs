@@ -41,14 +41,27 @@ const fn response(
         .step()
 }
 
-/// A thermistor against the reference thermometer at rest.
-const fn at_rest(name: &'static str, what: &'static str, finding: &'static str) -> Step {
-    read(name, what, Reading::Kept)
+/// A thermistor, at this input, against the reference thermometer at rest.
+macro_rules! at_rest {
+    ($name:literal, $thermistor:literal, $input:literal) => {
+        read(
+            $name,
+            concat!($thermistor, " less reference"),
+            Reading::Kept,
+        )
         .range(-1.2, 1.2, Kelvin)
         .basis("what calibration corrects: 1.2 K; 1 % of thermistor and beta are 0.4 K")
-        .finding(finding)
+        .finding(concat!(
+            "the ",
+            $thermistor,
+            " (",
+            $input,
+            ") reads another temperature than the reference thermometer at its place: a 10 kΩ \
+             thermistor of beta 3950 K? In its place? Wires swapped?"
+        ))
         .blocks(StageId::Commissioning)
         .step()
+    };
 }
 
 /// A display thermistor against the reference thermometer away from 25 °C.
@@ -89,41 +102,11 @@ pub const TILE: Stage = Stage {
         ),
         routine(Routine::Wait(3000)),
         routine(Routine::Thermistors),
-        at_rest(
-            "display-at-rest",
-            "display thermistor less reference",
-            "the display thermistor (PA0, A0) reads another temperature than the reference \
-                 thermometer at its place: a 10 kΩ thermistor of beta 3950 K? In its place? Wires \
-                 swapped?",
-        ),
-        at_rest(
-            "check-at-rest",
-            "second display thermistor less reference",
-            "the second display thermistor (PA1, A1) reads another temperature than the \
-                 reference thermometer at its place: a 10 kΩ thermistor of beta 3950 K? In its place? \
-                 Wires swapped?",
-        ),
-        at_rest(
-            "sink-at-rest",
-            "sink thermistor less reference",
-            "the sink thermistor (PA4, A2) reads another temperature than the reference \
-                 thermometer at its place: a 10 kΩ thermistor of beta 3950 K? In its place? Wires \
-                 swapped?",
-        ),
-        at_rest(
-            "skin-at-rest",
-            "skin thermistor less reference",
-            "the skin thermistor (PB0, A3) reads another temperature than the reference \
-                 thermometer at its place: a 10 kΩ thermistor of beta 3950 K? In its place? Wires \
-                 swapped?",
-        ),
-        at_rest(
-            "room-at-rest",
-            "room thermistor less reference",
-            "the room thermistor (PC1, A4) reads another temperature than the reference \
-                 thermometer at its place: a 10 kΩ thermistor of beta 3950 K? In its place? Wires \
-                 swapped?",
-        ),
+        at_rest!("display-at-rest", "display thermistor", "PA0, A0"),
+        at_rest!("check-at-rest", "second display thermistor", "PA1, A1"),
+        at_rest!("sink-at-rest", "sink thermistor", "PA4, A2"),
+        at_rest!("skin-at-rest", "skin thermistor", "PB0, A3"),
+        at_rest!("room-at-rest", "room thermistor", "PC1, A4"),
         routine(Routine::SelfTest),
         pulse(
             "cool-current",
