@@ -14,6 +14,10 @@ const ALIGN: u32 = 1 << 11;
 const SWSTART: u32 = 1 << 30;
 /// Sample times in ADC clock cycles (13.13.4).
 const SAMPLE: [u64; 8] = [3, 15, 28, 56, 84, 112, 144, 480];
+/// CCR: power of the temperature sensor and of the internal reference.
+const TSVREFE: u32 = 1 << 23;
+/// Time from ADON until conversions are accurate, at most (DS10693, t_STAB).
+const STABILISATION_US: u64 = 3;
 /// Highest ADC clock at 2.4 to 3.6 V (DS10693, ADC characteristics).
 const ADCCLK_MAX_HZ: u32 = 36_000_000;
 
@@ -37,6 +41,8 @@ pub(crate) struct Adc {
     /// CPU cycles per APB2 clock.
     bus_divider: u64,
     pclk2_hz: u32,
+    /// Cycle from which conversions are accurate.
+    stable_at: u64,
     /// Position in the running sequence.
     position: u32,
     dma_ended: bool,
@@ -108,18 +114,45 @@ impl Adc {
         }
     }
 
+    /// Whether a conversion may start at `now`.
+    fn check_start(&self, now: u64) -> Answer<()> {
+        if now < self.stable_at {
+            return Err(Refusal::Misuse(
+                "a conversion starts less than 3 us after ADON was set (DS10693, t_STAB)",
+            ));
+        }
+        for channel in (0..self.length()).map(|position| self.channel_at(position)) {
+            match channel {
+                0..=15 => {}
+                17 | 18 if self.ccr & TSVREFE != 0 => {}
+                17 | 18 => {
+                    return Err(Refusal::Misuse(
+                        "channel 17 or 18 is converted while ADC_CCR.TSVREFE is 0 (RM0390 13.10)",
+                    ));
+                }
+                _ => {
+                    return Err(Refusal::NotModelled(
+                        "ADC channels above 18, and channel 16",
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Starts a sequence, at an edge of the selected trigger or by SWSTART. Ignored during a sequence, when off, and after an
     /// overrun with DMA until OVR is cleared (13.8.1).
-    pub fn start(&mut self, now: u64) {
+    pub fn start(&mut self, now: u64) -> Answer<()> {
         let overrun = self.sr & OVR != 0 && self.cr2 & DMA != 0;
         if self.cr2 & ADON != 0 && self.due == u64::MAX && !overrun {
+            self.check_start(now)?;
             self.position = 0;
             self.sr |= STRT;
-            if self.stuck {
-                return;
+            if !self.stuck {
+                self.due = now + self.conversion_cycles(self.channel());
             }
-            self.due = now + self.conversion_cycles(self.channel());
         }
+        Ok(())
     }
 
     /// No conversion ends until the converter is reset.
@@ -218,12 +251,32 @@ impl Adc {
                 self.cr1 = value;
             }
             0x08 => self.write_cr2(value, now)?,
-            0x0c | 0x10 => self.smpr[(offset as usize - 0x0c) / 4] = value,
-            0x24 | 0x28 => self.limits[(offset as usize - 0x24) / 4] = value,
-            0x2c..=0x34 => self.sqr[(offset as usize - 0x2c) / 4] = value,
+            0x0c | 0x10 => {
+                // ten channels in SMPR2, nine above them in SMPR1
+                let allowed = if offset == 0x0c {
+                    0x07ff_ffff
+                } else {
+                    0x3fff_ffff
+                };
+                only(value, allowed, "ADC_SMPR reserved bits")?;
+                self.smpr[(offset as usize - 0x0c) / 4] = value;
+            }
+            0x24 | 0x28 => {
+                only(value, 0xfff, "ADC_HTR or ADC_LTR reserved bits")?;
+                self.limits[(offset as usize - 0x24) / 4] = value;
+            }
+            0x2c..=0x34 => {
+                let allowed = if offset == 0x2c {
+                    0x00ff_ffff
+                } else {
+                    0x3fff_ffff
+                };
+                only(value, allowed, "ADC_SQR reserved bits")?;
+                self.sqr[(offset as usize - 0x2c) / 4] = value;
+            }
             0x38 => only(value, 0, "ADC_JSQR (injected channels)")?,
             0x304 => {
-                only(value, 0x00c3_0000, "ADC_CCR multi-ADC modes")?;
+                only(value, 0x0083_0000, "ADC_CCR multi-ADC modes, or VBATE")?;
                 self.ccr = value;
             }
             _ => return Err(Refusal::Offset),
@@ -251,6 +304,10 @@ impl Adc {
                     max_hz: ADCCLK_MAX_HZ,
                 });
             }
+            if self.cr2 & ADON == 0 {
+                let hclk_hz = self.bus_divider * u64::from(self.pclk2_hz);
+                self.stable_at = now + (STABILISATION_US * hclk_hz).div_ceil(1_000_000);
+            }
         } else {
             self.due = u64::MAX;
         }
@@ -260,7 +317,7 @@ impl Adc {
         }
         self.cr2 = value & !SWSTART;
         if value & SWSTART != 0 {
-            self.start(now);
+            self.start(now)?;
         }
         Ok(())
     }
@@ -270,13 +327,36 @@ impl Adc {
 mod tests {
     use super::*;
 
-    /// PCLK2 = 90 MHz at HCLK = 180 MHz, ADCCLK = PCLK2/4 = 22.5 MHz: 8 CPU cycles per ADC clock.
+    /// PCLK2 = 90 MHz at HCLK = 180 MHz, ADCCLK = PCLK2/4 = 22.5 MHz: 8 CPU cycles per ADC clock; on for long enough.
     fn adc(cr1: u32, cr2: u32) -> Adc {
         let mut adc = Adc::new(2, 90_000_000);
         adc.write(0x304, 1 << 16, 0).unwrap();
         adc.write(0x04, cr1, 0).unwrap();
         adc.write(0x08, cr2 | ADON, 0).unwrap();
+        adc.stable_at = 0;
         adc
+    }
+
+    #[test]
+    fn a_conversion_in_the_first_3_us_is_misuse() {
+        for (after_cycles, allowed) in [(0, false), (539, false), (540, true)] {
+            let mut adc = Adc::new(2, 90_000_000);
+            adc.write(0x304, 1 << 16, 0).unwrap();
+            adc.write(0x08, ADON, 1000).unwrap();
+            let by_software = adc.write(0x08, ADON | SWSTART, 1000 + after_cycles);
+            assert_eq!(by_software.is_ok(), allowed, "{after_cycles}");
+        }
+    }
+
+    #[test]
+    fn internal_channels_need_their_power() {
+        for channel in [17, 18] {
+            let mut adc = adc(0, 0);
+            adc.write(0x34, channel, 0).unwrap();
+            assert!(matches!(adc.start(0), Err(Refusal::Misuse(_))));
+            adc.write(0x304, TSVREFE | 1 << 16, 0).unwrap();
+            assert_eq!(adc.start(0), Ok(()));
+        }
     }
 
     #[test]
@@ -285,7 +365,7 @@ mod tests {
             let mut adc = adc(0, 0);
             adc.write(0x10, smp << 12, 0).unwrap();
             adc.write(0x34, 4, 0).unwrap();
-            adc.start(1000);
+            adc.start(1000).unwrap();
             assert_eq!(adc.due, 1000 + (sample + 12) * 8);
         }
     }
@@ -295,14 +375,14 @@ mod tests {
         let mut adc = adc(1 << 8, 0);
         adc.write(0x34, 7 | 11 << 5, 0).unwrap();
         adc.write(0x2c, 1 << 20, 0).unwrap();
-        adc.start(0);
+        adc.start(0).unwrap();
         assert_eq!((adc.channel(), adc.due), (7, 120));
         adc.finish(1);
         assert_eq!(
             (adc.read(0).unwrap() & EOC, adc.channel(), adc.due),
             (0, 11, 240)
         );
-        adc.start(200);
+        adc.start(200).unwrap();
         assert_eq!(adc.due, 240, "a trigger during a sequence is lost");
         adc.finish(2);
         assert_eq!((adc.read(0).unwrap() & EOC, adc.due), (EOC, u64::MAX));
@@ -315,21 +395,21 @@ mod tests {
     #[test]
     fn an_unread_item_overruns_and_stops_dma_requests() {
         let mut adc = adc(0, DMA | DDS | CONT);
-        adc.start(0);
+        adc.start(0).unwrap();
         adc.finish(1);
         assert!(adc.wants_dma());
         adc.finish(2);
         assert!(!adc.wants_dma(), "the first was not read");
         assert_eq!(adc.read(0).unwrap() & OVR, OVR);
         assert_eq!(adc.data(), 1, "the old item stays");
-        adc.start(5000);
+        adc.start(5000).unwrap();
         assert_eq!(adc.due, u64::MAX, "until OVR is cleared");
     }
 
     #[test]
     fn without_dds_requests_end_with_the_stream() {
         let mut adc = adc(0, DMA | CONT);
-        adc.start(0);
+        adc.start(0).unwrap();
         adc.finish(1);
         assert!(adc.wants_dma());
         adc.dma_read(true);

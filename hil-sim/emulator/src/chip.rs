@@ -2,7 +2,7 @@
 //! register accesses enter through `chip/bus.rs`.
 use super::adc::{Adc, Trigger};
 use super::dma::{self, Dma, Route, Served};
-use super::exti::Exti;
+use super::exti::{Exti, lines};
 use super::flash::Flash;
 use super::gpio::{Mode, PORTS, Port};
 use super::iwdg::Iwdg;
@@ -10,6 +10,7 @@ use super::nvic::{Nvic, exception};
 use super::ppb::Ppb;
 use super::ram::Memory;
 use super::rcc::{Clocks, HSI_HZ, Rcc};
+use super::stop::Refusal;
 use super::tim::{self, Output, Tim};
 use super::timebase::Timebase;
 use super::usart::Usart;
@@ -17,13 +18,19 @@ use super::wwdg::Wwdg;
 use super::{LegState, Wiring};
 use thermal_sim::processor::{ChipState, ResetCause};
 
+mod access_width;
+mod alternate_outputs;
 mod bus;
 mod debug_freeze;
 mod failures;
+#[cfg(test)]
+mod tests;
 
-/// Modelled timers, and the indices of those that the chip names: TIM1 to TIM7, TIM8, TIM10, TIM11.
+/// Modelled timers, and the indices of those that the chip names; in order TIM1 to TIM7, TIM8, TIM10, TIM11.
 const TIMERS: usize = 10;
 const TIM1: usize = 0;
+const TIM2: usize = 1;
+const TIM5: usize = 4;
 const TIM8: usize = 7;
 const TIM10: usize = 8;
 const TIM11: usize = 9;
@@ -42,6 +49,8 @@ const TIMER_PINS: [(u8, u8, u8, usize, usize); 10] = [
 ];
 /// Break inputs (same table): timer, port, bit, alternate function.
 const BREAK_PINS: [(usize, u8, u8, u8); 3] = [(TIM1, 0, 6, 1), (TIM1, 1, 12, 1), (TIM8, 0, 6, 3)];
+/// ADC_CR2, which selects the trigger.
+const ADC_CR2: u32 = 0x4001_2008;
 const WWDG_IRQ: usize = 0;
 const ADC_IRQ: usize = 18;
 const USART2_IRQ: usize = 38;
@@ -80,6 +89,8 @@ pub(crate) struct Chip<W> {
     /// Cycles asleep since power-up.
     pub slept: u64,
     pub reset: Option<ResetCause>,
+    /// The first use of a device between register accesses that a manual forbids, and the register that set it up.
+    pub misuse: Option<(u32, Refusal)>,
     /// Cycle of the next event of any device.
     pub next: u64,
 }
@@ -121,6 +132,7 @@ impl<W: Wiring> Chip<W> {
             dma_request_possible: false,
             slept: 0,
             reset: None,
+            misuse: None,
             next: u64::MAX,
         }
     }
@@ -302,7 +314,10 @@ impl<W: Wiring> Chip<W> {
                 _ => None,
             };
             if source.is_some() && source == self.adc.trigger() {
-                self.adc.start(at);
+                let result = self.adc.start(at);
+                if let (Err(refusal), None) = (result, self.misuse) {
+                    self.misuse = Some((ADC_CR2, refusal));
+                }
             }
         }
     }
@@ -361,20 +376,15 @@ impl<W: Wiring> Chip<W> {
                 }
             }
         }
-        if !self.exti.is_idle() {
+        if self.exti.watched() != 0 {
             self.sample_exti(at);
         }
     }
 
     fn sample_exti(&mut self, at: u64) {
-        let mut levels = [None; 16];
-        for (line, port) in self.exti.watched() {
-            levels[usize::from(line)] = Some(self.pin(port, line));
-        }
-        for (line, level) in levels.iter().enumerate() {
-            if let Some(level) = level {
-                self.exti.set_level(line as u8, *level);
-            }
+        for line in lines(self.exti.watched()) {
+            let level = self.pin(self.exti.port(line), line);
+            self.exti.set_level(line, level);
         }
         self.exti_changed(at);
     }

@@ -69,7 +69,10 @@ pub(crate) enum Served {
 struct Stream {
     cr: u32,
     left: u32,
+    /// Items of the present round.
     items: u32,
+    /// NDTR as software wrote it, with which a new round begins.
+    programmed: u32,
     par: u32,
     m: [u32; 2],
     fcr: u32,
@@ -101,10 +104,10 @@ impl Dma {
         (IRQ[self.number - 1][stream], raised)
     }
 
-    /// Whether a stream is enabled for this request.
+    /// Whether a stream is enabled for this request and has items left.
     pub fn listens(&self, route: &Route) -> bool {
         let s = &self.streams[route.stream];
-        s.cr & EN != 0 && s.cr >> 25 & 7 == route.channel
+        s.cr & EN != 0 && s.left != 0 && s.cr >> 25 & 7 == route.channel
     }
 
     /// Serves a request: stores `value` in memory, or loads an item from memory.
@@ -140,7 +143,7 @@ impl Dma {
                 s.cr ^= CT;
             }
             if s.cr & (CIRC | DBM) != 0 {
-                s.left = s.items;
+                s.begin_round();
             } else {
                 s.cr &= !EN;
             }
@@ -209,7 +212,7 @@ impl Dma {
         let enabled = s.cr & EN != 0;
         match register {
             0x00 => return s.write_cr(value, number, stream),
-            0x04 if !enabled => s.left = value & 0xffff,
+            0x04 if !enabled => (s.left, s.programmed) = (value & 0xffff, value & 0xffff),
             0x08 if !enabled => s.par = value,
             // 9.5.8, 9.5.9: the buffer that is not the current target may change while running
             0x0c | 0x10 if enabled => {
@@ -236,6 +239,12 @@ impl Dma {
 }
 
 impl Stream {
+    /// Reloads NDTR (9.5.6: in circular mode, and when a completed stream is enabled again).
+    fn begin_round(&mut self) {
+        self.left = self.programmed;
+        self.items = self.programmed;
+    }
+
     /// Disables the stream and sets the transfer-error flag.
     fn fail(&mut self) {
         self.flags |= TEIF;
@@ -264,6 +273,11 @@ impl Stream {
             )?;
             self.cr = value;
             return Ok(());
+        }
+        if value & EN != 0 && self.flags != 0 {
+            return Err(Refusal::Misuse(
+                "EN is set while flags of the stream stand in LISR or HISR; they must be cleared first (RM0390 9.5.5)",
+            ));
         }
         self.cr = value;
         if value & EN == 0 {
@@ -297,7 +311,7 @@ impl Stream {
             return Err(Refusal::NotModelled("DMA SxCR.PSIZE = reserved"));
         }
         if self.left == 0 {
-            self.cr &= !EN; // nothing to do
+            self.begin_round();
         }
         self.items = self.left;
         Ok(())
@@ -401,6 +415,48 @@ mod tests {
             (TEIF, 0)
         );
         assert_eq!(dma.request_line(0), (56, true));
+    }
+
+    #[test]
+    fn a_completed_stream_begins_anew_when_it_is_enabled_again() {
+        let (mut dma, mut ram) = (adc_stream(0, 2), Buffer([0; 16]));
+        for value in 1..=2 {
+            dma.serve(&ADC1[0], value, &mut ram);
+        }
+        let (cr, left) = (dma.read(0x10).unwrap(), dma.read(0x14).unwrap());
+        assert_eq!((cr & EN, left), (0, 0));
+        dma.write(0x08, 0x3d).unwrap();
+        dma.write(0x10, cr | EN).unwrap();
+        assert_eq!(dma.read(0x14).unwrap(), 2, "RM0390 9.5.6");
+        dma.serve(&ADC1[0], 7, &mut ram);
+        assert_eq!(ram.0[..4], [7, 0, 2, 0]);
+    }
+
+    #[test]
+    fn a_stream_without_items_serves_nothing() {
+        let (mut dma, mut ram) = (adc_stream(0, 0), Buffer([0; 16]));
+        assert_eq!(dma.read(0x10).unwrap() & EN, EN);
+        assert_eq!(dma.serve(&ADC1[0], 1, &mut ram), Served::No);
+        assert_eq!(dma.read(0x00).unwrap(), 0);
+    }
+
+    #[test]
+    fn a_stream_whose_flags_stand_must_not_be_enabled() {
+        let (mut dma, mut ram) = (adc_stream(0, 2), Buffer([0; 16]));
+        for value in 1..=2 {
+            dma.serve(&ADC1[0], value, &mut ram);
+        }
+        let cr = dma.read(0x10).unwrap() | EN;
+        for cleared in [0, TCIF, HTIF] {
+            dma.write(0x08, cleared).unwrap();
+            let misused = cleared != HTIF;
+            let answer = dma.write(0x10, cr);
+            assert_eq!(
+                matches!(answer, Err(Refusal::Misuse(_))),
+                misused,
+                "{cleared:#x}"
+            );
+        }
     }
 
     #[test]

@@ -12,30 +12,37 @@ const GROUPS: [(usize, u32); 7] = [
     (40, 0xfc00),
 ];
 
+/// Numbers of the bits that are set in a mask of the lines.
+pub(crate) fn lines(mask: u32) -> impl Iterator<Item = u8> {
+    (0..16u8).filter(move |line| mask >> line & 1 != 0)
+}
+
 #[derive(Default)]
 pub(crate) struct Exti {
     imr: u32,
     rtsr: u32,
     ftsr: u32,
+    /// SWIER, which a write of 1 to PR clears.
+    software: u32,
     pr: u32,
     levels: u32,
     exticr: [u32; 4],
 }
 
 impl Exti {
-    /// Lines whose pins must be sampled, as `(line, port)`.
-    pub fn watched(&self) -> impl Iterator<Item = (u8, usize)> + '_ {
-        let lines = self.imr & (self.rtsr | self.ftsr);
-        (0..16u8).filter(move |l| lines >> l & 1 != 0).map(|l| {
-            (
-                l,
-                (self.exticr[usize::from(l / 4)] >> (4 * (l % 4)) & 0xf) as usize,
-            )
-        })
+    /// Lines whose pins must be sampled, one bit each.
+    pub const fn watched(&self) -> u32 {
+        self.imr & (self.rtsr | self.ftsr)
     }
 
-    pub fn is_idle(&self) -> bool {
-        self.imr & (self.rtsr | self.ftsr) == 0
+    /// Port whose pin is connected to a line.
+    pub const fn port(&self, line: u8) -> usize {
+        (self.exticr[line as usize / 4] >> (4 * (line % 4)) & 0xf) as usize
+    }
+
+    /// The level of a line whose pin was not watched before: it is where the next edge starts, and no edge itself.
+    pub fn start_from_level(&mut self, line: u8, level: bool) {
+        self.levels = self.levels & !(1 << line) | u32::from(level) << line;
     }
 
     /// New level of a line's pin.
@@ -63,7 +70,7 @@ impl Exti {
             0x04 => 0,
             0x08 => self.rtsr,
             0x0c => self.ftsr,
-            0x10 => 0,
+            0x10 => self.software,
             0x14 => self.pr,
             _ => return Err(Refusal::Offset),
         })
@@ -76,8 +83,14 @@ impl Exti {
             0x04 => only(value, 0, "EXTI_EMR")?,
             0x08 => self.rtsr = value,
             0x0c => self.ftsr = value,
-            0x10 => self.pr |= value & self.imr,
-            0x14 => self.pr &= !value,
+            0x10 => {
+                self.pr |= value & !self.software & self.imr;
+                self.software = value;
+            }
+            0x14 => {
+                self.pr &= !value;
+                self.software &= !value;
+            }
             _ => return Err(Refusal::Offset),
         }
         Ok(())
@@ -141,6 +154,16 @@ mod tests {
         exti.write(0x00, 1 << 13).unwrap();
         exti.write(0x08, 1 << 13).unwrap();
         exti.write_syscfg(0x14, 2 << 4).unwrap();
-        assert_eq!(exti.watched().collect::<Vec<_>>(), [(13, 2)]);
+        assert_eq!((exti.watched(), exti.port(13)), (1 << 13, 2));
+    }
+
+    #[test]
+    fn a_software_interrupt_pends_once_until_its_pending_bit_is_cleared() {
+        let mut exti = Exti::default();
+        exti.write(0x00, 1 << 2).unwrap();
+        exti.write(0x10, 1 << 2).unwrap();
+        assert_eq!((exti.read(0x10), exti.read(0x14)), (Ok(1 << 2), Ok(1 << 2)));
+        exti.write(0x14, 1 << 2).unwrap();
+        assert_eq!((exti.read(0x10), exti.read(0x14)), (Ok(0), Ok(0)));
     }
 }

@@ -4,6 +4,9 @@ use super::stop::{Answer, Refusal, only};
 /// Ports of the chip.
 pub(crate) const PORTS: usize = 8;
 
+/// Offset of the input data register.
+pub(crate) const INPUT_DATA: u32 = 0x10;
+
 /// One port of 16 pins.
 #[derive(Default)]
 pub(crate) struct Port {
@@ -49,10 +52,15 @@ impl Port {
         }
     }
 
+    /// Whether the pin's driver only pulls low.
+    pub fn is_open_drain(&self, bit: u8) -> bool {
+        self.otyper >> bit & 1 != 0
+    }
+
     /// Level that the pin drives as a general-purpose output; `None` if it is not an output, or open-drain and high.
     pub fn output(&self, bit: u8) -> Option<bool> {
         let high = self.odr >> bit & 1 != 0;
-        let floats = high && self.otyper >> bit & 1 != 0;
+        let floats = high && self.is_open_drain(bit);
         (self.mode(bit) == Mode::Output && !floats).then_some(high)
     }
 
@@ -78,7 +86,7 @@ impl Port {
             0x04 => self.otyper,
             0x08 => self.ospeedr,
             0x0c => self.pupdr,
-            0x10 => (0..16)
+            INPUT_DATA => (0..16)
                 .filter(|b| self.level(*b, external(*b)))
                 .map(|b| 1 << b)
                 .sum(),

@@ -4,6 +4,9 @@
 use super::nvic::{Nvic, exception};
 use super::stop::{Answer, Refusal, only};
 
+/// Bits of CR, APB1_FZ and APB2_FZ (RM0390 33.16.3 to 33.16.5).
+const DBGMCU_BITS: [u32; 3] = [0xe7, 0x07e0_1dff, 0x0007_0003];
+
 #[derive(Default)]
 pub(crate) struct Ppb {
     systick_csr: u32,
@@ -145,7 +148,9 @@ impl Ppb {
             0xe000_ef40 => 0x1011_0021,
             0xe000_ef44 => 0x1100_0011,
             0xe004_2000 => 0x1000_6421,
-            0xe004_2004..=0xe004_200c => self.dbgmcu[(address as usize - 0xe004_2004) / 4],
+            0xe004_2004 | 0xe004_2008 | 0xe004_200c => {
+                self.dbgmcu[(address as usize - 0xe004_2004) / 4]
+            }
             _ => return Err(Refusal::Offset),
         })
     }
@@ -246,7 +251,11 @@ impl Ppb {
                 }
                 self.fpccr = value & 0xc000_0000;
             }
-            0xe004_2004..=0xe004_200c => self.dbgmcu[(address as usize - 0xe004_2004) / 4] = value,
+            0xe004_2004 | 0xe004_2008 | 0xe004_200c => {
+                let register = (address as usize - 0xe004_2004) / 4;
+                only(value, DBGMCU_BITS[register], "DBGMCU reserved bits")?;
+                self.dbgmcu[register] = value;
+            }
             _ => return Err(Refusal::Offset),
         }
         Ok(false)

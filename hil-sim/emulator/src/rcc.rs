@@ -64,6 +64,11 @@ const ENR_NAMES: [&str; 5] = [
     "RCC_APB2ENR",
 ];
 
+/// Bits of the reset, enable and low-power enable registers that the chip has, in the order of [`ENR_NAMES`] (6.3.5 to 6.3.19).
+const RESET_BITS: [u32; 5] = [0x2060_10ff, 0x81, 0x3, 0x3fff_c9ff, 0x00c7_7933];
+const ENABLE_BITS: [u32; 5] = [0x6064_10ff, 0x81, 0x3, 0x3fff_c9ff, 0x00c7_7f33];
+const LOW_POWER_BITS: [u32; 5] = [0x6067_90ff, 0x81, 0x3, 0x3fff_c9ff, 0x00c7_7f33];
+
 #[derive(Default)]
 pub(crate) struct Rcc {
     cr: u32,
@@ -170,16 +175,27 @@ impl Rcc {
             0x08 => self.cfgr | (self.cfgr & 3) << 2,
             // of the clock interrupts only that of the clock security system is modelled
             0x0c => u32::from(self.clock_failure) << 7,
-            0x10 | 0x14 | 0x18 => self.rstr[(offset / 4 - 4) as usize],
-            0x20 | 0x24 => self.rstr[(offset / 4 - 5) as usize],
-            0x30 | 0x34 | 0x38 => self.enr[(offset / 4 - 12) as usize],
-            0x40 | 0x44 => self.enr[(offset / 4 - 13) as usize],
-            0x50 | 0x54 | 0x58 => self.lpenr[(offset / 4 - 20) as usize],
-            0x60 | 0x64 => self.lpenr[(offset / 4 - 21) as usize],
+            0x10..=0x6c => {
+                let bus = Self::bus(offset)?;
+                match offset >> 4 {
+                    1 | 2 => self.rstr[bus],
+                    3 | 4 => self.enr[bus],
+                    _ => self.lpenr[bus],
+                }
+            }
             0x74 => self.csr | ready(LSI) << 1,
             0x8c => self.dckcfgr,
             _ => return Err(Refusal::Offset),
         })
+    }
+
+    /// Bus of a reset or enable register: AHB1, AHB2, AHB3, gap, APB1, APB2, gap, gap, three times.
+    fn bus(offset: u32) -> Answer<usize> {
+        match (offset - 0x10) / 4 % 8 {
+            bus @ 0..=2 => Ok(bus as usize),
+            bus @ 4..=5 => Ok(bus as usize - 1),
+            _ => Err(Refusal::Offset),
+        }
     }
 
     /// Writes a register. `Ok(true)`: the clock tree changed.
@@ -193,6 +209,7 @@ impl Rcc {
                 if self.cr >> 24 & 1 != 0 {
                     return Err(Refusal::NotModelled("RCC_PLLCFGR while the PLL is on"));
                 }
+                only(value, 0x7f43_7fff, "RCC_PLLCFGR reserved bits")?;
                 self.pllcfgr = value;
             }
             0x08 => return self.write_cfgr(value, now).map(|()| true),
@@ -200,12 +217,17 @@ impl Rcc {
                 only(value, 0x00ff_0000, "RCC_CIR interrupt enables")?;
                 self.clock_failure &= value >> 23 & 1 == 0;
             }
-            0x10 | 0x14 | 0x18 => self.rstr[(offset / 4 - 4) as usize] = value,
-            0x20 | 0x24 => self.rstr[(offset / 4 - 5) as usize] = value,
-            0x30 | 0x34 | 0x38 => self.enr[(offset / 4 - 12) as usize] = value,
-            0x40 | 0x44 => self.enr[(offset / 4 - 13) as usize] = value,
-            0x50 | 0x54 | 0x58 => self.lpenr[(offset / 4 - 20) as usize] = value,
-            0x60 | 0x64 => self.lpenr[(offset / 4 - 21) as usize] = value,
+            0x10..=0x6c => {
+                let bus = Self::bus(offset)?;
+                let (registers, allowed) = match offset >> 4 {
+                    1 | 2 => (&mut self.rstr, RESET_BITS),
+                    3 | 4 => (&mut self.enr, ENABLE_BITS),
+                    _ => (&mut self.lpenr, LOW_POWER_BITS),
+                };
+                // reserved bits keep their reset value, which is not always 0
+                only(value ^ registers[bus], allowed[bus], "reserved bits")?;
+                registers[bus] = value;
+            }
             0x74 => {
                 if value & 1 != 0 && self.csr & 1 == 0 {
                     self.ready_at[LSI] = self.after(now, LSI_START_US);

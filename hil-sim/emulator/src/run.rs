@@ -7,7 +7,7 @@ use super::mcu::{Machine, Reset, emulator};
 use super::nvic::exception;
 use super::rcc::HSI_HZ;
 use super::state::{self, Exit, Refused, get, service, takeable};
-use super::stop::{Place, Refusal, Stop};
+use super::stop::{Access, Place, Refusal, Stop};
 use super::{Wiring, names};
 use thermal_sim::processor::ResetCause;
 use unicorn_engine::{RegisterARM as Reg, uc_error};
@@ -64,6 +64,18 @@ impl<W: Wiring + 'static> Machine<W> {
 
     /// Handles refused register accesses and bus errors of the last block.
     fn pending_errors(&mut self) -> Result<(), Stop> {
+        let state = self.cpu.get_data_mut();
+        if let Some((address, refusal)) = state.chip().misuse.take() {
+            let (access, pc) = (Access::Write(4), state.block_pc);
+            let refused = Refused {
+                refusal,
+                address,
+                access,
+                value: 0,
+                pc,
+            };
+            return Err(self.refusal(refused));
+        }
         let state = self.cpu.get_data_mut();
         if !std::mem::take(&mut state.pause_requested) {
             return Ok(());
@@ -188,6 +200,12 @@ impl<W: Wiring + 'static> Machine<W> {
                 hclk_hz,
                 latency,
                 needed,
+                place,
+            },
+            Refusal::Misuse(rule) => Stop::Misuse {
+                register,
+                address,
+                rule,
                 place,
             },
             Refusal::ClockRange {

@@ -213,7 +213,7 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
     let pause = {
         let state = cpu.get_data_mut();
         let (limit, chip) = (state.limit, state.chip_ref());
-        state.pause_requested || now >= limit || chip.reset.is_some()
+        state.pause_requested || now >= limit || chip.reset.is_some() || chip.misuse.is_some()
     } || takeable(cpu).is_some();
     let state = cpu.get_data_mut();
     if pause {

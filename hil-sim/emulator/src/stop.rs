@@ -97,6 +97,18 @@ pub enum Stop {
         /// Where in the image.
         place: Place,
     },
+    /// The image used a device in a way that its manual forbids; silicon then does something that the manual does not say.
+    #[error("{register} at {address:#010x}: {rule} (in {place})")]
+    Misuse {
+        /// Peripheral and register.
+        register: String,
+        /// Address of the register.
+        address: u32,
+        /// What was done, and what the manual demands.
+        rule: &'static str,
+        /// Where in the image.
+        place: Place,
+    },
     /// A fault in the fault handler while no watchdog runs: the core would stay in lockup.
     #[error("lockup: {cause} at priority {priority} in {place}")]
     Lockup {
@@ -119,6 +131,8 @@ pub(crate) enum Refusal {
     NotModelled(&'static str),
     /// Offset without a model inside a known peripheral.
     Offset,
+    /// See [`Stop::Misuse`].
+    Misuse(&'static str),
     /// Access width that the register does not accept.
     Width,
     /// The peripheral's clock is off; names the enable bit's register and position.

@@ -193,6 +193,20 @@ impl Usart {
         self.tx_due = now + FRAME_BITS * self.bit_cycles();
     }
 
+    /// Level of the transmitter's pin; `None` while the transmitter is off.
+    pub fn tx_level(&self, now: u64) -> Option<bool> {
+        let on = self.cr1 & (UE | TE) == UE | TE;
+        let level = match self.shift {
+            Shift::Byte(byte) => {
+                let left = self.tx_due.saturating_sub(now);
+                let sent = FRAME_BITS.saturating_sub(left.div_ceil(self.bit_cycles()));
+                (u32::from(byte) << 1 | 1 << (FRAME_BITS - 1)) >> sent & 1 != 0
+            }
+            Shift::Nothing | Shift::Preamble => true,
+        };
+        on.then_some(level)
+    }
+
     /// Whether the transmitter requests a byte by DMA.
     pub fn wants_tx(&self) -> bool {
         self.cr3 >> 7 & 1 != 0 && self.sr & TXE != 0 && self.cr1 & (UE | TE) == UE | TE
@@ -250,7 +264,10 @@ impl Usart {
     pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
         match offset {
             0x00 => self.sr &= value | !(TC | RXNE), // the other flags are cleared by reading SR, then DR
-            0x04 => self.write_data(value, now),
+            0x04 => {
+                only(value, 0x1ff, "USART_DR reserved bits")?;
+                self.write_data(value, now);
+            }
             0x08 => {
                 only(value, 0xffff, "USART_BRR reserved bits")?;
                 self.brr = value;

@@ -6,6 +6,9 @@ pub const RCC: usize = 0x4002_3800;
 const FLASH_ACR: usize = 0x4002_3c00;
 const PWR: usize = 0x4000_7000;
 pub const GPIOA: usize = 0x4002_0000;
+const GPIOC: usize = 0x4002_0800;
+const SYSCFG: usize = 0x4001_3800;
+const EXTI: usize = 0x4001_3c00;
 const TIM1: usize = 0x4001_0000;
 const TIM2: usize = 0x4000_0000;
 const TIM3: usize = 0x4000_0400;
@@ -175,4 +178,58 @@ fn text_stream() {
     write(DMA1 + 0xac, TEXT.as_ptr() as u32);
     write(DMA1 + 0xa4, TEXT.len() as u32);
     write(DMA1 + 0xa0, 4 << 25 | 1 << 10 | 1 << 8 | 1 << 6 | 1);
+}
+
+/// Stores bytes and half-words to registers of port C.
+pub fn narrow_stores() {
+    write(GPIOC + 4, 0x1234);
+    // SAFETY: the addresses are those of OTYPER and BSRR of port C.
+    unsafe {
+        ((GPIOC + 5) as *mut u8).write_volatile(0xab);
+        log(read(GPIOC + 4));
+        ((GPIOC + 4) as *mut u16).write_volatile(0x5678);
+        ((GPIOC + 0x19) as *mut u8).write_volatile(0x80);
+    }
+    log(read(GPIOC + 4));
+    log(read(GPIOC + 0x14));
+}
+
+pub fn half_word_of_a_word_register() {
+    set(RCC + 0x40, 1);
+    // SAFETY: the auto-reload register of TIM2.
+    unsafe { ((TIM2 + 0x2c) as *mut u16).write_volatile(99) };
+}
+
+/// Sends one byte by DMA, then enables the stream again without clearing its flags.
+pub fn stream_enabled_with_flags() {
+    usart2_at_1_mbaud();
+    write(DMA1 + 0xa8, (USART2 + 4) as u32);
+    write(DMA1 + 0xac, TEXT.as_ptr() as u32);
+    write(DMA1 + 0xa4, 1);
+    let config = 4 << 25 | 1 << 10 | 1 << 6;
+    write(DMA1 + 0xa0, config | 1);
+    while read(DMA1 + 0xa0) & 1 != 0 {}
+    log(read(DMA1 + 4) >> 16 & 0x3d);
+    write(DMA1 + 0xa0, config | 1);
+}
+
+/// TIM2 starts the converter while the CPU sleeps, 2 us after the converter was switched on.
+pub fn trigger_before_the_converter_is_stable() {
+    set(RCC + 0x44, 1 << 8);
+    set(RCC + 0x40, 1);
+    write(TIM2 + 0x2c, 31); // of 16 MHz
+    write(TIM2 + 0x04, 2 << 4);
+    write(ADC1 + 0x08, 1 << 28 | 6 << 24 | 1);
+    write(TIM2, 1);
+}
+
+/// PC6 is high before its rising edge is selected.
+pub fn edge_before_its_selection() {
+    set(RCC + 0x44, 1 << 14);
+    write(SYSCFG + 0x0c, 2 << 8);
+    write(EXTI + 0x08, 1 << 6);
+    write(EXTI, 1 << 6);
+    log(read(EXTI + 0x14));
+    write(EXTI + 0x10, 1 << 6);
+    log(read(EXTI + 0x14));
 }

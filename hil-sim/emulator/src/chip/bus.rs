@@ -4,7 +4,8 @@ use super::{
 };
 use crate::adc::Trigger;
 use crate::dma::Dma;
-use crate::gpio::Port;
+use crate::exti::lines;
+use crate::gpio::{INPUT_DATA, Port};
 use crate::iwdg::Iwdg;
 use crate::nvic::exception;
 use crate::rcc::{Clocks, Enr, HSI_HZ};
@@ -15,7 +16,7 @@ use thermal_sim::processor::ResetCause;
 
 /// A modelled peripheral.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Device {
+pub(super) enum Device {
     Gpio(usize),
     Rcc,
     Flash,
@@ -119,6 +120,7 @@ impl<W: Wiring> Chip<W> {
         self.wwdg = Wwdg::new();
         self.stopped_at = None;
         self.reset = None;
+        self.misuse = None;
         self.clocks_changed(self.rcc.clocks(), now);
         self.after_change(now);
     }
@@ -138,8 +140,13 @@ impl<W: Wiring> Chip<W> {
         let offset = address & 0x3ff;
         match device {
             Device::Gpio(port) => {
-                let wiring = &self.wiring;
-                self.ports[port].read(offset, |bit| wiring.pin(port as u8, bit))
+                if offset == INPUT_DATA {
+                    self.sync_timers_of_port(port, now);
+                }
+                self.ports[port].read(offset, |bit| {
+                    let driven = self.alternate_level(port, bit, now);
+                    driven.or_else(|| self.wiring.pin(port as u8, bit))
+                })
             }
             Device::Rcc => self.rcc.read(offset, now),
             Device::Flash if offset == 0 => Ok(self.rcc.acr()),
@@ -184,8 +191,7 @@ impl<W: Wiring> Chip<W> {
         Ok(device)
     }
 
-    /// Writes a peripheral or core register. Bytes and upper half-words are accepted by priorities, GPIO BSRR and USART DR only;
-    /// every register accepts a half-word at its lower half, and the upper half is written 0.
+    /// Writes a peripheral or core register.
     pub fn write(&mut self, address: u32, bytes: u8, value: u32, now: u64) -> Answer<()> {
         if address >= 0xe000_0000 {
             if names::peripheral(address).is_none() {
@@ -202,14 +208,7 @@ impl<W: Wiring> Chip<W> {
             return Ok(());
         }
         let device = self.clocked(address)?;
-        let (mut offset, mut value) = (address & 0x3ff, value);
-        match (device, bytes) {
-            (Device::Gpio(_), 2) if offset == 0x1a => (offset, value) = (0x18, value << 16),
-            (Device::Usart2, 1) if offset == 4 => {}
-            (_, 2) if offset & 3 == 0 => {}
-            (_, 4) => {}
-            _ => return Err(Refusal::Width),
-        }
+        let (offset, value) = self.widened(device, address & 0x3ff, bytes, value, now)?;
         self.write_device(device, offset, value, now)?;
         self.refresh_next(now);
         Ok(())
@@ -277,10 +276,17 @@ impl<W: Wiring> Chip<W> {
                 }
                 self.nvic.set_line(WWDG_IRQ, self.wwdg.request(), now);
             }
-            Device::Syscfg => self.exti.write_syscfg(offset, value)?,
-            Device::Exti => {
-                self.exti.write(offset, value)?;
+            Device::Syscfg => {
+                self.exti.write_syscfg(offset, value)?;
                 self.sample_exti(now);
+            }
+            Device::Exti => {
+                let watched = self.exti.watched();
+                self.exti.write(offset, value)?;
+                for line in lines(self.exti.watched() & !watched) {
+                    let level = self.pin(self.exti.port(line), line);
+                    self.exti.start_from_level(line, level);
+                }
                 self.exti_changed(now);
             }
         }

@@ -50,7 +50,7 @@ impl Rcc {
 
     pub fn write_acr(&mut self, value: u32) -> Answer<()> {
         only(value, 0x1f0f, "FLASH_ACR")?;
-        self.acr = value & 0x070f;
+        self.acr = value;
         self.check_latency()
     }
 }

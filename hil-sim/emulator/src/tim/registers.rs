@@ -54,12 +54,16 @@ impl Tim {
         }
         match offset {
             0x00 => {
+                let dividing = if self.kind.channels > 0 { 0x0300 } else { 0 };
+                let one_pulse = if self.kind.channels == 1 { 0 } else { 8 };
                 only(
                     value,
-                    0x038f,
-                    "TIM CR1.DIR or CMS (down- or centre-aligned counting)",
+                    0x87 | dividing | one_pulse,
+                    "TIM CR1.DIR or CMS (down- or centre-aligned counting), or reserved bits",
                 )?;
                 let count = self.count(now);
+                // 17.4.2: MMS = 001 makes a trigger output of the counter's enable
+                self.trigger |= value & !self.cr1 & 1 != 0 && self.cr2 >> 4 & 7 == 1;
                 self.cr1 = value;
                 if self.cr1 & 0x80 == 0 {
                     self.arr_now = self.arr;
@@ -81,10 +85,11 @@ impl Tim {
             0x0c => {
                 let channels = ((1u32 << self.kind.channels) - 1) << 1;
                 let advanced = if self.kind.advanced { 0xa0 } else { 0 };
+                let trigger = if self.kind.channels > 1 { 0x40 } else { 0 };
                 only(
                     value,
-                    UIF | channels | 0x40 | advanced,
-                    "TIM DIER (DMA requests)",
+                    UIF | channels | trigger | advanced,
+                    "TIM DIER (DMA requests), or reserved bits",
                 )?;
                 self.dier = value;
             }
@@ -109,12 +114,12 @@ impl Tim {
             }
             0x18 | 0x1c => self.write_ccmr((offset as usize - 0x18) / 4, value)?,
             0x20 => {
-                let mut allowed = 0x3333;
+                let mut allowed = if self.kind.channels > 1 { 0x3333 } else { 0x3 };
                 if self.kind.advanced {
                     only(value & 0x0444, 0, "TIM CCER.CCxNE (complementary outputs)")?;
                     allowed |= 0x0888;
                 }
-                only(value, allowed, "TIM CCER reserved bits")?;
+                only(value, allowed, "TIM CCER.CCxNP (capture), or reserved bits")?;
                 let protected = if self.lock() >= 2 { 0x2aaa } else { 0 };
                 self.ccer = value & !protected | self.ccer & protected;
             }
@@ -152,6 +157,8 @@ impl Tim {
     fn write_ccmr(&mut self, half: usize, value: u32) -> Answer<()> {
         only(value & 0x0303, 0, "TIM CCMR.CCxS (input capture)")?;
         only(value & 0x8080, 0, "TIM CCMR.OCxCE (clear by ETRF)")?;
+        let allowed = if self.kind.channels > 1 { 0x7c7c } else { 0x7c };
+        only(value, allowed, "TIM CCMR reserved bits")?;
         for channel in 0..2 {
             let mode = value >> (8 * channel + 4) & 7;
             if matches!(mode, 1..=3) {

@@ -83,6 +83,42 @@ fn an_unmodelled_mode_ends_the_run() {
 }
 
 #[test]
+fn stores_of_bytes_and_half_words_to_a_port_leave_the_rest_of_the_register() {
+    let (_, log) = probe::run(60, 10_000);
+    assert_eq!(log, [0xab34, 0x5678, 0x8000, 0xd0e]);
+}
+
+#[test]
+fn a_half_word_store_to_a_register_of_32_bits_ends_the_run() {
+    assert_ends(
+        61,
+        "TIM2_ARR (access width) at 0x4000002c is not modelled: 16-bit write, value 0x63, in",
+    );
+}
+
+#[test]
+fn a_stream_that_is_enabled_while_its_flags_stand_ends_the_run() {
+    assert_ends(
+        62,
+        "DMA1_S6CR at 0x400260a0: EN is set while flags of the stream stand in LISR or HISR; they must be cleared first",
+    );
+}
+
+#[test]
+fn a_trigger_before_the_converter_is_stable_ends_the_run() {
+    assert_ends(
+        63,
+        "ADC1_CR2 at 0x40012008: a conversion starts less than 3 us after ADON was set (DS10693, t_STAB) (in probe::",
+    );
+}
+
+#[test]
+fn a_pin_that_is_high_when_its_rising_edge_is_selected_does_not_pend() {
+    let (_, log) = probe::run(64, 10_000);
+    assert_eq!(log, [0, 1 << 6, 0xd0e]);
+}
+
+#[test]
 fn the_watchdog_resets_ten_milliseconds_after_the_last_feed() {
     let (machine, log) = probe::run(12, 1_000_000);
     assert_eq!(

@@ -1,0 +1,240 @@
+//! The peripherals together, as the bus reaches them, without the CPU.
+use super::Chip;
+use crate::stop::Refusal;
+use crate::{Wiring, names};
+use thermal_sim::processor::{ChipState, ResetCause};
+
+/// A circuit that drives the pins of port C.
+#[derive(Default)]
+pub(super) struct Outside {
+    port_c: Option<bool>,
+}
+
+impl Wiring for Outside {
+    fn adc(&mut self, _channel: u8, _now: u64) -> u16 {
+        0
+    }
+    fn pin(&self, port: u8, _bit: u8) -> Option<bool> {
+        self.port_c.filter(|_| port == 2)
+    }
+    fn uart_tx(&mut self, _byte: u8, _at: u64, _baud: u32) {}
+}
+
+/// A chip as delivered, on which registers are tried.
+pub(super) struct Bench {
+    pub chip: Chip<Outside>,
+    pub now: u64,
+}
+
+impl Bench {
+    pub fn new() -> Self {
+        let delivered = ChipState {
+            brown_out_code: 3,
+            ..ChipState::default()
+        };
+        let mut bench = Self {
+            chip: Chip::new(Outside::default(), vec![0xff; 0x1_0000], &delivered),
+            now: 0,
+        };
+        bench.reset();
+        bench
+    }
+
+    /// The chip after a power-on, but for enabled clocks of all modelled peripherals and an unlocked watchdog.
+    pub fn reset(&mut self) {
+        self.chip.system_reset(ResetCause::PowerOn, self.now);
+        for (register, clocks) in [
+            (0x4002_3830, 0x0060_00ff),
+            (0x4002_3840, 0x1002_083f),
+            (0x4002_3844, 0x0006_4103),
+        ] {
+            let old = self.read(register).expect("an enable register");
+            self.write(register, old | clocks)
+                .expect("modelled peripherals");
+        }
+        self.write(0x4000_3000, 0x5555).expect("key of the IWDG");
+    }
+
+    pub fn read(&mut self, address: u32) -> Result<u32, Refusal> {
+        self.chip.read(address, self.now, 0)
+    }
+
+    pub fn write(&mut self, address: u32, value: u32) -> Result<(), Refusal> {
+        self.chip.write(address, 4, value, self.now)
+    }
+
+    /// Stores of words that the machine accepts.
+    fn set_up(&mut self, stores: &[(u32, u32)]) {
+        for (address, value) in stores {
+            let register = names::register(*address);
+            assert_eq!(self.write(*address, *value), Ok(()), "{register}");
+        }
+    }
+}
+
+const GPIOA: u32 = 0x4002_0000;
+const GPIOC: u32 = 0x4002_0800;
+const EXTI: u32 = 0x4001_3c00;
+const TIM1: u32 = 0x4001_0000;
+const TIM2: u32 = 0x4000_0000;
+const TIM3: u32 = 0x4000_0400;
+const ADC: u32 = 0x4001_2000;
+const USART2: u32 = 0x4000_4400;
+
+/// RM0390 10.2: a line pends at an edge, and a pin that is high already has none.
+#[test]
+fn an_edge_that_was_before_its_selection_does_not_pend() {
+    for level in [false, true] {
+        let mut bench = Bench::new();
+        bench.chip.wiring.port_c = Some(level);
+        bench.chip.sample_inputs(0);
+        // PC13, both edges, in the two orders
+        let selects = [(EXTI + 8, 1 << 13), (EXTI + 0xc, 1 << 13)];
+        let unmasks = [(EXTI, 1 << 13)];
+        bench.set_up(&[(0x4001_3814, 2 << 4)]);
+        for stores in [[&selects[..], &unmasks], [&unmasks, &selects]] {
+            bench.set_up(&stores.concat());
+            bench.chip.sample_inputs(1);
+            assert_eq!(bench.read(EXTI + 0x14), Ok(0), "high: {level}");
+            bench.set_up(&[(EXTI, 0), (EXTI + 8, 0), (EXTI + 0xc, 0)]);
+        }
+        bench.set_up(&[selects[0], selects[1], unmasks[0]]);
+        bench.chip.wiring.port_c = Some(!level);
+        bench.chip.sample_inputs(2);
+        assert_eq!(bench.read(EXTI + 0x14), Ok(1 << 13), "high: {level}");
+    }
+}
+
+/// RM0390 7.4, 6.3, 3.8.
+#[test]
+fn bytes_and_half_words_of_ports_rcc_and_flash_leave_the_rest_of_a_register() {
+    const RCC_AHB1ENR: u32 = 0x4002_3830;
+    const FLASH_ACR: u32 = 0x4002_3c00;
+    let mut bench = Bench::new();
+    bench.set_up(&[(GPIOC, 0x1234_5678), (FLASH_ACR, 0x0705)]);
+    let clocks = bench.read(RCC_AHB1ENR).expect("a register");
+    for (address, bytes, value, register, after) in [
+        (GPIOC + 1, 1, 0xaa, GPIOC, 0x1234_aa78),
+        (GPIOC + 2, 2, 0x5555, GPIOC, 0x5555_aa78),
+        (GPIOC, 2, 0x0001, GPIOC, 0x5555_0001),
+        // BSRR, whose other half does nothing; ODR
+        (GPIOC + 0x18, 1, 0x81, GPIOC + 0x14, 0x0081),
+        (GPIOC + 0x1b, 1, 0xff, GPIOC + 0x14, 0x0081),
+        (GPIOC + 0x1a, 2, 0x0001, GPIOC + 0x14, 0x0080),
+        (FLASH_ACR, 1, 0x04, FLASH_ACR, 0x0704),
+        (FLASH_ACR + 1, 1, 0x03, FLASH_ACR, 0x0304),
+        (RCC_AHB1ENR, 1, 0x04, RCC_AHB1ENR, clocks & !0xff | 0x04),
+    ] {
+        let stored = bench.chip.write(address, bytes, value, 0);
+        assert_eq!(stored, Ok(()), "{}", names::register(address));
+        let place = format!("{value:#x} in {bytes} bytes at {address:#x}");
+        assert_eq!(bench.read(register), Ok(after), "{place}");
+    }
+}
+
+/// RM0390 2.1 and the first lines of each chapter's registers.
+#[test]
+fn the_other_buses_take_half_words_of_short_registers_only() {
+    let mut bench = Bench::new();
+    bench.set_up(&[(TIM2 + 0x2c, 0x0012_3456), (TIM3 + 0x2c, 99)]);
+    let cases = [
+        (TIM3 + 0x2c, 2, 1000, Ok(())),
+        (USART2 + 8, 2, 45, Ok(())),
+        (USART2 + 4, 1, 0x41, Ok(())),
+        (0x4000_3008, 2, 0x123, Ok(())),   // IWDG_RLR
+        (0x4000_2c04, 2, 0x55, Ok(())),    // WWDG_CFR
+        (0x4001_3808, 2, 0x1234, Ok(())),  // SYSCFG_EXTICR1
+        (TIM2 + 0x2c, 2, 1000, Err(())),   // 32 bits
+        (TIM3 + 0x2c, 1, 10, Err(())),     // a byte
+        (TIM3 + 0x2e, 2, 10, Err(())),     // the upper half
+        (USART2 + 0x0c, 1, 4, Err(())),    // a byte, but not to DR
+        (0x4000_7000, 2, 0xc000, Err(())), // PWR_CR has an upper half
+        (ADC + 8, 2, 1, Err(())),          // words only
+        (EXTI, 2, 1, Err(())),             // words only
+        (0x4002_6014, 2, 1, Err(())),      // DMA, words only
+        (0x4002_3c04, 1, 0x23, Err(())),   // FLASH_KEYR, words only
+    ];
+    for (address, bytes, value, expected) in cases {
+        let answer = bench.chip.write(address, bytes, value, 0);
+        let expected = expected.map_err(|()| Refusal::Width);
+        assert_eq!(answer, expected, "{} {bytes}", names::register(address));
+    }
+    assert_eq!(bench.read(TIM3 + 0x2c), Ok(1000));
+    assert_eq!(bench.read(TIM2 + 0x2c), Ok(0x0012_3456));
+}
+
+/// RM0390 7.3.9.
+#[test]
+fn the_input_register_shows_what_peripherals_drive() {
+    let mut bench = Bench::new();
+    // TIM1 CH1 on PA8, inverted CH2 on PA9: high for 30 of 100 ticks, main output on; USART2 at 16 cycles a bit on PA2
+    bench.set_up(&[
+        (GPIOA, 0xa80a_0020),
+        (GPIOA + 0x20, 0x0700),
+        (GPIOA + 0x24, 0x11),
+        (TIM1 + 0x2c, 99),
+        (TIM1 + 0x34, 30),
+        (TIM1 + 0x38, 30),
+        (TIM1 + 0x18, 0x6060),
+        (TIM1 + 0x20, 0x31),
+        (TIM1 + 0x44, 1 << 15),
+        (TIM1, 1),
+        (USART2 + 8, 16),
+        (USART2 + 0xc, 1 << 13 | 1 << 3),
+    ]);
+    let mut pins = |now: u64| {
+        bench.now = now;
+        bench.read(GPIOA + 0x10).expect("IDR") & 0x0304
+    };
+    // the transmitter's first frame is idle
+    for (now, expected) in [
+        (0, 0x104),
+        (29, 0x104),
+        (30, 0x204),
+        (99, 0x204),
+        (129, 0x104),
+    ] {
+        assert_eq!(pins(now), expected, "{now}");
+    }
+    let begin = 1000;
+    bench.now = begin;
+    while bench.chip.usart.tx_due != u64::MAX {
+        bench.chip.usart.transmitted();
+    }
+    bench.set_up(&[(USART2 + 4, 0x41)]);
+    let level = |bench: &mut Bench, now| {
+        bench.now = now;
+        bench.read(GPIOA + 0x10).expect("IDR") >> 2 & 1
+    };
+    // start bit, eight data bits from the lowest on, stop bit
+    let bits: Vec<u32> = (0..10)
+        .map(|bit| level(&mut bench, begin + 16 * bit + 8))
+        .collect();
+    assert_eq!(bits, [0, 1, 0, 0, 0, 0, 0, 1, 0, 1]);
+    bench.set_up(&[(USART2 + 0xc, 0)]);
+    assert_eq!(level(&mut bench, 2000), 0, "a floating pin");
+}
+
+/// RM0390 17.4.2: with MMS = 001 the counter's enable is the trigger output.
+#[test]
+fn the_enable_of_a_counter_starts_the_converter_if_it_is_the_trigger() {
+    for (mode, starts) in [(0, false), (1, true), (2, false)] {
+        let mut bench = Bench::new();
+        bench.set_up(&[(ADC + 8, 1 << 28 | 6 << 24 | 1), (TIM2 + 4, mode << 4)]);
+        bench.now = 100;
+        bench.set_up(&[(TIM2, 1)]);
+        assert_eq!(bench.chip.adc.due != u64::MAX, starts, "MMS = {mode}");
+    }
+}
+
+/// DS10693, t_STAB. HCLK is 16 MHz.
+#[test]
+fn a_trigger_before_the_converter_is_stable_is_misuse() {
+    for (after, allowed) in [(47, false), (48, true)] {
+        let mut bench = Bench::new();
+        bench.set_up(&[(ADC + 8, 1 << 28 | 6 << 24 | 1), (TIM2 + 4, 1 << 4)]);
+        bench.now = after;
+        bench.set_up(&[(TIM2, 1)]);
+        assert_eq!(bench.chip.misuse.is_none(), allowed, "{after} cycles");
+    }
+}
