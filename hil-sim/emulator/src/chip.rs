@@ -24,6 +24,8 @@ mod bus;
 mod debug_freeze;
 mod failures;
 #[cfg(test)]
+mod register_table;
+#[cfg(test)]
 mod tests;
 
 /// Modelled timers, and the indices of those that the chip names; in order TIM1 to TIM7, TIM8, TIM10, TIM11.
