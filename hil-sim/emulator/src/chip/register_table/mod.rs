@@ -64,21 +64,17 @@ struct Exception {
     reason: String,
 }
 
-impl Exception {
-    fn names(&self, register: &str) -> bool {
-        (self.registers.iter()).any(|pattern| match pattern.split_once('*') {
-            Some((start, end)) => {
-                register.starts_with(start) && register[start.len()..].ends_with(end)
-            }
-            None => pattern == register,
-        })
+/// Whether a pattern stands for a register.
+fn matches(pattern: &str, register: &str) -> bool {
+    match pattern.split_once('*') {
+        Some((start, end)) => register.starts_with(start) && register[start.len()..].ends_with(end),
+        None => pattern == register,
     }
 }
 
 fn find<'a>(exceptions: &'a [Exception], register: &str) -> Option<&'a Exception> {
-    exceptions
-        .iter()
-        .find(|exception| exception.names(register))
+    let names = |pattern: &String| matches(pattern, register);
+    (exceptions.iter()).find(|exception| exception.registers.iter().any(names))
 }
 
 fn exceptions() -> Exceptions {
@@ -87,6 +83,24 @@ fn exceptions() -> Exceptions {
 
 /// Clock enables, which [`Bench::reset`] sets.
 const ENABLES: [&str; 3] = ["RCC_AHB1ENR", "RCC_APB1ENR", "RCC_APB2ENR"];
+
+#[test]
+fn every_exception_concerns_a_register_of_the_table() {
+    let (table, all) = (table(), exceptions());
+    let lists = [all.not_modelled, all.reset, all.bits];
+    let patterns = lists
+        .iter()
+        .flatten()
+        .flat_map(|exception| &exception.registers);
+    let unused: Vec<_> = patterns
+        .filter(|pattern| {
+            !table
+                .iter()
+                .any(|register| matches(pattern, &register.name))
+        })
+        .collect();
+    assert_eq!(unused, [""; 0]);
+}
 
 #[test]
 fn registers_are_where_the_table_has_them_and_have_its_reset_values() {
