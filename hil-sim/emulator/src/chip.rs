@@ -116,7 +116,7 @@ impl<W: Wiring> Chip<W> {
             nvic: Nvic::new(),
             ppb: Ppb::new(),
             rcc: Rcc::powered_up(state.external_clock),
-            flash: Flash::new(flash, state.brown_out_code),
+            flash: Flash::new(flash, state),
             ports: std::array::from_fn(Port::new),
             exti: Exti::default(),
             dma: [Dma::new(1), Dma::new(2)],

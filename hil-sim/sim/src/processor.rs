@@ -37,6 +37,8 @@ pub struct ChipState {
     pub lsi_hz: u32,
     /// Whether the 8 MHz clock of the debug probe is there at power-up.
     pub external_clock: bool,
+    /// Whether programming and erasing of the flash take the longest times of the data sheet, not the typical ones.
+    pub slow_flash: bool,
 }
 
 impl ChipState {
@@ -45,12 +47,13 @@ impl ChipState {
 }
 
 impl Default for ChipState {
-    /// The chip of a prepared board with its nominal oscillator.
+    /// The chip of a prepared board with its nominal oscillator and the typical times of its flash.
     fn default() -> Self {
         Self {
             brown_out_code: 0,
             lsi_hz: 32_000,
             external_clock: true,
+            slow_flash: false,
         }
     }
 }

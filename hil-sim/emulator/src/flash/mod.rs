@@ -2,6 +2,7 @@
 //! clocks depend, is in `rcc`.
 
 use thermal_sim::FlashCells;
+use thermal_sim::processor::ChipState;
 
 use super::elf::FLASH_BASE;
 use super::stop::{Answer, Refusal, only};
@@ -25,10 +26,22 @@ const ERRORS: u32 = 0x1f2;
 /// OPTCR with the option bytes as delivered: BOR_LEV (bits 3 and 2) is 11, brown-out reset off (3.8.6).
 const OPTCR_OF_THE_FACTORY: u32 = 0x0fff_aaed;
 
-/// Typical times (DS10693, flash memory programming): a unit of 8, 16 or 32 bits, and a sector of 16 KiB at that
-/// parallelism.
-const PROGRAM_US: u64 = 16;
-const ERASE_US: [u64; 3] = [400_000, 300_000, 250_000];
+/// Times in microseconds (DS10693, flash memory programming).
+struct Times {
+    /// A unit of 8, 16 or 32 bits.
+    program_us: u64,
+    /// A sector of 16 KiB, by the same parallelism.
+    erase_us: [u64; 3],
+}
+
+const TYPICAL: Times = Times {
+    program_us: 16,
+    erase_us: [400_000, 300_000, 250_000],
+};
+const LONGEST: Times = Times {
+    program_us: 100,
+    erase_us: [800_000, 600_000, 500_000],
+};
 
 /// State of the unlock sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,20 +59,22 @@ pub(crate) struct Flash {
     control: u32,
     status: u32,
     busy_until: u64,
+    times: &'static Times,
     /// BOR_LEV of the option bytes.
     brown_out_code: u8,
 }
 
 impl Flash {
     /// A flash with these contents and the option bytes of the factory, but for BOR_LEV.
-    pub fn new(contents: Vec<u8>, brown_out_code: u8) -> Self {
+    pub fn new(contents: Vec<u8>, chip: &ChipState) -> Self {
         Self {
             cells: FlashCells::new(contents),
             lock: Lock::Locked,
             control: 0,
             status: 0,
             busy_until: 0,
-            brown_out_code: brown_out_code & 3,
+            times: if chip.slow_flash { &LONGEST } else { &TYPICAL },
+            brown_out_code: chip.brown_out_code & 3,
         }
     }
 
@@ -136,7 +151,7 @@ impl Flash {
             return Err(Refusal::NotModelled("FLASH_CR.STRT without SER alone"));
         }
         let sector = (self.control >> 3 & 0xf) as usize;
-        let time = ERASE_US.get(self.parallelism());
+        let time = self.times.erase_us.get(self.parallelism());
         let (1..=3, Some(time)) = (sector, time) else {
             return Err(Refusal::NotModelled(
                 "erasing other sectors than 1 to 3, or 64 bits at a time",
@@ -171,7 +186,7 @@ impl Flash {
             PGAERR
         } else {
             self.cells.program((address - FLASH_BASE) as usize, value);
-            self.extend_busy(now, PROGRAM_US, hclk_hz);
+            self.extend_busy(now, self.times.program_us, hclk_hz);
             return Ok(());
         };
         self.status |= error;

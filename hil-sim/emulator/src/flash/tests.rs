@@ -4,7 +4,7 @@ const HSI: u32 = 16_000_000;
 const PSIZE_32: u32 = 2 << 8;
 
 fn unlocked() -> Flash {
-    let mut flash = Flash::new(vec![0xff; 0x8_0000], 0);
+    let mut flash = Flash::new(vec![0xff; 0x8_0000], &ChipState::default());
     for key in KEYS {
         flash.write(4, key, 0, HSI).unwrap();
     }
@@ -14,7 +14,7 @@ fn unlocked() -> Flash {
 
 #[test]
 fn the_keys_unlock_the_control_register_in_their_order_only() {
-    let mut flash = Flash::new(vec![0xff; 0x8_0000], 0);
+    let mut flash = Flash::new(vec![0xff; 0x8_0000], &ChipState::default());
     assert_eq!(flash.read(0x10, 0).unwrap(), LOCK);
     assert!(flash.write(0x10, PG, 0, HSI).is_err());
     for key in [KEYS[1], KEYS[0], KEYS[1]] {
@@ -87,7 +87,35 @@ fn a_wrong_store_changes_nothing_and_sets_its_error_flag() {
 #[test]
 fn the_option_register_shows_the_brown_out_level() {
     for (code, expected) in [(3, 0x0fff_aaed), (0, 0x0fff_aae1), (1, 0x0fff_aae5)] {
-        let flash = Flash::new(vec![0xff; 0x8_0000], code);
+        let flash = Flash::new(
+            vec![0xff; 0x8_0000],
+            &ChipState {
+                brown_out_code: code,
+                ..ChipState::default()
+            },
+        );
         assert_eq!(flash.read(0x14, 0), Ok(expected));
+    }
+}
+
+/// DS10693, flash memory programming, maximum.
+#[test]
+fn a_slow_flash_takes_the_longest_times_of_the_data_sheet() {
+    let slow = ChipState {
+        slow_flash: true,
+        ..ChipState::default()
+    };
+    let mut flash = Flash::new(vec![0xff; 0x8_0000], &slow);
+    for key in KEYS {
+        flash.write(4, key, 0, HSI).unwrap();
+    }
+    flash.write(0x10, PG | PSIZE_32, 0, HSI).unwrap();
+    flash.store(SETTINGS.start, 4, 0, 0, HSI).unwrap();
+    assert_eq!(flash.busy_until(), 1600, "100 us");
+    for (size, ms) in [(0, 800), (1, 600), (2, 500)] {
+        let begin = flash.busy_until();
+        let erase = SER | 1 << 3 | size << 8 | STRT;
+        flash.write(0x10, erase, begin, HSI).unwrap();
+        assert_eq!(flash.busy_until(), begin + ms * 16_000, "{ms} ms");
     }
 }

@@ -44,6 +44,7 @@ pub(super) struct Device {
     pub brown_out_level: Option<Spanned<u32>>,
     pub lsi_hz: Option<Spanned<u32>>,
     pub external_clock: bool,
+    pub slow_flash: bool,
 }
 
 words! {
@@ -63,6 +64,7 @@ impl Default for Device {
             brown_out_level: None,
             lsi_hz: None,
             external_clock: true,
+            slow_flash: false,
         }
     }
 }

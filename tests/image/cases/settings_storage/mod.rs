@@ -9,7 +9,7 @@ use system_tests::flash::{append, changes_page, erased, numbered, saved};
 use thermal_display::protocol::CommandHandler;
 use thermal_display::settings::{RECORD_MAX_BYTES, StoredSettings, encode_settings_record};
 use thermal_sim::FlashCells;
-use thermal_sim::processor::ResetCause;
+use thermal_sim::processor::{ChipState, ResetCause};
 
 /// The answers to `settings 1` to `settings 8` of a device with these settings.
 pub fn lines(kept: Option<&[StoredSettings; 1]>) -> Vec<String> {
@@ -132,6 +132,33 @@ fn stored_records_delay_a_start_by_less_than_100_ms_and_a_save_takes_less_than_a
     assert_figure("storage.save_turning", turning);
     // The erase time of a sector (DS10693, typical).
     assert!(turning - second > 250.0);
+}
+
+/// DS10693: programming a word takes up to 100 us, erasing a sector up to 500 ms.
+#[test]
+fn settings_are_saved_with_the_slowest_flash() {
+    let firmware = firmware();
+    let slow = ChipState {
+        slow_flash: true,
+        ..ChipState::default()
+    };
+    for (saves, with_erase) in [(1, false), (37, true)] {
+        let mut device = Bare::with_chip(&firmware, &after(saves), &slow);
+        device.run(START);
+        let kept = numbered::<1>(saves);
+        for line in lines(kept.as_ref()) {
+            assert_eq!(device.answer(line.trim_start_matches("ok ")), "ok");
+        }
+        assert_eq!(device.ask("save", 2 * START), ["ok"]);
+        let resets: Vec<_> = (device.0.resets().iter())
+            .map(|reset| reset.cause)
+            .collect();
+        assert_eq!(resets, [ResetCause::PowerOn, ResetCause::Software]);
+        let took_ms = start_ms(device.0.wiring().sent_at - device.0.resets()[1].at);
+        assert_eq!(took_ms > 500.0, with_erase, "{took_ms} ms");
+        assert!(took_ms < 1500.0, "{took_ms} ms");
+        assert_eq!(device.settings(), lines(kept.as_ref()));
+    }
 }
 
 /// Saves on the image with power cut in each of some flash operations; how often the old and how often the new settings are
