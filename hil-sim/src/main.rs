@@ -6,12 +6,12 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-#[cfg(feature = "emulator")]
-use cli::profile;
 use cli::{
     Failure, commission, erfcx, faults, fidelity, five_fingers, infrared, model, object,
     parameters, roughness, run, serve, thesis,
 };
+#[cfg(feature = "emulator")]
+use cli::{embedded_tests, profile};
 
 /// Simulated plant and emulated microcontroller of the thermal display.
 #[derive(Parser)]
@@ -31,6 +31,9 @@ enum Cli {
     /// Run a scene on the image; say which functions a control tick spends its time in
     #[cfg(feature = "emulator")]
     Profile(profile::Arguments),
+    /// Run the tests of an image on an emulated board without wiring; `cargo xtask on-target --emulated` calls it
+    #[cfg(feature = "emulator")]
+    EmbeddedTests(embedded_tests::Arguments),
     /// Evaluate the contact model (Eq. 6-5 to 6-12) and print CSV
     Model(model::Arguments),
     /// Evaluate the fixed-point kernel: one z a line on standard input, prints z and the bits of E
@@ -61,6 +64,8 @@ fn main() -> ExitCode {
         Cli::Hand(arguments) => five_fingers::run(&arguments),
         #[cfg(feature = "emulator")]
         Cli::Profile(arguments) => profile::run(&arguments),
+        #[cfg(feature = "emulator")]
+        Cli::EmbeddedTests(arguments) => embedded_tests::run(&arguments),
         Cli::Model(arguments) => model::run(&arguments),
         Cli::Erfcx => erfcx::run(),
         Cli::Object(arguments) => object::run(&arguments),

@@ -16,6 +16,7 @@ const SWSTART: u32 = 1 << 30;
 const SAMPLE: [u64; 8] = [3, 15, 28, 56, 84, 112, 144, 480];
 /// CCR: power of the temperature sensor and of the internal reference.
 const TSVREFE: u32 = 1 << 23;
+const VBATE: u32 = 1 << 22;
 /// Time from ADON until conversions are accurate, at most (DS10693, t_STAB).
 const STABILISATION_US: u64 = 3;
 /// Highest ADC clock at 2.4 to 3.6 V (DS10693, ADC characteristics).
@@ -125,9 +126,10 @@ impl Adc {
             match channel {
                 0..=15 => {}
                 17 | 18 if self.ccr & TSVREFE != 0 => {}
+                18 if self.ccr & VBATE != 0 => {}
                 17 | 18 => {
                     return Err(Refusal::Misuse(
-                        "channel 17 or 18 is converted while ADC_CCR.TSVREFE is 0 (RM0390 13.10)",
+                        "channel 17 is converted while ADC_CCR.TSVREFE is 0, or 18 while VBATE is, too (RM0390 13.10, 13.11)",
                     ));
                 }
                 _ => {
@@ -219,6 +221,11 @@ impl Adc {
             || self.sr & OVR != 0 && self.cr1 >> 26 & 1 != 0
     }
 
+    /// Whether channel 18 is a quarter of VBAT, which takes precedence over the temperature sensor (13.11).
+    pub fn measures_vbat(&self) -> bool {
+        self.ccr & VBATE != 0
+    }
+
     /// Registers of ADC1 at 0x00.. and the common ones at 0x300..
     pub fn read(&mut self, offset: u32) -> Answer<u32> {
         Ok(match offset {
@@ -276,7 +283,11 @@ impl Adc {
             }
             0x38 => only(value, 0, "ADC_JSQR (injected channels)")?,
             0x304 => {
-                only(value, 0x0083_0000, "ADC_CCR multi-ADC modes, or VBATE")?;
+                only(
+                    value,
+                    0x0003_0000 | TSVREFE | VBATE,
+                    "ADC_CCR multi-ADC modes",
+                )?;
                 self.ccr = value;
             }
             _ => return Err(Refusal::Offset),

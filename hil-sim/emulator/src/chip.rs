@@ -62,6 +62,8 @@ const HOST_BAUD: u32 = 1_000_000;
 /// and 6.3.24).
 const INTERNAL_REFERENCE: u16 = 1502;
 const INTERNAL_TEMPERATURE: u16 = 943;
+/// Code of a quarter of VBAT, which a NUCLEO connects to the converter's reference.
+const QUARTER_OF_VBAT: u16 = 1024;
 
 pub(crate) struct Chip<W> {
     pub wiring: W,
@@ -214,8 +216,11 @@ impl<W: Wiring> Chip<W> {
             }
             if self.usart.tx_due <= at {
                 let connected = self.ports[0].mode(2) == Mode::Alternate(7);
-                if let (Some(byte), true) = (self.usart.transmitted(), connected) {
-                    self.wiring.uart_tx(byte, at, self.usart.baud());
+                if let Some(byte) = self.usart.transmitted() {
+                    self.usart.hear_own(byte, at);
+                    if connected {
+                        self.wiring.uart_tx(byte, at, self.usart.baud());
+                    }
                 }
                 self.serve_usart_dma(at, memory);
             }
@@ -247,6 +252,7 @@ impl<W: Wiring> Chip<W> {
     fn end_conversion(&mut self, at: u64, memory: &mut impl Memory) {
         let code = match self.adc.channel() {
             17 => INTERNAL_REFERENCE,
+            18 if self.adc.measures_vbat() => QUARTER_OF_VBAT,
             18 => INTERNAL_TEMPERATURE,
             channel => self.wiring.adc(channel, at),
         };

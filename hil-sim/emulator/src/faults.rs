@@ -1,5 +1,6 @@
 //! Exceptions that the program itself causes: supervisor calls, faults and their escalation, lockup (ARMv7-M B1.5).
 use super::Wiring;
+use super::debugger::Halted;
 use super::exceptions::{self, FrameError};
 use super::mcu::Machine;
 use super::nvic::{NMI_PRIORITY, exception};
@@ -49,6 +50,11 @@ impl<W: Wiring + 'static> Machine<W> {
     pub(super) fn cpu_exception(&mut self, number: u32, pc: u32) -> Result<(), Stop> {
         match number {
             2 => self.supervisor_call(pc),
+            7 if self.chip().ppb.debugger_is_attached() => {
+                let halted = self.breakpoint(pc);
+                self.halt_under_debugger(halted);
+                Ok(())
+            }
             7 => {
                 // no debugger is attached and the debug monitor is off (C1.5): a HardFault with DEBUGEVT
                 self.chip_mut().ppb.hfsr |= 1 << 31;
@@ -140,6 +146,11 @@ impl<W: Wiring + 'static> Machine<W> {
                 place: self.place(pc),
             };
             return self.lock_up(level, stop);
+        }
+        if taken == exception::HARD_FAULT && chip.ppb.catches_hard_fault() {
+            let (cause, place) = (fault.cause, self.place(pc));
+            self.halt_under_debugger(Halted::HardFault { cause, place });
+            return Ok(());
         }
         chip.nvic.pend(taken, now);
         self.enter(taken, pc)

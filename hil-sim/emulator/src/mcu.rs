@@ -1,6 +1,7 @@
 //! The emulated microcontroller: its public interface.
 use super::chip::Chip;
 use super::cpu_setup::create_cpu;
+use super::debugger::Halted;
 use super::elf::{Firmware, RAM_BASE, RAM_SIZE};
 use super::exceptions;
 use super::halt::Halt;
@@ -38,6 +39,8 @@ pub struct Machine<W: Wiring + 'static> {
     /// Contents of the RAM at power-up.
     pub(super) initial_ram: Vec<u8>,
     pub(super) resets: Vec<Reset>,
+    /// The halt that the debugger has not seen yet.
+    pub(super) debugger_event: Option<Halted>,
     stopped: Option<Stop>,
 }
 
@@ -68,6 +71,7 @@ impl<W: Wiring + 'static> Machine<W> {
             halt: None,
             initial_ram,
             resets: Vec::new(),
+            debugger_event: None,
             stopped: None,
         };
         exceptions::reset(&mut machine.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))?;

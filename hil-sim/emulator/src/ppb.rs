@@ -6,6 +6,12 @@ use super::stop::{Answer, Refusal, only};
 
 /// Bits of CR, APB1_FZ and APB2_FZ (RM0390 33.16.3 to 33.16.5).
 const DBGMCU_BITS: [u32; 3] = [0xe7, 0x07e0_1dff, 0x0007_0003];
+/// DEMCR: a debugger halts the core at a reset, and at a hard fault.
+const VC_CORERESET: u32 = 1;
+const VC_HARDERR: u32 = 1 << 10;
+/// DHCSR: a debugger is attached; the core's registers can be read.
+const C_DEBUGEN: u32 = 1;
+const S_REGRDY: u32 = 1 << 16;
 
 #[derive(Default)]
 pub(crate) struct Ppb {
@@ -23,6 +29,7 @@ pub(crate) struct Ppb {
     cpacr: u32,
     fpccr: u32,
     demcr: u32,
+    debugger_is_attached: bool,
     dwt_ctrl: u32,
     /// CYCCNT minus the counted cycles.
     cyccnt_offset: u32,
@@ -142,7 +149,10 @@ impl Ppb {
             0xe000_ed34 | 0xe000_ed38 => self.fault_address,
             0xe000_ed88 => self.cpacr,
             0xe000_ed90 => 0x800, // MPU_TYPE: eight regions, which are not modelled
-            0xe000_edf0 => 0,     // DHCSR: no debugger
+            0xe000_edf0 => match self.debugger_is_attached {
+                true => C_DEBUGEN | S_REGRDY,
+                false => 0,
+            },
             0xe000_edfc => self.demcr,
             0xe000_ef34 => self.fpccr,
             0xe000_ef40 => 0x1011_0021,
@@ -234,7 +244,11 @@ impl Ppb {
                 self.cpacr = value;
             }
             0xe000_edfc => {
-                only(value, 0x0100_0000, "DEMCR beyond TRCENA")?;
+                only(
+                    value,
+                    0x0100_0000 | VC_CORERESET | VC_HARDERR,
+                    "DEMCR beyond TRCENA and the vector catch of resets and hard faults",
+                )?;
                 let count = self.cyccnt(now);
                 self.demcr = value;
                 self.rebase_cyccnt(count, now);
@@ -259,6 +273,41 @@ impl Ppb {
             _ => return Err(Refusal::Offset),
         }
         Ok(false)
+    }
+
+    /// After a system reset: the cycles asleep go on, and only a power-on resets DBGMCU (33.16.3) and what a debugger has set.
+    pub fn after_reset(&self, power_on: bool) -> Self {
+        let fresh = Self {
+            slept: self.slept,
+            ..Self::new()
+        };
+        if power_on {
+            return fresh;
+        }
+        Self {
+            dbgmcu: self.dbgmcu,
+            debugger_is_attached: self.debugger_is_attached,
+            demcr: self.demcr & (VC_CORERESET | VC_HARDERR),
+            ..fresh
+        }
+    }
+
+    /// A debugger attaches, and catches resets and hard faults.
+    pub fn attach_debugger(&mut self) {
+        self.debugger_is_attached = true;
+        self.demcr |= VC_CORERESET | VC_HARDERR;
+    }
+
+    pub fn debugger_is_attached(&self) -> bool {
+        self.debugger_is_attached
+    }
+
+    pub fn catches_reset(&self) -> bool {
+        self.debugger_is_attached && self.demcr & VC_CORERESET != 0
+    }
+
+    pub fn catches_hard_fault(&self) -> bool {
+        self.debugger_is_attached && self.demcr & VC_HARDERR != 0
     }
 
     /// DBGMCU_CR.DBG_SLEEP keeps the core's clock, and with it CYCCNT, running in sleep.

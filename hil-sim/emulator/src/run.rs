@@ -1,5 +1,6 @@
 //! The run loop: CPU emulation between events, sleep and resets.
 use super::cost::Last;
+use super::debugger::Halted;
 use super::elf::{FLASH_BASE, RAM_BASE};
 use super::exceptions;
 use super::faults::{Fault, INVALID_STATE, NO_COPROCESSOR, NO_MEMORY, UNDEFINED};
@@ -29,6 +30,9 @@ impl<W: Wiring + 'static> Machine<W> {
         let now = self.now();
         self.chip_mut().sample_inputs(now);
         loop {
+            if self.debugger_event.is_some() {
+                return Ok(());
+            }
             let now = self.now();
             let state = self.cpu.get_data_mut();
             let cycle = match until {
@@ -159,7 +163,11 @@ impl<W: Wiring + 'static> Machine<W> {
         (state.refused, state.bus_error) = (None, None);
         self.halt = None;
         self.resets.push(Reset { at, at_ps, cause });
-        exceptions::reset(&mut self.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))
+        exceptions::reset(&mut self.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))?;
+        if self.chip().ppb.catches_reset() {
+            self.halt_under_debugger(Halted::Reset(cause));
+        }
+        Ok(())
     }
 
     pub(super) fn place(&self, pc: u32) -> Place {

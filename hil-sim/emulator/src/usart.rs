@@ -1,4 +1,5 @@
-//! USART2 (RM0390 chapter 25) as an asynchronous 8N1 port with interrupts and DMA, and the host at the other end of the line.
+//! USART2 (RM0390 chapter 25) as an asynchronous 8N1 port with interrupts, DMA and single-wire mode, and the host at the other end
+//! of the line.
 use super::stop::{Answer, Refusal, only};
 use std::collections::VecDeque;
 
@@ -11,6 +12,8 @@ const TXE: u32 = 1 << 7;
 const UE: u32 = 1 << 13;
 const TE: u32 = 1 << 3;
 const RE: u32 = 1 << 2;
+/// Single-wire mode, in CR3.
+const HDSEL: u32 = 1 << 3;
 /// Bits of a frame: start, eight data, stop.
 const FRAME_BITS: u64 = 10;
 
@@ -138,17 +141,29 @@ impl Usart {
         };
         self.arrival += self.host_frame();
         let now = self.rx_due;
-        if connected && self.is_receiving() {
+        if connected && self.is_receiving() && self.cr3 & HDSEL == 0 {
             let (value, checked_frame) = self.sampled(byte);
-            if self.sr & RXNE != 0 {
-                self.sr |= ORE; // the new byte is lost (25.4.3)
-            } else {
-                self.received = value;
-                self.sr |= RXNE | if checked_frame { 0 } else { FE };
-            }
-            self.idle_at = now + FRAME_BITS * self.bit_cycles();
+            self.take_in(value, checked_frame, now);
         }
         self.schedule_rx();
+    }
+
+    /// A frame that the transmitter has just sent: in single-wire mode the receiver hears it (25.4.10).
+    pub fn hear_own(&mut self, byte: u8, now: u64) {
+        if self.cr3 & HDSEL != 0 && self.is_receiving() {
+            self.take_in(byte.into(), true, now);
+            self.schedule_rx();
+        }
+    }
+
+    fn take_in(&mut self, value: u32, checked_frame: bool, now: u64) {
+        if self.sr & RXNE != 0 {
+            self.sr |= ORE; // the new byte is lost (25.4.3)
+        } else {
+            self.received = value;
+            self.sr |= RXNE | if checked_frame { 0 } else { FE };
+        }
+        self.idle_at = now + FRAME_BITS * self.bit_cycles();
     }
 
     fn is_receiving(&self) -> bool {
@@ -295,7 +310,11 @@ impl Usart {
                 self.cr2 = value;
             }
             0x14 => {
-                only(value, 0x08c1, "USART_CR3 beyond DMAT, DMAR, EIE and ONEBIT")?;
+                only(
+                    value,
+                    0x08c1 | HDSEL,
+                    "USART_CR3 beyond DMAT, DMAR, HDSEL, EIE and ONEBIT",
+                )?;
                 self.cr3 = value;
             }
             0x18 => only(value, 0, "USART_GTPR")?,
@@ -368,6 +387,20 @@ mod tests {
             "SR then DR clears both"
         );
         assert!(!usart.request());
+    }
+
+    #[test]
+    fn in_single_wire_mode_the_transmitter_hears_itself_and_not_the_host() {
+        let mut usart = usart(45, false, 0);
+        usart.write(0x14, HDSEL, 0).unwrap();
+        usart.write(0x04, 0x41, 10_000).unwrap();
+        let sent = usart.transmitted().unwrap();
+        usart.hear_own(sent, 11_800);
+        assert_eq!(usart.read(0).unwrap() & RXNE, RXNE);
+        assert_eq!(usart.read(4).unwrap(), 0x41);
+        usart.send(b"a", 20_000);
+        usart.receive(true);
+        assert_eq!(usart.read(0).unwrap() & RXNE, 0);
     }
 
     #[test]

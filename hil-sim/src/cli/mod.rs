@@ -1,6 +1,8 @@
 //! The subcommands.
 
 pub mod commission;
+#[cfg(feature = "emulator")]
+pub mod embedded_tests;
 mod engine;
 pub mod erfcx;
 pub mod faults;

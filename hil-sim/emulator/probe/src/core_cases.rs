@@ -195,6 +195,16 @@ pub fn undefined() {
     cortex_m::asm::udf();
 }
 
+/// Logs what the debugger answers to a call of operation 0x11 with parameter 0x22, and whether it is attached.
+pub fn semihosting_call() {
+    const DHCSR: usize = 0xe000_edf0;
+    let answer: u32;
+    // SAFETY: the call changes no memory, and R0 only.
+    unsafe { core::arch::asm!("bkpt 0xab", inout("r0") 0x11 => answer, in("r1") 0x22) };
+    log(answer);
+    log(read(DHCSR) & 1);
+}
+
 pub fn lockup() {
     FAULT_AGAIN.store(1, Relaxed);
     read(0x6000_0000);

@@ -79,6 +79,7 @@ fn main() -> ! {
         24 => watchdog_cases::load_without_clock_security(),
         25 => watchdog_cases::lockup_with_clock_security(),
         26 => core_cases::waits_for_flips(),
+        27 => core_cases::semihosting_call(),
         60 => device_cases::narrow_stores(),
         61 => device_cases::half_word_of_a_word_register(),
         62 => device_cases::stream_enabled_with_flags(),

@@ -11,7 +11,7 @@ use crate::nvic::exception;
 use crate::rcc::{Clocks, Enr, HSI_HZ};
 use crate::stop::{Answer, Refusal};
 use crate::{Wiring, names};
-use crate::{exti::Exti, nvic::Nvic, ppb::Ppb, wwdg::Wwdg};
+use crate::{exti::Exti, nvic::Nvic, wwdg::Wwdg};
 use thermal_sim::processor::ResetCause;
 
 /// A modelled peripheral.
@@ -92,15 +92,8 @@ fn signature(address: u32) -> Option<u32> {
 impl<W: Wiring> Chip<W> {
     /// System reset: every register takes its reset value but for the reset flags; the host continues to send.
     pub fn system_reset(&mut self, cause: ResetCause, now: u64) {
-        let slept = self.ppb.slept;
         self.nvic = Nvic::new();
-        // Only a power-on resets DBGMCU (33.16.3).
-        let dbgmcu = match cause {
-            ResetCause::PowerOn => Default::default(),
-            _ => self.ppb.dbgmcu,
-        };
-        self.ppb = Ppb::new();
-        (self.ppb.slept, self.ppb.dbgmcu) = (slept, dbgmcu);
+        self.ppb = self.ppb.after_reset(cause == ResetCause::PowerOn);
         self.halted_by_debugger = false;
         if cause == ResetCause::PowerOn {
             self.flash.cells.power_up();
@@ -220,6 +213,7 @@ impl<W: Wiring> Chip<W> {
                 self.ports[port].write(offset, value)?;
                 self.outputs_changed(port, now);
                 self.bridge_changed(now);
+                self.sample_inputs(now);
             }
             Device::Rcc => {
                 let old = self.rcc.clocks();

@@ -1,5 +1,5 @@
 //! The emulated core against the ARMv7-M Architecture Reference Manual.
-use stm32_emulator::Stop;
+use stm32_emulator::{Halted, Stop};
 use thermal_sim::processor::ResetCause;
 
 use crate::probe;
@@ -118,4 +118,58 @@ fn the_state_of_an_it_block_survives_interrupts() {
         [0, 1, DONE],
         "instructions that should have been skipped, more than 100 ticks"
     );
+}
+
+/// ARMv7-M C1.3: DEBUGEVT, because neither halting debug nor the debug monitor is on.
+#[test]
+fn a_breakpoint_without_a_debugger_becomes_a_hard_fault() {
+    let (_, log) = probe::run(27, 100_000);
+    assert_eq!(log[..3], [3, 0, 1 << 31]);
+}
+
+#[test]
+fn under_a_debugger_a_breakpoint_halts_the_core_until_it_is_answered() {
+    const MS_PS: u64 = 1_000_000_000;
+    let mut machine = probe::machine(27);
+    machine.restart_under_debugger().expect("restarts");
+    assert_eq!(
+        machine.run_until_halted(MS_PS),
+        Ok(Some(Halted::Breakpoint(0xab)))
+    );
+    assert_eq!(machine.call_registers(), [0x11, 0x22]);
+    let executed = machine.stats().instructions;
+    assert_eq!(machine.run_until_halted(2 * MS_PS), Ok(None));
+    assert_eq!(
+        machine.stats().instructions,
+        executed,
+        "the core stands still"
+    );
+    machine
+        .continue_behind_breakpoint(Some(0x33))
+        .expect("continues");
+    assert_eq!(machine.run_until_halted(3 * MS_PS), Ok(None));
+    assert_eq!(probe::log(&machine), [0x33, 1, DONE]);
+}
+
+#[test]
+fn under_a_debugger_resets_and_hard_faults_halt_the_core() {
+    const MS_PS: u64 = 1_000_000_000;
+    let mut machine = probe::machine(5);
+    machine.restart_under_debugger().expect("restarts");
+    machine.run_until_halted(MS_PS).expect("runs");
+    // The case has found the debugger's own reset, and has not reset itself.
+    assert_eq!(probe::log(&machine), [0x1e, 0, DONE]);
+    machine.pull_reset_pin().expect("resets");
+    let halted = machine.run_until_halted(2 * MS_PS);
+    assert_eq!(halted, Ok(Some(Halted::Reset(ResetCause::Pin))));
+
+    let mut machine = probe::machine(3);
+    machine.restart_under_debugger().expect("restarts");
+    match machine.run_until_halted(MS_PS) {
+        Ok(Some(Halted::HardFault { cause, place })) => {
+            assert_eq!(cause, "undefined instruction");
+            assert!(place.function.contains("undefined") || place.function.contains("main"));
+        }
+        other => panic!("{other:?}"),
+    }
 }

@@ -1,5 +1,5 @@
 //! Files that are no image for the STM32F446RE are refused with the reason.
-use stm32_emulator::{Firmware, ImageError};
+use stm32_emulator::{EmbeddedTests, Firmware, ImageError};
 
 /// A minimal 32-bit little-endian ARM executable: one segment of `contents` at `address`.
 fn elf(machine: u16, address: u32, contents: &[u8]) -> Vec<u8> {
@@ -113,5 +113,20 @@ fn truncated_and_foreign_files_are_refused() {
     assert!(
         missing.to_string().starts_with("cannot be read: "),
         "{missing}"
+    );
+}
+
+#[test]
+fn an_image_without_tests_has_none_to_run() {
+    let folder = std::env::temp_dir().join(format!("image-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let path = folder.join("image.elf");
+    let image = elf(ARM, 0x0800_0000, &vectors(0x2002_0000, 0x0800_0009));
+    std::fs::write(&path, image).expect("written");
+    let refused = EmbeddedTests::from_file(&path).expect_err("refused");
+    std::fs::remove_dir_all(&folder).expect("removed");
+    assert_eq!(
+        refused.to_string(),
+        "no tests of embedded-test 0.7: the file has no section .embedded_test"
     );
 }
