@@ -9,7 +9,7 @@ mod console;
 mod control_loop;
 
 #[cfg(feature = "nucleo-f446re")]
-mod nucleo_f446re;
+pub(crate) mod nucleo_f446re;
 
 pub use console::Console;
 pub use control_loop::ControlLoop;

@@ -68,10 +68,19 @@ pub fn elf(toolchain: &Toolchain, fingers: Fingers) -> PathBuf {
 
 /// `cargo SUBCOMMAND` for the image in its own target folder.
 fn cargo(toolchain: &Toolchain, fingers: Fingers, subcommand: &str) -> Invocation {
+    cargo_for(toolchain, PACKAGE, fingers, subcommand)
+}
+
+fn cargo_for(
+    toolchain: &Toolchain,
+    package: &str,
+    fingers: Fingers,
+    subcommand: &str,
+) -> Invocation {
     let folder = target_folder(toolchain);
     toolchain
         .cargo(subcommand)
-        .args(["--locked", "--package", PACKAGE, "--profile", PROFILE])
+        .args(["--locked", "--package", package, "--profile", PROFILE])
         .args(["--features", fingers.feature()])
         .args(["--target", TARGET, "--target-dir", folder])
         .without(&FOREIGN_FLAGS)
@@ -97,9 +106,19 @@ pub fn build(toolchain: &Toolchain, fingers: Fingers) -> Result<()> {
     Ok(())
 }
 
+/// `cargo SUBCOMMAND` for the tests that run on the microcontroller, compiled as the image is.
+pub fn tests(toolchain: &Toolchain, subcommand: &str) -> Invocation {
+    cargo_for(toolchain, "on-target-tests", Fingers::One, subcommand).args(["--tests"])
+}
+
 /// Lints the code that is compiled for the microcontroller only.
 pub fn clippy(toolchain: &Toolchain, fingers: Fingers) -> Invocation {
     cargo(toolchain, fingers, "clippy").args(["--", "-Dwarnings"])
+}
+
+/// Lints [`tests`].
+pub fn clippy_of_tests(toolchain: &Toolchain) -> Invocation {
+    tests(toolchain, "clippy").args(["--", "-Dwarnings"])
 }
 
 /// Path, flash and RAM use of the built image.

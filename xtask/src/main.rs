@@ -12,6 +12,7 @@ mod fuzz;
 mod hardware;
 mod memory_usage;
 mod mutations;
+mod on_target;
 mod process;
 mod proof;
 mod report;
@@ -121,6 +122,14 @@ enum Task {
         #[command(flatten)]
         options: bring_up::Options,
     },
+    /// Run the tests that run on the microcontroller itself, on a bare board by its probe; writes what they measure to
+    /// docs/on-target.md. --emulated runs them on the emulated one
+    OnTarget {
+        #[command(flatten)]
+        set_up: SetUp,
+        #[command(flatten)]
+        options: on_target::Options,
+    },
     /// Check the image's machine code (panics, stack, loops, floating point) and measure its ticks in the emulator
     Proof {
         #[command(flatten)]
@@ -209,6 +218,7 @@ fn main() -> ExitCode {
         } => report::run(set_up.permission(), ("hil-sim", "faults"), report, rest),
         Task::Hardware { set_up, json, rest } => hardware::run(set_up.permission(), json, rest),
         Task::BringUp { set_up, options } => bring_up::run(set_up.permission(), options),
+        Task::OnTarget { set_up, options } => on_target::run(set_up.permission(), &options),
         Task::Proof {
             set_up,
             fingers,

@@ -101,6 +101,19 @@ impl Invocation {
         self.check(self.command().stdout(std::io::stderr()).status())
     }
 
+    /// Runs the command and hands each line of its standard output to `on_line`, when it comes.
+    pub fn run_line_by_line(&self, mut on_line: impl FnMut(&str)) -> Result<()> {
+        let mut command = self.command();
+        let child = command.stdout(Stdio::piped()).spawn();
+        let mut child = child.with_context(|| format!("`{self}` did not start"))?;
+        if let Some(stdout) = child.stdout.take() {
+            for line in BufReader::new(stdout).lines() {
+                on_line(&line?);
+            }
+        }
+        self.check(child.wait())
+    }
+
     /// Appends everything the command prints to a file, without standard input.
     pub fn run_to_file(&self, path: &Path) -> Result<()> {
         let file = OpenOptions::new().create(true).append(true).open(path);

@@ -28,9 +28,10 @@
 mod brown_out_level;
 mod chip_monitor;
 mod comparator_side;
-mod debug_freeze;
+pub(crate) mod debug_freeze;
 mod defmt_rtt_log;
 mod emergency_stop;
+#[cfg(not(test))]
 mod fatal_errors;
 #[cfg(feature = "five-fingers")]
 mod five_fingers;
@@ -41,16 +42,16 @@ pub mod line_losses;
 mod one_finger;
 mod ordered_restart;
 mod pwm_settings;
-mod reset_cause;
+pub(crate) mod reset_cause;
 mod sample_error;
 mod sampler;
 mod saved_dose;
 mod serial;
-mod settings_flash;
-mod settings_storage;
-mod stack_guard;
+pub(crate) mod settings_flash;
+pub(crate) mod settings_storage;
+pub(crate) mod stack_guard;
 mod tick_rate_and_rcc_monitor;
-mod trip_cause_recorder;
+pub(crate) mod trip_cause_recorder;
 mod window_watchdog;
 
 use cortex_m::peripheral::SYST;

@@ -67,6 +67,15 @@ impl Toolchain {
             Self::Distribution(distribution) => distribution.cargo(subcommand),
         }
     }
+
+    /// Asks the compiler for its version.
+    pub fn rustc_version(&self) -> Invocation {
+        let rustc = match self {
+            Self::Active => "rustc",
+            Self::Distribution(_) => RUSTC,
+        };
+        Invocation::new(rustc, ["--version"])
+    }
 }
 
 /// The distribution's compiler, and a linker, which its packages lack.

@@ -113,9 +113,11 @@ fn whole(
             NO_CLIPPY,
             Check {
                 title: "lints of the firmware",
-                commands: Ok([Fingers::One, Fingers::Five]
-                    .map(|fingers| firmware::clippy(toolchain, fingers))
-                    .into()),
+                commands: Ok(vec![
+                    firmware::clippy(toolchain, Fingers::One),
+                    firmware::clippy(toolchain, Fingers::Five),
+                    firmware::clippy_of_tests(toolchain),
+                ]),
             },
         ),
         units(members),
@@ -149,6 +151,7 @@ fn whole(
         ),
     ];
     let tests = choice.handed_to(cargo("test --release --workspace --no-fail-fast"));
+    let on_target = choice.handed_to(cargo("xtask on-target --emulated --check"));
     let fuzz = format!("xtask fuzz --seconds {FUZZ_S}");
     vec![
         vec![host, images],
@@ -157,10 +160,13 @@ fn whole(
                 title: "whole system, native and on the emulated microcontroller",
                 commands: Ok(vec![tests]),
             }],
-            vec![check(
-                "fuzzers: inputs of the repository, 4 s a target",
-                [&fuzz],
-            )],
+            vec![
+                check("fuzzers: inputs of the repository, 4 s a target", [&fuzz]),
+                Check {
+                    title: "tests for a bare board, on the emulated one",
+                    commands: Ok(vec![on_target]),
+                },
+            ],
         ],
     ]
 }
