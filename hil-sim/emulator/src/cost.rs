@@ -2,11 +2,14 @@
 //!
 //! Counts are exact: every instruction of an executed block is counted, those skipped inside an IT block
 //! included (they pass the pipeline as one-cycle no-operations). Cycles are an estimate after the Cortex-M4
-//! Technical Reference Manual (r0p1, tables 3-1 and 7-1): zero-wait-state memory (the flash accelerator hides
-//! the wait states of straight code), two cycles of refill for a taken branch, a conditional branch taken half
-//! the time, divisions at the middle of their range, no pairing of neighbouring loads.
+//! Technical Reference Manual (r0p1, sections 3.3 and 7.2): a load costs one cycle less directly after a load on whose
+//! result its address does not depend, and a cycle more directly after data processing that makes its address; the result of a floating-point operation is ready one cycle later for the next
+//! instruction; a division of the floating-point unit runs beside integer instructions. The refill of the pipeline after a
+//! taken branch is charged with the block to which it leads ([`Block::refill`]), so a conditional branch costs what it does.
+//! Waiting for the flash is `flash_waiting.rs`'s.
 
 use super::elf::FLASH_BASE;
+use super::instruction::{Float, Instruction, Pipeline};
 
 /// Cycles from recognition of an exception to its first instruction (TRM section 3.9.1).
 pub(crate) const EXCEPTION_ENTRY: u64 = 12;
@@ -14,6 +17,8 @@ pub(crate) const EXCEPTION_ENTRY: u64 = 12;
 pub(crate) const EXCEPTION_RETURN: u64 = 10;
 /// Cycles between two tail-chained exceptions.
 pub(crate) const TAIL_CHAIN: u64 = 6;
+/// Cycles to save or restore S0 to S15 and FPSCR: one a word (ARM's application note 298: 29 instead of 12).
+pub(crate) const FLOAT_STATE: u64 = 17;
 
 /// Size and cost of a basic block, and the properties that matter to the run loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,6 +27,12 @@ pub(crate) struct Block {
     pub bytes: u16,
     pub instructions: u16,
     pub cycles: u16,
+    /// Cycles of refill if another block than the one behind it follows.
+    pub refill: u8,
+    /// Cycles more when a branch leads here: a wide instruction across two words of the fetch.
+    pub split: bool,
+    /// Line of the flash (128 bits) with the last constant that the block loads from beside the code; 0: none.
+    pub constants: u16,
     /// The block holds an instruction of the floating-point unit.
     pub float: bool,
     /// The block holds SEV, which sets the event register of the only core.
@@ -64,113 +75,59 @@ impl CostTable {
     pub fn flash_block(&mut self, flash: &[u8], offset: usize, bytes: u32) -> Option<Block> {
         let known = self.blocks.get_mut(offset / 2)?;
         if u32::from(known.bytes) != bytes {
-            *known = decode(flash.get(offset..offset + bytes as usize)?);
+            *known = decode(offset as u32, flash.get(offset..offset + bytes as usize)?);
         }
         Some(*known)
     }
 }
 
-/// Decodes straight-line code.
-pub(crate) fn decode(code: &[u8]) -> Block {
+/// Decodes straight-line code at an address.
+pub(crate) fn decode(address: u32, code: &[u8]) -> Block {
     let mut block = Block {
         bytes: code.len() as u16,
         ..Block::default()
     };
-    let half = |at: usize| {
-        code.get(at..at + 2)
-            .map_or(0, |b| u32::from(u16::from_le_bytes([b[0], b[1]])))
-    };
-    let mut at = 0;
-    while at < code.len() {
-        let first = half(at);
-        let wide = first >> 11 >= 0b11101;
-        let second = if wide { half(at + 2) } else { 0 };
-        block.cycles += if wide {
-            wide_cost(first, second)
-        } else {
-            narrow_cost(first)
-        };
+    for (at, instruction, cycles) in timed(code) {
+        block.cycles += cycles;
         block.instructions += 1;
-        block.float |= wide && is_float(first);
-        block.sev |= first == 0xbf40;
-        block.last = match first {
+        block.refill = instruction.refill;
+        if let Some(offset) = instruction.constant {
+            let from = (address & !FLASH_BASE) + at;
+            block.constants = ((from & !3).wrapping_add_signed(offset) / 16) as u16;
+        }
+        block.split |= at == 0 && instruction.bytes == 4 && address & 2 != 0;
+        block.float |= instruction.float != Float::None;
+        block.sev |= instruction.code == 0xbf40;
+        block.last = match instruction.code {
             0xbf10 => Last::Yield,
             0xbf20 => Last::Wfe,
             0xbf30 => Last::Wfi,
             _ => Last::Other,
         };
-        at += if wide { 4 } else { 2 };
     }
     block
 }
 
 /// Offset and estimated cycles of each instruction of straight-line code.
 pub(crate) fn instructions(code: &[u8]) -> impl Iterator<Item = (u32, u16)> {
+    timed(code).map(|(at, _, cycles)| (at, cycles))
+}
+
+/// Offset, meaning and cycles of each instruction of straight-line code. What a division still takes at the end is charged to
+/// the last instruction.
+fn timed(code: &[u8]) -> impl Iterator<Item = (u32, Instruction, u16)> {
+    let mut pipeline = Pipeline::default();
     let mut at = 0;
     std::iter::from_fn(move || {
+        let instruction = Instruction::decode(code.get(at..)?)?;
         let start = at;
-        let wide = *code.get(at + 1)? >> 3 >= 0b11101;
-        at += if wide { 4 } else { 2 };
-        Some((start as u32, decode(code.get(start..at)?).cycles))
+        at += instruction.bytes;
+        let mut cycles = pipeline.cycles(&instruction);
+        if at >= code.len() {
+            cycles += pipeline.division;
+        }
+        Some((start as u32, instruction, cycles))
     })
-}
-
-/// Coprocessor space with coprocessor number 10 or 11 is the floating-point unit.
-fn is_float(first: u32) -> bool {
-    first & 0xec00 == 0xec00
-}
-
-fn narrow_cost(op: u32) -> u16 {
-    let registers = (op & 0xff).count_ones() as u16;
-    match op >> 12 {
-        0x4 if op & 0xff00 == 0x4700 => 3,  // BX, BLX
-        0x4 if op & 0xfc87 == 0x4487 => 3,  // ADD or MOV to PC
-        0x4 if op & 0xf800 == 0x4800 => 2,  // LDR literal
-        0x5 if op & 0x0e00 >= 0x0600 => 2,  // LDR register, LDRSB
-        0x6..=0x9 if op & 0x0800 != 0 => 2, // LDR immediate
-        0xb if op & 0xfe00 == 0xb400 => 1 + registers + (op >> 8 & 1) as u16, // PUSH
-        0xb if op & 0xff00 == 0xbd00 => 4 + registers, // POP with PC
-        0xb if op & 0xff00 == 0xbc00 => 1 + registers, // POP
-        0xb if op & 0xf500 == 0xb100 => 2,  // CBZ, CBNZ
-        0xc => 1 + registers,               // LDM, STM
-        0xd => 2,                           // conditional branch
-        0xe => 3,                           // B
-        _ => 1,
-    }
-}
-
-fn wide_cost(first: u32, second: u32) -> u16 {
-    let registers = second.count_ones() as u16;
-    let loads = first & 0x10 != 0;
-    match first >> 11 & 3 {
-        _ if is_float(first) => float_cost(first, second),
-        1 if first & 0x0640 == 0 && loads && second >> 15 == 1 => 3 + registers, // LDM with PC
-        1 if first & 0x0640 == 0 => 1 + registers,                               // LDM, STM
-        1 if first & 0xfff0 == 0xe8d0 && second & 0xe0 == 0 => 4,                // TBB, TBH
-        1 if first & 0x0600 == 0 => 3,  // LDRD, STRD, LDREX
-        1 => 1,                         // data processing, shifted register
-        2 if second & 0x8000 == 0 => 1, // data processing, immediate
-        2 if second & 0x5000 == 0 && first & 0x0380 == 0x0380 => 1, // MSR, MRS, hints
-        2 if second & 0x5000 == 0 => 2, // conditional branch
-        2 => 3,                         // B, BL
-        _ if first & 0x0600 == 0 && loads => 2,
-        _ if first & 0xffd0 == 0xfb90 => 7, // SDIV, UDIV: 2 to 12
-        _ => 1,                             // stores are buffered; multiplication, also long
-    }
-}
-
-fn float_cost(first: u32, second: u32) -> u16 {
-    let memory = first & 0x0e00 == 0x0c00;
-    let pair_or_single = first & 0x0fe0 == 0x0c40 || first & 0x0120 == 0x0100;
-    match first >> 4 & 0xb {
-        _ if memory && pair_or_single => 2, // VMOV of a pair, VLDR, VSTR
-        _ if memory => 1 + (second & 0xff) as u16, // VLDM, VSTM, VPUSH, VPOP
-        _ if second & 0x10 != 0 => 1,       // moves to and from core registers
-        0x8 => 14,                          // VDIV
-        0xb if second & 0xc0 == 0xc0 && first & 0xf == 1 => 14, // VSQRT
-        0x0 | 0x1 | 0x9 | 0xa => 3,         // VMLA, VNMLA, VFMA, VFNMA
-        _ => 1,
-    }
 }
 
 #[cfg(test)]
@@ -178,33 +135,89 @@ mod tests {
     use super::*;
 
     fn block(halves: &[u16]) -> Block {
-        decode(
-            &halves
-                .iter()
-                .flat_map(|h| h.to_le_bytes())
-                .collect::<Vec<_>>(),
-        )
+        let code: Vec<_> = halves.iter().flat_map(|h| h.to_le_bytes()).collect();
+        decode(FLASH_BASE, &code)
+    }
+
+    fn cycles(halves: &[u16]) -> u16 {
+        block(halves).cycles
+    }
+
+    /// Cycles with the refill of a taken branch.
+    fn taken(halves: &[u16]) -> u16 {
+        cycles(halves) + u16::from(block(halves).refill)
     }
 
     #[test]
     fn costs_are_those_of_the_technical_reference_manual() {
-        let cycles = |halves: &[u16]| block(halves).cycles;
         assert_eq!(cycles(&[0x1840]), 1, "adds r0, r0, r1");
         assert_eq!(cycles(&[0x6808]), 2, "ldr r0, [r1]");
         assert_eq!(cycles(&[0x6008]), 1, "str r0, [r1]");
+        assert_eq!(cycles(&[0x5088]), 2, "str r0, [r1, r2]");
         assert_eq!(cycles(&[0xb5f0]), 6, "push of r4 to r7 and lr: 1 + 5");
-        assert_eq!(
-            cycles(&[0xbdf0]),
-            8,
-            "pop of r4 to r7 and pc: 1 + 5 and the refill"
-        );
+        assert_eq!(cycles(&[0xe9d1, 0x2300]), 3, "ldrd r2, r3, [r1]");
+        assert_eq!(cycles(&[0xe851, 0x0f00]), 2, "ldrex r0, [r1]");
         assert_eq!(cycles(&[0xfb00, 0xf001]), 1, "mul r0, r0, r1");
         assert_eq!(cycles(&[0xfba0, 0x2301]), 1, "umull r2, r3, r0, r1");
-        assert_eq!(cycles(&[0xfbb0, 0xf0f1]), 7, "udiv r0, r0, r1");
+        assert_eq!(cycles(&[0xfbe0, 0x2361]), 1, "umaal r2, r3, r0, r1");
+        assert_eq!(cycles(&[0xfbb0, 0xf0f1]), 7, "udiv r0, r0, r1: 2 to 12");
         assert_eq!(cycles(&[0xee30, 0x0a20]), 1, "vadd.f32 s0, s0, s1");
-        assert_eq!(cycles(&[0xee80, 0x0a20]), 14, "vdiv.f32 s0, s0, s1");
-        assert_eq!(cycles(&[0xeeb1, 0x0ac0]), 14, "vsqrt.f32 s0, s0");
         assert_eq!(cycles(&[0xee00, 0x0a81]), 3, "vmla.f32 s0, s1, s2");
+        assert_eq!(cycles(&[0xed91, 0x0a00]), 2, "vldr s0, [r1]");
+        assert_eq!(cycles(&[0xed91, 0x0b00]), 3, "vldr d0, [r1]");
+    }
+
+    #[test]
+    fn a_taken_branch_refills_the_pipeline() {
+        assert_eq!(cycles(&[0xd0fe]), 1, "beq, not taken");
+        assert_eq!(taken(&[0xd0fe]), 3, "beq");
+        assert_eq!(taken(&[0x4770]), 3, "bx lr");
+        assert_eq!(taken(&[0xbdf0]), 9, "pop of r4 to r7 and pc: 1 + 5 + 3");
+        assert_eq!(taken(&[0xf851, 0xf002]), 5, "ldr pc, [r1, r2]: at least 5");
+        assert_eq!(taken(&[0xe8df, 0xf000]), 6, "tbb [pc, r0]: at least 6");
+        let wide = [0xf240, 0x0000u16].map(u16::to_le_bytes).concat();
+        assert!(decode(FLASH_BASE + 2, &wide).split && !decode(FLASH_BASE + 4, &wide).split);
+    }
+
+    /// The pairs of the manual's section on load and store timings.
+    #[test]
+    fn loads_go_through_the_pipeline_behind_independent_loads() {
+        assert_eq!(cycles(&[0x6808, 0x6811]), 3, "ldr r0, [r1]; ldr r1, [r2]");
+        assert_eq!(
+            cycles(&[0x5888, 0x6158]),
+            3,
+            "ldr r0, [r1, r2]; str r0, [r3, #20]"
+        );
+        assert_eq!(
+            cycles(&[0x5888, 0x5099]),
+            3,
+            "ldr r0, [r1, r2]; str r1, [r3, r2]"
+        );
+        assert_eq!(
+            cycles(&[0x5948, 0x6811, 0x685a]),
+            4,
+            "ldr r0, [r1, r5]; ldr r1, [r2]; ldr r2, [r3, #4]"
+        );
+        assert_eq!(cycles(&[0x6809, 0x680a]), 4, "ldr r1, [r1]; ldr r2, [r1]");
+        assert_eq!(cycles(&[0x3104, 0x680a]), 4, "adds r1, #4; ldr r2, [r1]");
+        assert_eq!(cycles(&[0x3104, 0x6812]), 3, "adds r1, #4; ldr r2, [r2]");
+        assert_eq!(cycles(&[0xb087, 0xb410]), 4, "sub sp, #28; push of r4");
+    }
+
+    #[test]
+    fn floating_point_results_come_late_and_divisions_run_beside_integer_instructions() {
+        let add = [0xee30, 0x0a20]; // vadd.f32 s0, s0, s1
+        let other = [0xee32, 0x2aa2]; // vadd.f32 s4, s5, s5
+        let sequence = |parts: &[&[u16]]| cycles(&parts.concat());
+        assert_eq!(sequence(&[&add, &add]), 3);
+        assert_eq!(sequence(&[&add, &other, &add]), 3);
+        let divide: [u16; 2] = [0xee80, 0x0a20]; // vdiv.f32 s0, s0, s1
+        let square_root: [u16; 2] = [0xeeb1, 0x0ac0]; // vsqrt.f32 s0, s0
+        assert_eq!(sequence(&[&divide]), 14);
+        assert_eq!(sequence(&[&square_root]), 14);
+        assert_eq!(sequence(&[&divide, &[0x1840; 5]]), 14);
+        assert_eq!(sequence(&[&divide, &[0x1840; 20]]), 21);
+        assert_eq!(sequence(&[&divide, &other]), 15);
     }
 
     #[test]
@@ -212,5 +225,7 @@ mod tests {
         let b = block(&[0xbf40, 0xee30, 0x0a20, 0xbf30]);
         assert_eq!((b.instructions, b.bytes, b.last), (3, 8, Last::Wfi));
         assert!(b.float && b.sev);
+        // ldr r0, [pc, #16] at the second half-word: 4 ahead of the word that holds it, and 16.
+        assert_eq!(block(&[0xbf00, 0x4804]).constants, 1);
     }
 }

@@ -1,6 +1,7 @@
 //! Exception entry and return on the emulated CPU (ARMv7-M Architecture Reference Manual B1.5.6 to B1.5.8).
 //!
-//! Floating-point state is stacked at entry and not lazily, which the program does not notice; FPCAR is not kept.
+//! Floating-point state is stacked at entry and not lazily, which the program does not notice; FPCAR is not kept. Its cycles are
+//! those of lazy stacking.
 use super::Wiring;
 use super::cost;
 use super::elf::{FLASH_BASE, RAM_BASE};
@@ -85,6 +86,12 @@ pub(crate) fn enter<W: Wiring>(
     set(cpu, Reg::CONTROL, control & 1)?;
     let state = cpu.get_data_mut();
     state.cycles += cost::EXCEPTION_ENTRY;
+    if float {
+        state.float_state_pending = state.chip_ref().ppb.stacks_float_state_lazily();
+        if !state.float_state_pending {
+            state.cycles += cost::FLOAT_STATE;
+        }
+    }
     let now = state.cycles;
     service(cpu, now);
     let nvic = &cpu.get_data().chip_ref().nvic;
@@ -109,6 +116,7 @@ fn start_handler<W: Wiring>(
     let vector_at = state.chip().ppb.vtor.wrapping_add(4 * exception as u32);
     let pended_at = state.chip().nvic.enter(exception);
     state.exceptions += 1;
+    state.refill = 0;
     state.event_register = true;
     state
         .profile
@@ -162,6 +170,10 @@ pub(crate) fn leave<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32) -> Result<
         return start_handler(cpu, next, exc_return);
     }
     state.cycles += cost::EXCEPTION_RETURN;
+    state.refill = 0;
+    if exc_return & NO_FLOAT == 0 && !std::mem::take(&mut state.float_state_pending) {
+        state.cycles += cost::FLOAT_STATE;
+    }
     let now = state.cycles;
     state.profile.leave(instructions, now);
     unstack(cpu, exc_return, xpsr)
@@ -207,6 +219,9 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
 
 /// Sets the registers to their reset values (B1.5.5); the stack pointer and the PC come from the vector table.
 pub(crate) fn reset<W: Wiring>(cpu: &mut Cpu<'_, W>) -> Result<(), FrameError> {
+    let state = cpu.get_data_mut();
+    (state.refill, state.float_state_pending) = (0, false);
+    state.flash_waiting.control(0);
     set_xpsr(cpu, 1 << 24)?;
     let masks = [Reg::PRIMASK, Reg::BASEPRI, Reg::FAULTMASK];
     for register in [Reg::CONTROL, Reg::FPSCR].into_iter().chain(masks) {

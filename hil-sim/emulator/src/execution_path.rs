@@ -1,8 +1,16 @@
 //! The execution path of one exception handler, block by block.
 use std::collections::BTreeMap;
 
-/// A basic block that was executed: address and length in bytes.
-pub type ExecutedBlock = (u32, u16);
+/// A basic block that was executed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ExecutedBlock {
+    /// Address of its first instruction.
+    pub address: u32,
+    /// Its length.
+    pub bytes: u16,
+    /// Cycles of refill after a branch and of waiting for the flash.
+    pub waited: u16,
+}
 
 /// The basic blocks of all activations of one handler, those of handlers that preempted it excluded.
 #[derive(Debug, Clone, Default)]

@@ -15,9 +15,11 @@ mod execution_path;
 mod exti;
 mod faults;
 mod flash;
+mod flash_waiting;
 mod gpio;
 mod halt;
 mod inject;
+mod instruction;
 mod iwdg;
 mod mcu;
 mod names;
@@ -27,7 +29,6 @@ mod profile;
 mod ram;
 mod rcc;
 mod run;
-mod stalls;
 mod state;
 mod stop;
 mod tim;
@@ -45,7 +46,6 @@ pub use inject::InjectError;
 pub use mcu::{Machine, Reset};
 pub use profile::{InterruptStats, Stats};
 pub use rcc::{Clocks, HSE_HZ, HSI_HZ, LSI_HZ};
-pub use stalls::cold_fetch_stalls;
 pub use stop::{Access, Place, Stop};
 
 /// The circuit at the pins. Times are CPU cycles since power-up, in ascending order.

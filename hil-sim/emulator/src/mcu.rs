@@ -59,8 +59,9 @@ impl<W: Wiring + 'static> Machine<W> {
     /// As [`Self::new`].
     pub fn with_chip(firmware: &Firmware, wiring: W, chip: &ChipState) -> Result<Self, Stop> {
         let flash: Arc<[u8]> = firmware.flash().into();
+        let timing = chip.flash;
         let chip = Chip::new(wiring, flash.to_vec(), chip);
-        let state = State::new(chip, Arc::clone(&flash));
+        let state = State::new(chip, Arc::clone(&flash), timing);
         let mut cpu = create_cpu(state, &flash).map_err(emulator)?;
         let initial_ram = vec![PAINT; RAM_SIZE as usize];
         cpu.mem_write(RAM_BASE.into(), &initial_ram)
@@ -191,12 +192,17 @@ impl<W: Wiring + 'static> Machine<W> {
         self.cpu.get_data().profile.path()
     }
 
-    /// Address and estimated cycles of each instruction of a block in the flash.
-    pub fn instructions(&self, (address, bytes): super::ExecutedBlock) -> Vec<(u32, u16)> {
+    /// Address and estimated cycles of each instruction of a block in the flash; the first has what the core waited before it.
+    pub fn instructions(&self, block: super::ExecutedBlock) -> Vec<(u32, u16)> {
+        let super::ExecutedBlock {
+            address,
+            bytes,
+            waited,
+        } = block;
         let start = (address & 0x07ff_ffff) as usize;
         let code = self.firmware.flash().get(start..start + usize::from(bytes));
         super::cost::instructions(code.unwrap_or_default())
-            .map(|(at, cycles)| (address + at, cycles))
+            .map(|(at, cycles)| (address + at, cycles + if at == 0 { waited } else { 0 }))
             .collect()
     }
 

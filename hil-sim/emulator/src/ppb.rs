@@ -310,6 +310,11 @@ impl Ppb {
         self.debugger_is_attached && self.demcr & VC_HARDERR != 0
     }
 
+    /// FPCCR.LSPEN: an exception's entry reserves the place of the floating-point state only.
+    pub fn stacks_float_state_lazily(&self) -> bool {
+        self.fpccr & 1 << 30 != 0
+    }
+
     /// DBGMCU_CR.DBG_SLEEP keeps the core's clock, and with it CYCCNT, running in sleep.
     pub fn counts_asleep(&self) -> bool {
         self.dbgmcu[0] & 1 != 0

@@ -1,5 +1,5 @@
 //! Instructions and cycles of each exception handler.
-use super::execution_path::ExecutionPath;
+use super::execution_path::{ExecutedBlock, ExecutionPath};
 use super::nvic::{self, EXCEPTIONS};
 
 /// Statistics of one exception handler since power-up or the last restart.
@@ -139,9 +139,9 @@ impl Profile {
 
     /// Records a block of the watched exception.
     #[cold]
-    pub fn record(&mut self, address: u32, bytes: u16) {
+    pub fn record(&mut self, block: ExecutedBlock) {
         if let Some((_, path)) = &mut self.watched {
-            path.record((address, bytes));
+            path.record(block);
         }
     }
 

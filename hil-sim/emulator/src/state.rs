@@ -3,11 +3,17 @@ use super::Wiring;
 use super::chip::Chip;
 use super::cost::{self, Block, CostTable, Last};
 use super::elf::FLASH_BASE;
+use super::execution_path::ExecutedBlock;
+use super::flash_waiting::FlashWaiting;
 use super::profile::Profile;
 use super::ram::Ram;
 use super::stop::{Access, Refusal};
 use std::sync::Arc;
+use thermal_sim::processor::FlashTiming;
 use unicorn_engine::{RegisterARM as Reg, Unicorn};
+
+/// Access control register of the flash.
+const FLASH_ACR: u32 = 0x4002_3c00;
 
 pub(crate) type Cpu<'u, W> = Unicorn<'u, State<W>>;
 
@@ -39,6 +45,7 @@ pub(crate) struct State<W> {
     chip: Option<Box<Chip<W>>>,
     pub cost: CostTable,
     pub flash: Arc<[u8]>,
+    pub flash_waiting: FlashWaiting,
     pub profile: Profile,
     pub cycles: u64,
     pub instructions: u64,
@@ -47,6 +54,11 @@ pub(crate) struct State<W> {
     pub block_at: u64,
     pub block_pc: u32,
     pub block: Block,
+    /// Address behind the last block, and the cycles of refill if the CPU goes on elsewhere.
+    following: u32,
+    pub refill: u8,
+    /// The floating-point state of the preempted program is not yet on the stack, only its place (lazy stacking).
+    pub float_state_pending: bool,
     pub limit: u64,
     /// Stop the CPU before the next block.
     pub pause_requested: bool,
@@ -61,11 +73,12 @@ pub(crate) struct State<W> {
 }
 
 impl<W: Wiring> State<W> {
-    pub fn new(chip: Chip<W>, flash: Arc<[u8]>) -> Self {
+    pub fn new(chip: Chip<W>, flash: Arc<[u8]>, timing: FlashTiming) -> Self {
         Self {
             chip: Some(Box::new(chip)),
             cost: CostTable::new(flash.len()),
             flash,
+            flash_waiting: FlashWaiting::new(timing),
             profile: Profile::new(),
             cycles: 0,
             instructions: 0,
@@ -73,6 +86,9 @@ impl<W: Wiring> State<W> {
             block_at: 0,
             block_pc: 0,
             block: Block::default(),
+            following: 0,
+            refill: 0,
+            float_state_pending: false,
             limit: 0,
             pause_requested: false,
             exit: Exit::Unspecified,
@@ -115,15 +131,38 @@ impl<W: Wiring> State<W> {
         if !undisturbed || u32::from(block.bytes) != bytes || block.float || block.sev {
             return false;
         }
+        self.charge(address, block);
+        true
+    }
+
+    /// Counts a block that is about to run, and the refill if a branch leads to it.
+    #[inline]
+    fn charge(&mut self, address: u32, block: Block) {
+        let before = self.cycles;
+        if address != self.following && self.refill > 0 {
+            self.cycles += u64::from(self.refill) + u64::from(block.split);
+        }
+        self.cycles += self.flash_waiting.block(
+            self.cycles,
+            (address, block.bytes),
+            block.cycles,
+            block.constants,
+        );
+        self.following = address + u32::from(block.bytes);
+        self.refill = block.refill;
         self.block_pc = address;
         self.block_at = self.cycles;
         self.block = block;
         self.cycles += u64::from(block.cycles);
         self.instructions += u64::from(block.instructions);
         if self.profile.watching {
-            self.profile.record(address, block.bytes);
+            let waited = (self.cycles - u64::from(block.cycles) - before) as u16;
+            self.profile.record(ExecutedBlock {
+                address,
+                bytes: block.bytes,
+                waited,
+            });
         }
-        true
     }
 
     /// Passes the time for which the busy flash stalls the code in it.
@@ -230,19 +269,16 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
                 let code = cpu
                     .mem_read_as_vec(u64::from(address), bytes as usize)
                     .unwrap_or_default();
-                cost::decode(&code)
+                cost::decode(address, &code)
             }
         };
         let state = cpu.get_data_mut();
         if !block.float || state.chip().ppb.float_enabled() {
-            state.block = block;
-            state.block_at = now;
-            state.cycles += u64::from(block.cycles);
-            state.instructions += u64::from(block.instructions);
             state.event_register |= block.sev;
-            if state.profile.watching {
-                state.profile.record(address, block.bytes);
+            if block.float && std::mem::take(&mut state.float_state_pending) {
+                state.cycles += cost::FLOAT_STATE;
             }
+            state.charge(address, block);
             return;
         }
         state.exit = Exit::FloatDenied;
@@ -265,7 +301,7 @@ pub(crate) fn refund<W: Wiring>(state: &mut State<W>, pc: u32) {
         .flash
         .get(start..start + ran as usize)
         .unwrap_or_default();
-    let part = cost::decode(code);
+    let part = cost::decode(state.block_pc, code);
     state.cycles = state.block_at + u64::from(part.cycles);
     state.instructions -= u64::from(state.block.instructions - part.instructions);
     state.block = Block {
@@ -320,6 +356,9 @@ pub(crate) fn on_write<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8,
     }
     // a new clock moves the cycle at which the run shall pause
     state.pause_requested |= register & 0xffff_fc00 == 0x4002_3800;
+    if register == FLASH_ACR {
+        state.flash_waiting.control(value);
+    }
     state.wait_for_flash();
 }
 

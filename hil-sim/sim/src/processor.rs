@@ -28,6 +28,20 @@ impl fmt::Display for ResetCause {
     }
 }
 
+named_enum! {
+    /// How long the core waits for the flash.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum FlashTiming {
+        /// Not at all: the figures depend on the program's instructions alone, not on where they lie.
+        #[default]
+        Ideal = "ideal",
+        /// Wait states, caches and prefetch as the program sets them in FLASH_ACR.
+        Accelerated = "art",
+        /// The wait states of FLASH_ACR with caches and prefetch off, whatever it says: the slowest case.
+        Unaccelerated = "off",
+    }
+}
+
 /// What is set or present before the program starts, and differs between chips and boards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChipState {
@@ -39,6 +53,8 @@ pub struct ChipState {
     pub external_clock: bool,
     /// Whether programming and erasing of the flash take the longest times of the data sheet, not the typical ones.
     pub slow_flash: bool,
+    /// How long the core waits for the flash.
+    pub flash: FlashTiming,
 }
 
 impl ChipState {
@@ -54,6 +70,7 @@ impl Default for ChipState {
             lsi_hz: 32_000,
             external_clock: true,
             slow_flash: false,
+            flash: FlashTiming::default(),
         }
     }
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use addr2line::Loader;
 use anyhow::{Context, anyhow};
 use clap::Args;
-use stm32_emulator::{ExecutedBlock, OneFingerBoard, cold_fetch_stalls};
+use stm32_emulator::{ExecutedBlock, OneFingerBoard};
 use thermal_sim::run::run as run_scene;
 
 use super::{Failure, engine, image, output};
@@ -66,12 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             share.longest.1 += cycles;
         });
     }
-    let stalls = cold_fetch_stalls(&watched.worst, |block| machine.instructions(block));
-    let text = table(shares, watched.activations)
-        + &format!(
-            "\nfetching the longest tick's code into an empty instruction cache: up to {stalls} cycles more, not in the estimate\n"
-        );
-    output::print(&text)
+    output::print(&table(shares, watched.activations))
 }
 
 /// The function of the firmware or of the contact model that an instruction belongs to, including code inlined from other

@@ -8,6 +8,7 @@ use image_proof::compiler;
 use image_tests::{image, on_image};
 use system_tests::{between, forces, scene};
 use thermal_sim::metrics::{Figures, figures};
+use thermal_sim::processor::FlashTiming;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
@@ -108,6 +109,33 @@ fn granite_is_displayed_within_20_mk_of_the_skin() {
         ("tick.stack", figures.stack_bytes.map(f64::from)),
     ] {
         assert_compiled(key, measured.expect("emulated"), &compiler);
+    }
+}
+
+/// The cycles with the waiting for the flash, and that it changes nothing else that the device does.
+#[test]
+fn the_flash_makes_ticks_longer_and_changes_nothing_else() {
+    let path = format!("{}/../../scenes/granite.toml", env!("CARGO_MANIFEST_DIR"));
+    let mut scene = Scene::read(Path::new(&path)).expect("a good scene");
+    let compiler = compiler::of_elf(&std::fs::read(image()).expect("the image"));
+    let compiler = compiler.expect("a compiler");
+    let ideal = on_image(&scene);
+    for flash in [FlashTiming::Accelerated, FlashTiming::Unaccelerated] {
+        scene.chip.flash = flash;
+        let outcome = on_image(&scene);
+        assert!(
+            ideal.trace.rows() == outcome.trace.rows(),
+            "{}",
+            flash.name()
+        );
+        let cycles = figures(&scene, &outcome).cycles_per_tick;
+        for (statistic, measured) in [
+            ("mean", cycles.mean),
+            ("max", cycles.max.map(|max| max as f64)),
+        ] {
+            let key = format!("tick.cycles_{statistic}_{}", flash.name());
+            assert_compiled(&key, measured.expect("emulated"), &compiler);
+        }
     }
 }
 

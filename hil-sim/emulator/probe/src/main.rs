@@ -5,6 +5,7 @@
 
 mod core_cases;
 mod device_cases;
+mod published_cycles;
 mod watchdog_cases;
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -85,6 +86,7 @@ fn main() -> ! {
         62 => device_cases::stream_enabled_with_flags(),
         63 => device_cases::trigger_before_the_converter_is_stable(),
         64 => device_cases::edge_before_its_selection(),
+        70 => published_cycles::elliptic_curve(),
         _ => {}
     }
     done()

@@ -69,6 +69,12 @@ impl FiveFingerBoard {
             meter,
         })
     }
+
+    /// Longest time from the end of a finger's block to the switch of the multiplexers, us.
+    pub fn longest_switch_us(&self) -> f64 {
+        let cycles = self.machine.wiring().longest_switch;
+        1e6 * cycles as f64 / f64::from(self.machine.clocks().hclk_hz)
+    }
 }
 
 impl FiveFingerEngine for FiveFingerBoard {
@@ -162,6 +168,9 @@ struct Pins {
     settling: u64,
     /// Number of conversions of the selected finger that are still to come, of those that belong to its block.
     conversions_left: usize,
+    /// Cycle at which the block of the selected finger was complete, and the longest time from there to the next finger, cycles.
+    block_ended: Option<u64>,
+    longest_switch: u64,
     /// Last code of each input.
     codes: [u16; ADC_INPUTS.len()],
     first_conversion: Option<u64>,
@@ -179,6 +188,8 @@ impl Pins {
             settling: 0,
             // At power-up the first finger is selected, and all of its scans are settled.
             conversions_left: (SETTLED_SCANS + 1) * Channel::ALL.len(),
+            block_ended: None,
+            longest_switch: 0,
             codes: [0; ADC_INPUTS.len()],
             first_conversion: None,
             received: Vec::new(),
@@ -195,6 +206,9 @@ impl Pins {
             };
             if self.select[line] != level {
                 (self.select[line], self.switched_at) = (level, at);
+                if let Some(ended) = self.block_ended.take() {
+                    self.longest_switch = self.longest_switch.max(at - ended);
+                }
                 self.conversions_left = SETTLED_SCANS * Channel::ALL.len();
             }
         }
@@ -236,6 +250,9 @@ impl Wiring for Pins {
                     self.codes[index] = code;
                     break;
                 }
+            }
+            if self.conversions_left == 0 {
+                self.block_ended.get_or_insert(now);
             }
         }
         self.codes[index]

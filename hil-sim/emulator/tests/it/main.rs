@@ -5,6 +5,7 @@ mod devices;
 mod faults;
 mod files;
 mod probe;
+mod published_cycles;
 
 use documented_figures::run_generator;
 

@@ -45,6 +45,18 @@ pub(super) struct Device {
     pub lsi_hz: Option<Spanned<u32>>,
     pub external_clock: bool,
     pub slow_flash: bool,
+    pub flash: FlashTiming,
+}
+
+words! {
+    /// How long the core waits for the flash.
+    #[derive(Default)]
+    pub(super) enum FlashTiming {
+        #[default]
+        Ideal = "ideal",
+        Accelerated = "art",
+        Unaccelerated = "off",
+    }
 }
 
 words! {
@@ -65,6 +77,7 @@ impl Default for Device {
             lsi_hz: None,
             external_clock: true,
             slow_flash: false,
+            flash: FlashTiming::default(),
         }
     }
 }

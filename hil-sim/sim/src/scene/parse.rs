@@ -18,7 +18,7 @@ use super::object::object;
 use super::plant::params;
 use super::source::{SceneError, Source};
 use super::{AssumedFinger, Draws, Force, HostLine, Scene};
-use crate::processor::ChipState;
+use crate::processor::{ChipState, FlashTiming};
 
 /// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
 const SETTLE_S: f64 = 8.0;
@@ -148,6 +148,11 @@ fn chip(source: &Source<'_>, device: &file::Device) -> Result<ChipState, SceneEr
         lsi_hz: whole("lsi_hz", &device.lsi_hz, nominal.lsi_hz, lsi_hz)?,
         external_clock: device.external_clock,
         slow_flash: device.slow_flash,
+        flash: match device.flash {
+            file::FlashTiming::Ideal => FlashTiming::Ideal,
+            file::FlashTiming::Accelerated => FlashTiming::Accelerated,
+            file::FlashTiming::Unaccelerated => FlashTiming::Unaccelerated,
+        },
     })
 }
 
