@@ -37,7 +37,28 @@ pub(crate) struct Block {
     pub float: bool,
     /// The block holds SEV, which sets the event register of the only core.
     pub sev: bool,
+    pub exclusive: Exclusive,
     pub last: Last,
+}
+
+impl Block {
+    /// Whether the run loop has more to do than to count the block.
+    #[inline]
+    pub fn is_special(self) -> bool {
+        self.float || self.sev || self.exclusive != Exclusive::Unchanged
+    }
+}
+
+/// What a block leaves of the exclusive monitor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Exclusive {
+    /// As it was.
+    #[default]
+    Unchanged,
+    /// Perhaps set, by LDREX.
+    Set,
+    /// Clear, by STREX or CLREX.
+    Clear,
 }
 
 /// Last instruction of a block; the run loop distinguishes these.
@@ -87,6 +108,7 @@ pub(crate) fn decode(address: u32, code: &[u8]) -> Block {
         bytes: code.len() as u16,
         ..Block::default()
     };
+    let mut conditional = false;
     for (at, instruction, cycles) in timed(code) {
         block.cycles += cycles;
         block.instructions += 1;
@@ -98,6 +120,15 @@ pub(crate) fn decode(address: u32, code: &[u8]) -> Block {
         block.split |= at == 0 && instruction.bytes == 4 && address & 2 != 0;
         block.float |= instruction.float != Float::None;
         block.sev |= instruction.code == 0xbf40;
+        conditional |= instruction.code & 0xff00 == 0xbf00 && instruction.code & 0xf != 0;
+        let second = code.get(at as usize + 2..).and_then(<[u8]>::first_chunk);
+        let second = second.map_or(0, |half| u16::from_le_bytes(*half));
+        match exclusive_access(instruction.code, second.into()) {
+            Exclusive::Unchanged => {}
+            // a store that its condition skips leaves the monitor as it was
+            Exclusive::Clear if conditional => {}
+            access => block.exclusive = access,
+        }
         block.last = match instruction.code {
             0xbf10 => Last::Yield,
             0xbf20 => Last::Wfe,
@@ -128,6 +159,19 @@ fn timed(code: &[u8]) -> impl Iterator<Item = (u32, Instruction, u16)> {
         }
         Some((start as u32, instruction, cycles))
     })
+}
+
+/// LDREX, STREX and their forms for bytes and half-words, CLREX.
+fn exclusive_access(first: u32, second: u32) -> Exclusive {
+    let narrow = matches!(second >> 4 & 0xf, 4 | 5);
+    match first & 0xfff0 {
+        0xe850 => Exclusive::Set,
+        0xe8d0 if narrow => Exclusive::Set,
+        0xe840 => Exclusive::Clear,
+        0xe8c0 if narrow => Exclusive::Clear,
+        0xf3b0 if second == 0x8f2f => Exclusive::Clear,
+        _ => Exclusive::Unchanged,
+    }
 }
 
 #[cfg(test)]
@@ -227,5 +271,23 @@ mod tests {
         assert!(b.float && b.sev);
         // ldr r0, [pc, #16] at the second half-word: 4 ahead of the word that holds it, and 16.
         assert_eq!(block(&[0xbf00, 0x4804]).constants, 1);
+    }
+
+    #[test]
+    fn a_decoded_block_tells_whether_it_leaves_the_exclusive_monitor_set() {
+        const LDREX: [u16; 2] = [0xe850, 0x0f00];
+        const STREX: [u16; 2] = [0xe840, 0x1000];
+        const LDRD: [u16; 2] = [0xe9d0, 0x0100];
+        let exclusive = |halves: &[[u16; 2]]| block(halves.as_flattened()).exclusive;
+        assert_eq!(exclusive(&[LDRD]), Exclusive::Unchanged);
+        assert_eq!(exclusive(&[LDREX]), Exclusive::Set);
+        assert_eq!(exclusive(&[LDREX, STREX]), Exclusive::Clear);
+        assert_eq!(
+            exclusive(&[LDREX, [0xf3bf, 0x8f2f]]),
+            Exclusive::Clear,
+            "clrex"
+        );
+        let it_eq_nop = [0xbf08, 0xbf00];
+        assert_eq!(exclusive(&[LDREX, it_eq_nop, STREX]), Exclusive::Set);
     }
 }

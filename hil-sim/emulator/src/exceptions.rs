@@ -7,18 +7,23 @@ use super::cost;
 use super::elf::{FLASH_BASE, RAM_BASE};
 use super::nvic::exception;
 use super::state::{Cpu, get, masks, service};
-use unicorn_engine::RegisterARM as Reg;
+use unicorn_engine::{Prot, RegisterARM as Reg};
 
 /// Why an exception entry or return failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FrameError {
     /// The frame is outside of memory.
     Stack(u32),
-    /// No valid EXC_RETURN, or return from an exception that is not active.
+    /// No valid EXC_RETURN for the active exceptions, or for the mode in the frame. The exception is no longer active.
     Return(u32),
+    /// The CPU is to continue at an address without the Thumb bit. The frame is complete.
+    ArmState(u32),
     /// The CPU emulation refused a register.
     Emulator,
 }
+
+/// Address of the instruction that clears the exclusive monitor; nothing is there on the chip.
+pub(crate) const CLREX_AT: u32 = 0x0ff0_0000;
 
 const CORE: [Reg; 6] = [Reg::R0, Reg::R1, Reg::R2, Reg::R3, Reg::R12, Reg::LR];
 /// D0 to D7, which the emulation numbers consecutively.
@@ -94,11 +99,7 @@ pub(crate) fn enter<W: Wiring>(
     }
     let now = state.cycles;
     service(cpu, now);
-    let nvic = &cpu.get_data().chip_ref().nvic;
-    let late = nvic
-        .best()
-        .filter(|(_, priority)| *priority < nvic.priority_of(exception))
-        .map(|(n, _)| n);
+    let late = cpu.get_data().chip_ref().nvic.late_arrival(exception);
     start_handler(cpu, late.unwrap_or(exception), exc_return)
 }
 
@@ -108,6 +109,7 @@ fn start_handler<W: Wiring>(
     exception: usize,
     exc_return: u32,
 ) -> Result<(), FrameError> {
+    clear_exclusive_monitor(cpu)?;
     let flags = get(cpu, Reg::XPSR) & 0xf80f_0000;
     set_xpsr(cpu, flags | 1 << 24 | exception as u32)?;
     set(cpu, Reg::LR, exc_return)?;
@@ -122,7 +124,29 @@ fn start_handler<W: Wiring>(
         .profile
         .enter(exception, now.saturating_sub(pended_at), instructions, now);
     let vector = vector(cpu, vector_at)?;
-    set(cpu, Reg::PC, vector | 1)
+    set(cpu, Reg::PC, vector | 1)?;
+    if vector & 1 == 0 {
+        return Err(FrameError::ArmState(vector));
+    }
+    Ok(())
+}
+
+/// Reset, exception entry and return clear the exclusive monitor (B1.5.5, B1.5.6, B1.5.8). The CPU emulation has no other way to it than the
+/// instruction. Changes PC and the state of an IT block, both of which the caller sets.
+fn clear_exclusive_monitor<W: Wiring>(cpu: &mut Cpu<'_, W>) -> Result<(), FrameError> {
+    if !std::mem::take(&mut cpu.get_data_mut().exclusive_set) {
+        return Ok(());
+    }
+    const CLREX: [u8; 4] = [0xbf, 0xf3, 0x2f, 0x8f];
+    let (at, page) = (u64::from(CLREX_AT), 0x1000);
+    let mut execute = || {
+        cpu.mem_map(at, page, Prot::EXEC)?;
+        cpu.mem_write(at, &CLREX)?;
+        cpu.reg_write(Reg::EPSR, 1 << 24)?;
+        cpu.emu_start(at | 1, at + CLREX.len() as u64, 0, 0)?;
+        cpu.mem_unmap(at, page)
+    };
+    execute().map_err(|_| FrameError::Emulator)
 }
 
 /// Word of the vector table, which is usually in flash.
@@ -149,25 +173,26 @@ pub(crate) fn leave<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32) -> Result<
         exc_return | NO_FLOAT,
         0xffff_fff1 | 0xffff_fff9 | 0xffff_fffd
     );
-    if !valid || !state.chip().nvic.is_active(running) {
-        return Err(FrameError::Return(exc_return));
-    }
-    state.chip().nvic.leave(running, now);
+    let nvic = &mut state.chip().nvic;
+    let to_thread = exc_return & 8 != 0;
+    let valid = valid && nvic.is_active(running) && !(to_thread && nvic.active_count() > 1);
+    nvic.leave(running, now);
     state.event_register = true;
     if running != exception::NMI {
         set(cpu, Reg::FAULTMASK, 0)?;
+    }
+    if !valid {
+        cpu.get_data_mut().profile.leave(instructions, now);
+        return Err(FrameError::Return(exc_return));
     }
     let (primask, basepri, faultmask) = masks(cpu);
     let state = cpu.get_data_mut();
     let nvic = &state.chip_ref().nvic;
     let level = nvic.execution_priority(primask, basepri, faultmask);
     if let Some((next, _)) = nvic.best().filter(|(_, priority)| *priority < level) {
-        state.cycles += cost::TAIL_CHAIN;
-        let now = state.cycles;
+        let now = state.cycles + cost::TAIL_CHAIN;
         state.profile.leave(instructions, now);
-        let control = get(cpu, Reg::CONTROL);
-        set(cpu, Reg::CONTROL, control & !4)?;
-        return start_handler(cpu, next, exc_return);
+        return tail_chain(cpu, next, exc_return);
     }
     state.cycles += cost::EXCEPTION_RETURN;
     state.refill = 0;
@@ -177,6 +202,18 @@ pub(crate) fn leave<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32) -> Result<
     let now = state.cycles;
     state.profile.leave(instructions, now);
     unstack(cpu, exc_return, xpsr)
+}
+
+/// Enters `exception` on the frame of the one that returns.
+pub(crate) fn tail_chain<W: Wiring>(
+    cpu: &mut Cpu<'_, W>,
+    exception: usize,
+    exc_return: u32,
+) -> Result<(), FrameError> {
+    cpu.get_data_mut().cycles += cost::TAIL_CHAIN;
+    let control = get(cpu, Reg::CONTROL);
+    set(cpu, Reg::CONTROL, control & !4)?;
+    start_handler(cpu, exception, exc_return)
 }
 
 fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Result<(), FrameError> {
@@ -194,6 +231,12 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
         .map_err(|_| FrameError::Stack(sp))?;
     let (words, _) = bytes.as_chunks();
     let word = |at: usize| u32::from_le_bytes(words[at]);
+    let stacked = word(7);
+    if (exc_return & 8 != 0) != (stacked & 0x1ff == 0) {
+        set(cpu, Reg::CONTROL, control)?;
+        set_xpsr(cpu, xpsr)?;
+        return Err(FrameError::Return(exc_return));
+    }
     for (i, register) in CORE.into_iter().enumerate() {
         set(cpu, register, word(i))?;
     }
@@ -205,7 +248,7 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
         }
         set(cpu, Reg::FPSCR, word(24))?;
     }
-    let stacked = word(7);
+    clear_exclusive_monitor(cpu)?;
     set(
         cpu,
         Reg::SP,
@@ -213,8 +256,12 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
     )?;
     let control = get(cpu, Reg::CONTROL);
     set(cpu, Reg::CONTROL, control & !4 | u32::from(float) << 2)?;
-    set_xpsr(cpu, stacked & !(1 << 9))?;
-    set(cpu, Reg::PC, word(6) | 1)
+    set_xpsr(cpu, stacked & !(1 << 9) | 1 << 24)?;
+    set(cpu, Reg::PC, word(6) | 1)?;
+    if stacked & 1 << 24 == 0 {
+        return Err(FrameError::ArmState(word(6)));
+    }
+    Ok(())
 }
 
 /// Sets the registers to their reset values (B1.5.5); the stack pointer and the PC come from the vector table.
@@ -222,6 +269,7 @@ pub(crate) fn reset<W: Wiring>(cpu: &mut Cpu<'_, W>) -> Result<(), FrameError> {
     let state = cpu.get_data_mut();
     (state.refill, state.float_state_pending) = (0, false);
     state.flash_waiting.control(0);
+    clear_exclusive_monitor(cpu)?;
     set_xpsr(cpu, 1 << 24)?;
     let masks = [Reg::PRIMASK, Reg::BASEPRI, Reg::FAULTMASK];
     for register in [Reg::CONTROL, Reg::FPSCR].into_iter().chain(masks) {

@@ -4,9 +4,9 @@ use super::debugger::Halted;
 use super::exceptions::{self, FrameError};
 use super::mcu::Machine;
 use super::nvic::{NMI_PRIORITY, exception};
-use super::state::masks;
+use super::state::{self, get, masks};
 use super::stop::{Access, Stop};
-use unicorn_engine::uc_error;
+use unicorn_engine::{RegisterARM as Reg, uc_error};
 
 /// A fault of the core.
 #[derive(Debug, Clone, Copy)]
@@ -38,12 +38,32 @@ pub(super) const NO_MEMORY: Fault = Fault::new(
     1 << 8,
     "instruction fetch where no memory is",
 );
+pub(super) const EXECUTE_NEVER: Fault = Fault::new(
+    exception::MEM_MANAGE,
+    1,
+    "instruction fetch from a region of devices",
+);
+pub(super) const RESERVED_ADDRESS: Fault = Fault::new(
+    exception::BUS_FAULT,
+    1 << 10, // imprecise
+    "access to a reserved peripheral address",
+);
+pub(super) const PRIVATE_BUS: Fault = Fault::new(
+    exception::BUS_FAULT,
+    1 << 9 | 1 << 15,
+    "access to the private peripheral bus without privilege",
+);
 pub(super) const UNDEFINED: Fault = usage(1 << 16, "undefined instruction");
 pub(super) const INVALID_STATE: Fault = usage(1 << 17, "branch to an ARM address");
 pub(super) const INVALID_RETURN: Fault = usage(1 << 18, "invalid exception return");
 pub(super) const NO_COPROCESSOR: Fault =
     usage(1 << 19, "floating-point instruction while CPACR denies it");
 pub(super) const UNALIGNED: Fault = usage(1 << 24, "unaligned access");
+
+/// Whether the default memory map forbids execution at an address (ARMv7-M B3.1).
+const fn never_executes(address: u32) -> bool {
+    matches!(address >> 29, 2 | 5..)
+}
 
 impl<W: Wiring + 'static> Machine<W> {
     /// Handles an exception that the CPU emulation raised, by its number there.
@@ -60,13 +80,25 @@ impl<W: Wiring + 'static> Machine<W> {
                 self.chip_mut().ppb.hfsr |= 1 << 31;
                 self.fault(Fault::new(exception::HARD_FAULT, 0, "BKPT"), pc)
             }
+            // in thread mode, EXC_RETURN is an address like any other
+            8 if get(&self.cpu, Reg::XPSR) & 0x1ff == 0 => self.fault(EXECUTE_NEVER, pc),
             8 => match exceptions::leave(&mut self.cpu, pc | 1) {
-                Err(FrameError::Return(_)) => self.fault(INVALID_RETURN, pc),
+                Err(FrameError::Return(exc_return)) => {
+                    let Some(taken) = self.escalate(INVALID_RETURN, pc)? else {
+                        return Ok(());
+                    };
+                    let result = exceptions::tail_chain(&mut self.cpu, taken, exc_return);
+                    self.checked_frame(result, "unstacking")
+                }
                 other => self.checked_frame(other, "unstacking"),
             },
             17 => self.fault(NO_COPROCESSOR, pc),
             18 => self.fault(INVALID_STATE, pc),
-            22 => self.fault(UNALIGNED, pc),
+            // a data abort: without a memory protection unit, that of an exclusive access that is not aligned
+            4 => {
+                state::refund(self.cpu.get_data_mut(), pc);
+                self.fault(UNALIGNED, pc)
+            }
             _ => Err(Stop::Emulator(format!(
                 "exception {number} of the CPU emulation at {pc:#010x}"
             ))),
@@ -84,6 +116,7 @@ impl<W: Wiring + 'static> Machine<W> {
             nvic.pend(exception::SVCALL, now);
             return self.enter(exception::SVCALL, pc);
         }
+        self.chip_mut().ppb.hfsr |= 1 << 30;
         let cause = "SVC at or above its own priority";
         self.fault(Fault::new(exception::HARD_FAULT, 0, cause), pc)
     }
@@ -107,7 +140,14 @@ impl<W: Wiring + 'static> Machine<W> {
             });
         }
         let cause = match error {
-            uc_error::FETCH_UNMAPPED | uc_error::FETCH_PROT => return self.fault(NO_MEMORY, pc),
+            uc_error::FETCH_UNMAPPED | uc_error::FETCH_PROT => {
+                let fault = if never_executes(pc) {
+                    EXECUTE_NEVER
+                } else {
+                    NO_MEMORY
+                };
+                return self.fault(fault, pc);
+            }
             uc_error::READ_UNMAPPED | uc_error::READ_PROT => "load where no memory is",
             _ => "store where no memory is",
         };
@@ -118,8 +158,16 @@ impl<W: Wiring + 'static> Machine<W> {
         self.fault(fault, pc)
     }
 
-    /// Takes a fault: its own handler if enabled and urgent enough, else HardFault, else lockup.
+    /// Takes a fault.
     pub(super) fn fault(&mut self, fault: Fault, pc: u32) -> Result<(), Stop> {
+        match self.escalate(fault, pc)? {
+            Some(taken) => self.enter(taken, pc),
+            None => Ok(()),
+        }
+    }
+
+    /// The exception that a fault pends: its own if enabled and urgent enough, else HardFault. `None`: lockup, or a halt under a debugger.
+    fn escalate(&mut self, fault: Fault, pc: u32) -> Result<Option<usize>, Stop> {
         let (primask, basepri, faultmask) = masks(&self.cpu);
         let state = self.cpu.get_data_mut();
         let now = state.cycles;
@@ -145,15 +193,16 @@ impl<W: Wiring + 'static> Machine<W> {
                 priority: level,
                 place: self.place(pc),
             };
-            return self.lock_up(level, stop);
+            self.lock_up(level, stop)?;
+            return Ok(None);
         }
         if taken == exception::HARD_FAULT && chip.ppb.catches_hard_fault() {
             let (cause, place) = (fault.cause, self.place(pc));
             self.halt_under_debugger(Halted::HardFault { cause, place });
-            return Ok(());
+            return Ok(None);
         }
         chip.nvic.pend(taken, now);
-        self.enter(taken, pc)
+        Ok(Some(taken))
     }
 
     pub(super) fn enter(&mut self, exception: usize, pc: u32) -> Result<(), Stop> {
@@ -174,6 +223,7 @@ impl<W: Wiring + 'static> Machine<W> {
                 };
                 self.lock_up(NMI_PRIORITY, stop)
             }
+            Err(FrameError::ArmState(pc)) => self.fault(INVALID_STATE, pc),
             Err(error) => Err(Stop::Emulator(format!("{error:?} while {what}"))),
         }
     }

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod adc;
+mod alignment;
 mod board;
 mod build;
 mod chip;

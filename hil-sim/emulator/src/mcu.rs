@@ -1,4 +1,5 @@
 //! The emulated microcontroller: its public interface.
+use super::alignment;
 use super::chip::Chip;
 use super::cpu_setup::create_cpu;
 use super::debugger::Halted;
@@ -60,12 +61,19 @@ impl<W: Wiring + 'static> Machine<W> {
     pub fn with_chip(firmware: &Firmware, wiring: W, chip: &ChipState) -> Result<Self, Stop> {
         let flash: Arc<[u8]> = firmware.flash().into();
         let timing = chip.flash;
+        let strict = chip.strict;
         let chip = Chip::new(wiring, flash.to_vec(), chip);
         let state = State::new(chip, Arc::clone(&flash), timing);
         let mut cpu = create_cpu(state, &flash).map_err(emulator)?;
         let initial_ram = vec![PAINT; RAM_SIZE as usize];
         cpu.mem_write(RAM_BASE.into(), &initial_ram)
             .map_err(emulator)?;
+        if strict {
+            let hook = |cpu: &mut Cpu<'_, W>, address: u64, _: u32| {
+                alignment::check(cpu, address as u32);
+            };
+            cpu.add_code_hook(1, 0, hook).map_err(emulator)?;
+        }
         let mut machine = Self {
             cpu,
             firmware: firmware.clone(),

@@ -154,6 +154,8 @@ pub(crate) struct Nvic {
     pended_at: [u64; EXCEPTIONS],
     best: Option<(usize, i32)>,
     active_priority: i32,
+    /// AIRCR.PRIGROUP: the priority bits up to this one do not decide about preemption.
+    group: u8,
 }
 
 impl Nvic {
@@ -167,7 +169,26 @@ impl Nvic {
             pended_at: [0; EXCEPTIONS],
             best: None,
             active_priority: THREAD_PRIORITY,
+            group: 0,
         }
+    }
+
+    /// AIRCR.PRIGROUP.
+    pub const fn group(&self) -> u8 {
+        self.group
+    }
+
+    pub fn set_group(&mut self, group: u8) {
+        self.group = group & 7;
+        self.refresh_active();
+    }
+
+    /// A configurable priority without its subpriority (B1.5.4).
+    const fn without_subpriority(&self, priority: i32) -> i32 {
+        if priority < 0 {
+            return priority;
+        }
+        priority & !((2 << self.group) - 1)
     }
 
     /// Priority of an exception as a number; lower is more urgent.
@@ -206,7 +227,7 @@ impl Nvic {
     pub fn execution_priority(&self, primask: u32, basepri: u32, faultmask: u32) -> i32 {
         let mut priority = self.active_priority;
         if basepri & 0xf0 != 0 {
-            priority = priority.min((basepri & 0xf0) as i32);
+            priority = priority.min(self.without_subpriority((basepri & 0xf0) as i32));
         }
         if primask & 1 != 0 {
             priority = priority.min(0);
@@ -236,7 +257,8 @@ impl Nvic {
         while left != 0 {
             let n = left.trailing_zeros() as usize;
             left &= left - 1;
-            self.active_priority = self.active_priority.min(self.priority_of(n));
+            let priority = self.without_subpriority(self.priority_of(n));
+            self.active_priority = self.active_priority.min(priority);
         }
     }
 
@@ -289,6 +311,19 @@ impl Nvic {
         self.pended_at[exception]
     }
 
+    /// Whether `exception`, which is being entered, gives way to a more urgent one.
+    pub fn late_arrival(&self, exception: usize) -> Option<usize> {
+        let level = self.without_subpriority(self.priority_of(exception));
+        self.best
+            .filter(|(_, priority)| *priority < level)
+            .map(|(n, _)| n)
+    }
+
+    /// Number of active exceptions.
+    pub const fn active_count(&self) -> u32 {
+        self.active.count_ones()
+    }
+
     /// Exception return: an interrupt whose request line is still up pends again (B3.4.1).
     pub fn leave(&mut self, exception: usize, now: u64) {
         self.active &= !(1 << exception);
@@ -331,8 +366,14 @@ impl Nvic {
         }
     }
 
-    /// One byte of SHPR1..3: `n` is the exception.
-    pub fn set_priority(&mut self, n: usize, value: u8) {
+    /// One byte of SHPR1..3: `n` is the exception; the bytes of exceptions that do not exist are reserved.
+    pub fn set_system_priority(&mut self, n: usize, value: u8) {
+        if matches!(n, 4..=6 | 11 | 12 | 14 | 15) {
+            self.set_priority(n, value);
+        }
+    }
+
+    fn set_priority(&mut self, n: usize, value: u8) {
         if let Some(priority) = self.priority.get_mut(n) {
             *priority = value & 0xf0; // the STM32F4 implements four bits
         }

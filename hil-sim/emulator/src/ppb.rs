@@ -21,6 +21,8 @@ pub(crate) struct Ppb {
     systick_from: u32,
     /// Cycle at which SysTick next reaches zero.
     pub systick_due: u64,
+    /// SysTick's count while it stands still.
+    systick_count: u32,
     pub vtor: u32,
     shcsr: u32,
     pub cfsr: u32,
@@ -77,6 +79,7 @@ impl Ppb {
         self.systick_csr |= 1 << 16;
         self.systick_from = self.systick_load;
         self.systick_due = if self.systick_load == 0 {
+            self.systick_count = 0;
             u64::MAX
         } else {
             self.systick_due + self.systick_period()
@@ -84,13 +87,29 @@ impl Ppb {
         self.systick_csr & 2 != 0
     }
 
-    fn systick_restart(&mut self, now: u64) {
-        let runs = self.systick_csr & 1 != 0 && self.systick_load != 0;
-        self.systick_from = self.systick_load;
-        self.systick_due = if runs {
-            now + self.systick_period()
-        } else {
+    fn systick_count(&self, now: u64) -> u32 {
+        match self.systick_due {
+            u64::MAX => self.systick_count,
+            due => {
+                ((due.saturating_sub(now) / self.systick_step())
+                    % (u64::from(self.systick_from) + 1)) as u32
+            }
+        }
+    }
+
+    /// Goes on from `count`, or stands still there if it is off; from 0 the counter takes the reload value first.
+    fn systick_continue(&mut self, count: u32, now: u64) {
+        self.systick_count = count;
+        self.systick_due = if self.systick_csr & 1 == 0 {
             u64::MAX
+        } else if count > 0 {
+            now + u64::from(count) * self.systick_step()
+        } else {
+            self.systick_from = self.systick_load;
+            match self.systick_load {
+                0 => u64::MAX,
+                _ => now + self.systick_period(),
+            }
         };
     }
 
@@ -128,18 +147,12 @@ impl Ppb {
                 csr
             }
             0xe000_e014 => self.systick_load,
-            0xe000_e018 => match self.systick_due {
-                u64::MAX => 0,
-                due => {
-                    ((due.saturating_sub(now) / self.systick_step())
-                        % (u64::from(self.systick_from) + 1)) as u32
-                }
-            },
+            0xe000_e018 => self.systick_count(now),
             0xe000_e100..0xe000_e500 => return nvic.read(address - 0xe000_e000),
             0xe000_ed00 => 0x410f_c241,
             0xe000_ed04 => nvic.icsr(ipsr),
             0xe000_ed08 => self.vtor,
-            0xe000_ed0c => 0xfa05_0000,
+            0xe000_ed0c => 0xfa05_0000 | u32::from(nvic.group()) << 8,
             0xe000_ed10 => 0,
             0xe000_ed14 => 0x200,
             0xe000_ed18..0xe000_ed24 => nvic.priority_word((address - 0xe000_ed18 + 4) as usize),
@@ -186,7 +199,7 @@ impl Ppb {
             }
             0xe000_ed18..0xe000_ed24 => {
                 for i in 0..u32::from(bytes) {
-                    nvic.set_priority(
+                    nvic.set_system_priority(
                         (address - 0xe000_ed18 + 4 + i) as usize,
                         (value >> (8 * i)) as u8,
                     );
@@ -203,16 +216,16 @@ impl Ppb {
             0xe000_1fb0 => {} // lock access: writes are always open on this core
             0xe000_e008 => only(value, 0, "ACTLR")?,
             0xe000_e010 => {
-                let was = self.systick_csr;
+                let (was, count) = (self.systick_csr, self.systick_count(now));
                 self.systick_csr = was & 1 << 16 | value & 7;
                 if (was ^ value) & 5 != 0 {
-                    self.systick_restart(now);
+                    self.systick_continue(count, now);
                 }
             }
             0xe000_e014 => self.systick_load = value & 0xff_ffff,
             0xe000_e018 => {
                 self.systick_csr &= !(1 << 16);
-                self.systick_restart(now);
+                self.systick_continue(0, now);
             }
             0xe000_ed04 => nvic.set_icsr(value, now),
             0xe000_ed08 => self.vtor = value & 0xffff_fe00,
@@ -222,9 +235,10 @@ impl Ppb {
                 }
                 only(
                     value & 0xffff,
-                    0x0304,
-                    "AIRCR.PRIGROUP with subpriorities, or VECTCLRACTIVE",
+                    0x0704,
+                    "AIRCR.VECTCLRACTIVE, AIRCR.VECTRESET",
                 )?;
+                nvic.set_group((value >> 8) as u8);
                 return Ok(value & 4 != 0);
             }
             0xe000_ed10 => only(value, 0, "SCR (deep sleep, sleep on exit, SEVONPEND)")?,
@@ -355,6 +369,25 @@ mod tests {
         ppb.systick_expire();
         assert_eq!(ppb.systick_due, 1100);
         assert_eq!(ppb.read(&nvic, 0xe000_e018, 1001, 0).unwrap(), 99);
+    }
+
+    /// ARMv7-M B3.3: a counter that is enabled counts from the value in SYST_CVR, and a disabled one keeps it.
+    #[test]
+    fn a_stopped_systick_keeps_its_count_and_goes_on() {
+        let (mut ppb, mut nvic) = (Ppb::new(), Nvic::new());
+        ppb.write(&mut nvic, 0xe000_e014, 4, 999, 0).unwrap();
+        ppb.write(&mut nvic, 0xe000_e010, 4, 5, 0).unwrap();
+        ppb.write(&mut nvic, 0xe000_e010, 4, 4, 300).unwrap();
+        assert_eq!(ppb.systick_due, u64::MAX);
+        assert_eq!(ppb.read(&nvic, 0xe000_e018, 5000, 0).unwrap(), 700);
+        ppb.write(&mut nvic, 0xe000_e010, 4, 5, 6000).unwrap();
+        assert_eq!(ppb.systick_due, 6700);
+        assert_eq!(ppb.read(&nvic, 0xe000_e018, 6100, 0).unwrap(), 600);
+        ppb.write(&mut nvic, 0xe000_e010, 4, 4, 6200).unwrap();
+        ppb.write(&mut nvic, 0xe000_e018, 4, 1, 6300).unwrap();
+        assert_eq!(ppb.read(&nvic, 0xe000_e018, 6400, 0).unwrap(), 0);
+        ppb.write(&mut nvic, 0xe000_e010, 4, 5, 7000).unwrap();
+        assert_eq!(ppb.systick_due, 8000, "from 0 it takes the reload value");
     }
 
     #[test]

@@ -3,9 +3,8 @@ use super::cost::Last;
 use super::debugger::Halted;
 use super::elf::{FLASH_BASE, RAM_BASE};
 use super::exceptions;
-use super::faults::{Fault, INVALID_STATE, NO_COPROCESSOR, NO_MEMORY, UNDEFINED};
+use super::faults::{INVALID_STATE, NO_COPROCESSOR, NO_MEMORY, UNDEFINED};
 use super::mcu::{Machine, Reset, emulator};
-use super::nvic::exception;
 use super::rcc::HSI_HZ;
 use super::state::{self, Exit, Refused, get, service, takeable};
 use super::stop::{Access, Place, Refusal, Stop};
@@ -66,7 +65,7 @@ impl<W: Wiring + 'static> Machine<W> {
         }
     }
 
-    /// Handles refused register accesses and bus errors of the last block.
+    /// Handles refused register accesses of the last block, and faults that hooks raised.
     fn pending_errors(&mut self) -> Result<(), Stop> {
         let state = self.cpu.get_data_mut();
         if let Some((address, refusal)) = state.chip().misuse.take() {
@@ -87,12 +86,10 @@ impl<W: Wiring + 'static> Machine<W> {
         if let Some(refused) = state.refused.take() {
             return Err(self.refusal(refused));
         }
-        if state.bus_error.take().is_some() {
+        if let Some(fault) = state.raised.take() {
             let pc = get(&self.cpu, Reg::PC);
-            let imprecise = 1 << 10;
-            let cause = "access to a reserved peripheral address";
             self.halt = None;
-            return self.fault(Fault::new(exception::BUS_FAULT, imprecise, cause), pc);
+            return self.fault(fault, pc);
         }
         Ok(())
     }
@@ -103,8 +100,13 @@ impl<W: Wiring + 'static> Machine<W> {
         self.cpu.get_data_mut().exit = Exit::Unspecified;
         let result = self.cpu.emu_start(u64::from(pc) | 1, 0xffff_ffff, 0, 0);
         let pc = get(&self.cpu, Reg::PC);
+        let arm_state = result.is_err() && get(&self.cpu, Reg::XPSR) & 1 << 24 == 0;
         let state = self.cpu.get_data_mut();
         match (state.exit, result) {
+            (Exit::Unspecified, Err(_)) if arm_state => {
+                state::refund(state, pc);
+                self.fault(INVALID_STATE, pc)
+            }
             (Exit::Requested, _) => Ok(()),
             (Exit::FloatDenied, _) => self.fault(NO_COPROCESSOR, pc),
             (Exit::Exception(number), _) => self.cpu_exception(number, pc),
@@ -160,7 +162,7 @@ impl<W: Wiring + 'static> Machine<W> {
         }
         let state = self.cpu.get_data_mut();
         (state.pause_requested, state.event_register) = (false, false);
-        (state.refused, state.bus_error) = (None, None);
+        (state.refused, state.raised) = (None, None);
         self.halt = None;
         self.resets.push(Reset { at, at_ps, cause });
         exceptions::reset(&mut self.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))?;

@@ -1,9 +1,11 @@
 //! State shared by the hooks of the CPU emulation: the chip, the cycle count, and why the CPU paused.
 use super::Wiring;
 use super::chip::Chip;
-use super::cost::{self, Block, CostTable, Last};
+use super::cost::{self, Block, CostTable, Exclusive, Last};
 use super::elf::FLASH_BASE;
+use super::exceptions::CLREX_AT;
 use super::execution_path::ExecutedBlock;
+use super::faults::{Fault, PRIVATE_BUS, RESERVED_ADDRESS};
 use super::flash_waiting::FlashWaiting;
 use super::profile::Profile;
 use super::ram::Ram;
@@ -64,12 +66,14 @@ pub(crate) struct State<W> {
     pub pause_requested: bool,
     pub exit: Exit,
     pub refused: Option<Refused>,
-    /// Address of a load or store that no device answered (imprecise bus fault).
-    pub bus_error: Option<u32>,
+    /// Fault of a hook, taken before the next block.
+    pub raised: Option<Fault>,
     /// The access to unmapped memory that ended the emulation: address, value, and whether it was a store to flash.
     pub invalid: Option<(u32, u32, bool)>,
     /// Event register of WFE (ARMv7-M B1.5.18).
     pub event_register: bool,
+    /// An LDREX has perhaps set the exclusive monitor of the CPU emulation.
+    pub exclusive_set: bool,
 }
 
 impl<W: Wiring> State<W> {
@@ -93,9 +97,10 @@ impl<W: Wiring> State<W> {
             pause_requested: false,
             exit: Exit::Unspecified,
             refused: None,
-            bus_error: None,
+            raised: None,
             invalid: None,
             event_register: false,
+            exclusive_set: false,
         }
     }
 
@@ -128,7 +133,7 @@ impl<W: Wiring> State<W> {
             && !self.pause_requested
             && chip.reset.is_none()
             && !chip.nvic.may_preempt();
-        if !undisturbed || u32::from(block.bytes) != bytes || block.float || block.sev {
+        if !undisturbed || u32::from(block.bytes) != bytes || block.is_special() {
             return false;
         }
         self.charge(address, block);
@@ -170,10 +175,24 @@ impl<W: Wiring> State<W> {
         self.cycles = self.cycles.max(self.chip_ref().flash.busy_until());
     }
 
+    /// The program has not the privilege for an access to the private peripheral bus.
+    fn deny(&mut self, address: u32) {
+        self.raise(Fault {
+            address: Some(address),
+            ..PRIVATE_BUS
+        });
+    }
+
+    /// Takes a fault before the next block.
+    pub fn raise(&mut self, fault: Fault) {
+        self.pause_requested = true;
+        self.raised = Some(fault);
+    }
+
     fn refuse(&mut self, refusal: Refusal, address: u32, access: Access, value: u32) {
         self.pause_requested = true;
         if refusal == Refusal::BusError {
-            self.bus_error = Some(address);
+            self.raise(RESERVED_ADDRESS);
         } else if self.refused.is_none() {
             self.refused = Some(Refused {
                 refusal,
@@ -243,6 +262,9 @@ pub(crate) fn on_block<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32
 /// Slow path: a block before which an event may be due, or whose cost is not known yet.
 #[cold]
 fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
+    if address == CLREX_AT {
+        return;
+    }
     let state = cpu.get_data_mut();
     let now = state.cycles;
     state.block_pc = address;
@@ -275,6 +297,10 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
         let state = cpu.get_data_mut();
         if !block.float || state.chip().ppb.float_enabled() {
             state.event_register |= block.sev;
+            match block.exclusive {
+                Exclusive::Unchanged => {}
+                access => state.exclusive_set = access == Exclusive::Set,
+            }
             if block.float && std::mem::take(&mut state.float_state_pending) {
                 state.cycles += cost::FLOAT_STATE;
             }
@@ -296,6 +322,8 @@ pub(crate) fn refund<W: Wiring>(state: &mut State<W>, pc: u32) {
     if ran >= u32::from(state.block.bytes) {
         return;
     }
+    // the STREX that was counted on may not have run
+    state.exclusive_set |= state.block.exclusive == Exclusive::Clear;
     let start = (state.block_pc & 0x07ff_ffff) as usize;
     let code = state
         .flash
@@ -310,6 +338,12 @@ pub(crate) fn refund<W: Wiring>(state: &mut State<W>, pc: u32) {
     };
 }
 
+/// Whether the program may not access the address: one of the private peripheral bus, from thread mode without privilege
+/// (ARMv7-M B3.1.1).
+fn is_denied<D>(cpu: &Unicorn<'_, D>, address: u32) -> bool {
+    address >= 0xe000_0000 && get(cpu, Reg::CONTROL) & 1 != 0 && get(cpu, Reg::XPSR) & 0x1ff == 0
+}
+
 /// Load from a device register.
 pub(crate) fn on_read<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8) -> u32 {
     let ipsr = if address & !3 == 0xe000_ed04 {
@@ -317,7 +351,12 @@ pub(crate) fn on_read<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8) 
     } else {
         0
     };
+    let denied = is_denied(cpu, address);
     let state = cpu.get_data_mut();
+    if denied {
+        state.deny(address);
+        return 0;
+    }
     let now = state.block_at;
     let (register, shift, mask) = match bit_band(address) {
         Some((register, bit)) => (register, bit, 1),
@@ -338,7 +377,11 @@ pub(crate) fn on_read<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8) 
 
 /// Store to a device register.
 pub(crate) fn on_write<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8, value: u32) {
+    let denied = is_denied(cpu, address);
     let state = cpu.get_data_mut();
+    if denied {
+        return state.deny(address);
+    }
     let now = state.block_at;
     let (register, result) = match bit_band(address) {
         // the bus matrix turns the store into a read and a write of the whole register (ARMv7-M B3.1)

@@ -55,6 +55,8 @@ pub struct ChipState {
     pub slow_flash: bool,
     /// How long the core waits for the flash.
     pub flash: FlashTiming,
+    /// Whether the emulator checks what it otherwise leaves out, to be fast: the alignment of accesses to several words.
+    pub strict: bool,
 }
 
 impl ChipState {
@@ -71,6 +73,7 @@ impl Default for ChipState {
             external_clock: true,
             slow_flash: false,
             flash: FlashTiming::default(),
+            strict: false,
         }
     }
 }

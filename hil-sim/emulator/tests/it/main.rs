@@ -1,5 +1,6 @@
 //! The emulated microcontroller against its reference manuals, under the test image of `probe/`.
 
+mod answers;
 mod core;
 mod devices;
 mod faults;

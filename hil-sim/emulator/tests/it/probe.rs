@@ -1,4 +1,4 @@
-//! Builds the test image of `probe/` once and runs its cases.
+//! Builds the test images of `probe/` once and runs the cases of the first.
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
@@ -6,9 +6,16 @@ use std::sync::LazyLock;
 use stm32_emulator::{Firmware, LegState, Machine, Reset, Wiring};
 
 static FIRMWARE: LazyLock<Firmware> =
-    LazyLock::new(|| Firmware::from_file(&build()).expect("the probe is an image"));
+    LazyLock::new(|| Firmware::from_file(&PROBE).expect("the probe is an image"));
 
-/// Builds the image in `probe/` for the microcontroller; cargo decides what is stale.
+static PROBE: LazyLock<PathBuf> = LazyLock::new(build);
+
+/// Another program of the probe.
+pub fn program(name: &str) -> Firmware {
+    Firmware::from_file(&PROBE.with_file_name(name)).expect("the program is an image")
+}
+
+/// Builds the images in `probe/` for the microcontroller; cargo decides what is stale.
 fn build() -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .ancestors()
@@ -95,7 +102,17 @@ pub fn firmware() -> &'static Firmware {
 
 /// Words at the image's static `name`.
 pub fn words<W: Wiring + 'static>(machine: &Machine<W>, name: &str, count: usize) -> Vec<u32> {
-    let address = FIRMWARE.symbol(name).expect("the image has the symbol");
+    words_of(&FIRMWARE, machine, name, count)
+}
+
+/// Words at the static `name` of another image.
+pub fn words_of<W: Wiring + 'static>(
+    firmware: &Firmware,
+    machine: &Machine<W>,
+    name: &str,
+    count: usize,
+) -> Vec<u32> {
+    let address = firmware.symbol(name).expect("the image has the symbol");
     let bytes = machine
         .memory(address, 4 * count)
         .expect("it lies in memory");

@@ -46,6 +46,7 @@ pub(super) struct Device {
     pub external_clock: bool,
     pub slow_flash: bool,
     pub flash: FlashTiming,
+    pub strict: bool,
 }
 
 words! {
@@ -78,6 +79,7 @@ impl Default for Device {
             external_clock: true,
             slow_flash: false,
             flash: FlashTiming::default(),
+            strict: false,
         }
     }
 }

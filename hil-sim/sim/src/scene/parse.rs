@@ -153,6 +153,7 @@ fn chip(source: &Source<'_>, device: &file::Device) -> Result<ChipState, SceneEr
             file::FlashTiming::Accelerated => FlashTiming::Accelerated,
             file::FlashTiming::Unaccelerated => FlashTiming::Unaccelerated,
         },
+        strict: device.strict,
     })
 }
 
