@@ -1,6 +1,6 @@
 //! The part of the fault matrix on the device for five fingers.
 
-use thermal_campaigns::faults::{FaultCase, FaultSummary, FiveFingerRun, Reference};
+use thermal_campaigns::faults::{FaultCase, FaultSummary, FiveFingerRun, Reference, Strict};
 
 use super::{Arguments, each};
 use crate::cli::{Failure, engine};
@@ -13,7 +13,11 @@ pub fn outlines(
     if cases.is_empty() {
         return Ok(Vec::new());
     }
-    let (device, name) = engine::five_finger_runner(arguments.engine, arguments.elf.as_deref())?;
+    let (mut device, name) =
+        engine::five_finger_runner(arguments.engine, arguments.elf.as_deref())?;
+    if arguments.strict {
+        device = Box::new(Strict(device));
+    }
     let runs = FiveFingerRun::all(cases, arguments.seed);
     let needed = Reference::needed(&runs);
     let references = each(

@@ -14,7 +14,9 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
-use thermal_campaigns::faults::{self, FaultCase, FaultRun, FaultScene, FaultSummary, MatrixPlan};
+use thermal_campaigns::faults::{
+    self, FaultCase, FaultRun, FaultScene, FaultSummary, MatrixPlan, Strict,
+};
 use thermal_campaigns::parallel_map;
 use thermal_sim::SceneRunner;
 
@@ -41,6 +43,9 @@ pub struct Arguments {
     /// What runs the device's logic
     #[arg(long, value_enum, default_value_t = EngineKind::DEFAULT)]
     engine: EngineKind,
+    /// On an emulator that checks more and is slower, with a slow flash and the low-speed oscillator at 17 or 47 kHz
+    #[arg(long)]
+    strict: bool,
     /// Image to run instead of the one of the current sources
     #[arg(long)]
     elf: Option<PathBuf>,
@@ -156,7 +161,14 @@ impl<R: Serialize> RunsReport<'_, R> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::create(arguments.out.as_deref())?;
     let elf = arguments.elf.as_deref();
-    let device = engine::runner(arguments.engine, elf)?;
+    let mut device = engine::runner(arguments.engine, elf)?;
+    if arguments.strict {
+        if !device.has_processor() {
+            let problem = anyhow!("--strict; the engine {} has no processor", device.name());
+            return Err(Failure::input(problem));
+        }
+        device = Box::new(Strict(device));
+    }
     let device = device.as_ref();
     match arguments.modes {
         Modes {
