@@ -225,7 +225,10 @@ impl<W: Wiring> Chip<W> {
                 let security = self.rcc.clock_failure_interrupt();
                 self.nvic.set_exception_line(exception::NMI, security, now);
             }
-            Device::Flash if offset == 0 => self.rcc.write_acr(value)?,
+            Device::Flash if offset == 0 => {
+                self.rcc.write_acr(value)?;
+                self.flash.control_data_cache(value);
+            }
             Device::Flash => {
                 self.flash
                     .write(offset, value, now, self.rcc.clocks().hclk_hz)?;

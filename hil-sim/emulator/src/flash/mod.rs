@@ -1,6 +1,9 @@
 //! Programming and erasing of the flash (RM0390 chapter 3) in sectors 1 to 3, which hold settings and no code. ACR, on which the
 //! clocks depend, is in `rcc`.
 
+mod data_cache;
+
+use data_cache::{DataCache, LINE_BYTES};
 use thermal_sim::FlashCells;
 use thermal_sim::processor::ChipState;
 
@@ -55,6 +58,7 @@ enum Lock {
 
 pub(crate) struct Flash {
     pub cells: FlashCells,
+    data_cache: DataCache,
     lock: Lock,
     control: u32,
     status: u32,
@@ -69,6 +73,7 @@ impl Flash {
     pub fn new(contents: Vec<u8>, chip: &ChipState) -> Self {
         Self {
             cells: FlashCells::new(contents),
+            data_cache: DataCache::default(),
             lock: Lock::Locked,
             control: 0,
             status: 0,
@@ -81,6 +86,7 @@ impl Flash {
     /// Resets the registers; the contents stay.
     pub fn reset(&mut self) {
         (self.lock, self.control, self.status, self.busy_until) = (Lock::Locked, 0, 0, 0);
+        self.data_cache = DataCache::default();
     }
 
     /// Whether the image leaves the settings' sectors blank, so that they can be modelled as writable flash.
@@ -185,7 +191,10 @@ impl Flash {
         } else if address % 16 + u32::from(bytes) > 16 {
             PGAERR
         } else {
-            self.cells.program((address - FLASH_BASE) as usize, value);
+            let at = (address - FLASH_BASE) as usize;
+            self.cells.program(at, value);
+            let programmed = self.cells.bytes().get(at..at + value.len());
+            self.data_cache.update(at, programmed.unwrap_or_default());
             self.extend_busy(now, self.times.program_us, hclk_hz);
             return Ok(());
         };
@@ -193,10 +202,17 @@ impl Flash {
         Ok(())
     }
 
-    /// Loads from the settings' sectors.
-    pub fn load(&self, address: u32, bytes: u8) -> u32 {
+    /// Follows a store to FLASH_ACR.
+    pub fn control_data_cache(&mut self, acr: u32) {
+        self.data_cache.control(acr);
+    }
+
+    /// Loads from the settings' sectors, through the data cache.
+    pub fn load(&mut self, address: u32, bytes: u8) -> u32 {
         let from = (address - FLASH_BASE) as usize;
-        let read = self.cells.bytes().get(from..from + usize::from(bytes));
+        let line = self.data_cache.load(from, self.cells.bytes());
+        let within = from % LINE_BYTES;
+        let read = line.get(within..within + usize::from(bytes));
         read.unwrap_or_default()
             .iter()
             .rev()
