@@ -38,6 +38,21 @@ fn native_and_image_write_the_same_trace_over_two_contacts() {
     assert!(native.lines().all(|line| !line.contains(",,,")));
 }
 
+/// The watchdog's oscillator at both ends of its range, the longest times of the flash; an access to several words that is not
+/// aligned would be a fault.
+#[test]
+fn a_strict_chip_writes_the_same_trace() {
+    let touched = scene("copper", 4.0, "", &forces(&[(1.0, 2.0), (3.0, 0.0)]));
+    let usual = csv(&on_image(&touched), "usual");
+    for lsi_hz in [17_000, 47_000] {
+        let mut strict = touched.clone();
+        strict.chip.strict = true;
+        strict.chip.slow_flash = true;
+        strict.chip.lsi_hz = lsi_hz;
+        assert_eq!(csv(&on_image(&strict), "strict"), usual, "{lsi_hz} Hz");
+    }
+}
+
 /// The shorted driver reports by its fault pin, which trips the device in the same tick of both engines; armed again, it trips
 /// again.
 #[test]
