@@ -1,6 +1,7 @@
 //! The peripherals, their connections inside the chip, and their events in order of time. Independent of the CPU emulation;
 //! register accesses enter through `chip/bus.rs`.
 use super::adc::{Adc, Trigger};
+use super::dac::Dac;
 use super::dma::{self, Dma, Route, Served};
 use super::exti::{Exti, lines};
 use super::flash::Flash;
@@ -62,6 +63,9 @@ const HOST_BAUD: u32 = 1_000_000;
 /// and 6.3.24).
 const INTERNAL_REFERENCE: u16 = 1502;
 const INTERNAL_TEMPERATURE: u16 = 943;
+/// The DAC drives PA4, which is also this channel of the converter.
+const DAC_PIN: u8 = 4;
+const DAC_CHANNEL: u8 = 4;
 /// Code of a quarter of VBAT, which a NUCLEO connects to the converter's reference.
 const QUARTER_OF_VBAT: u16 = 1024;
 
@@ -75,6 +79,7 @@ pub(crate) struct Chip<W> {
     exti: Exti,
     dma: [Dma; 2],
     adc: Adc,
+    dac: Dac,
     tims: [Tim; TIMERS],
     usart: Usart,
     /// Rate of the internal low-speed oscillator, which differs from chip to chip.
@@ -123,6 +128,7 @@ impl<W: Wiring> Chip<W> {
             exti: Exti::default(),
             dma: [Dma::new(1), Dma::new(2)],
             adc: Adc::new(1, HSI_HZ),
+            dac: Dac::default(),
             tims: kinds.map(|kind| Tim::new(kind, 1)),
             usart: Usart::new(1, HSI_HZ, HOST_BAUD),
             lsi_hz: state.lsi_hz,
@@ -254,6 +260,9 @@ impl<W: Wiring> Chip<W> {
             17 => INTERNAL_REFERENCE,
             18 if self.adc.measures_vbat() => QUARTER_OF_VBAT,
             18 => INTERNAL_TEMPERATURE,
+            DAC_CHANNEL if self.ports[0].mode(DAC_PIN) == Mode::Analog => {
+                (self.dac.output()).unwrap_or_else(|| self.wiring.adc(DAC_CHANNEL, at))
+            }
             channel => self.wiring.adc(channel, at),
         };
         self.adc.finish(code);

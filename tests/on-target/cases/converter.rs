@@ -1,4 +1,5 @@
-//! ADC1 on its internal channels, which need no wire: reference, temperature, and a quarter of the supply.
+//! ADC1 on what it can convert without a wire: reference, temperature, a quarter of the supply, and the output of the DAC, which
+//! shares the pin PA4 with channel 4.
 
 /// What the factory has measured at 3.3 V and stored in the system memory (data sheet, embedded reference voltage and
 /// temperature sensor).
@@ -18,7 +19,7 @@ impl Factory {
 
 #[embedded_test::tests]
 mod tests {
-    use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, Peripherals, RCC};
+    use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, DAC, GPIOA, Peripherals, RCC};
 
     use super::Factory;
     use crate::report;
@@ -139,5 +140,47 @@ mod tests {
             (1024.0 - 12.0..1024.0 + 12.0).contains(&quarter),
             "{quarter} counts"
         );
+    }
+
+    /// Both converters have a straight characteristic between their ends; their offsets and gains do not count.
+    #[test]
+    fn the_converter_is_linear_over_the_range_of_the_dac(adc: ADC1) {
+        /// The data sheet allows 4 counts to the DAC and 3 to ADC1.
+        const DEVIATION_MAX: f32 = 7.0;
+        /// Without its buffer the DAC has 15 kOhm, and is not exact at the ends of its range.
+        const CODES: [u16; 15] = [
+            128, 400, 672, 944, 1216, 1488, 1760, 2032, 2304, 2576, 2848, 3120, 3392, 3664, 3936,
+        ];
+        const DAC_CHANNEL: u8 = 4;
+        // SAFETY: nothing else uses them.
+        let (rcc, port, dac) = unsafe { (RCC::steal(), GPIOA::steal(), DAC::steal()) };
+        rcc.ahb1enr().modify(|_, w| w.gpioaen().enabled());
+        rcc.apb1enr().modify(|_, w| w.dacen().enabled());
+        cortex_m::asm::dsb();
+        port.moder().modify(|_, w| w.moder4().analog());
+        adc.smpr2().write(|w| w.smp4().cycles480());
+        dac.cr().write(|w| {
+            w.boff1().disabled();
+            w.en1().enabled()
+        });
+        let counts = CODES.map(|code| {
+            dac.dhr12r1().write(|w| w.daccdhr().set(code));
+            cortex_m::asm::delay(50 * 16);
+            statistics(&adc, DAC_CHANNEL).mean
+        });
+        dac.cr().reset();
+        let [first, .., last] = counts;
+        let ends = (f32::from(CODES[0]), f32::from(CODES[CODES.len() - 1]));
+        let slope = (last - first) / (ends.1 - ends.0);
+        let deviations = CODES
+            .iter()
+            .zip(counts)
+            .map(|(code, counts)| (counts - first - slope * (f32::from(*code) - ends.0)).abs());
+        let worst = deviations.fold(0.0, f32::max);
+        report::figure("converter_linearity", format_args!("{worst:.2}"), "counts");
+        report::line(format_args!(
+            "{slope:.4} counts of ADC1 for a count of the DAC"
+        ));
+        assert!(worst <= DEVIATION_MAX && (slope - 1.0).abs() < 0.02);
     }
 }

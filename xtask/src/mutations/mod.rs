@@ -213,13 +213,21 @@ fn unit_tests(copy: &Path, (package, name): (&str, &str), options: &[&str]) -> I
         "image-tests" => &["--release", "--test", "image"],
         _ => &["--lib"],
     };
+    let target = workspace().join(FOLDER).join("target");
+    if package == "on-target-tests" {
+        let line = ["run", "--package", "xtask", "--manifest-path"].map(OsString::from);
+        return Invocation::cargo(line)
+            .args([copy.join("Cargo.toml")])
+            .args(["--", "on-target", "--emulated", "--check", name])
+            .args(options.iter().map(OsString::from))
+            .env("CARGO_TARGET_DIR", target.to_string_lossy());
+    }
     let mut line: Vec<_> = [&["test", "--package", package], kind]
         .concat()
         .into_iter()
         .map(OsString::from)
         .collect();
     line.extend(["--manifest-path".into(), copy.join("Cargo.toml").into()]);
-    let target = workspace().join(FOLDER).join("target");
     line.extend(["--target-dir".into(), target.into()]);
     line.extend(options.iter().map(OsString::from));
     line.push(name.into());

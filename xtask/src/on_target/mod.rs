@@ -22,6 +22,9 @@ pub struct Options {
     /// Leave the documentation as it is
     #[arg(long)]
     check: bool,
+    /// Build the tests and run none
+    #[arg(long)]
+    no_run: bool,
     /// Run the tests whose name contains this; the documentation stays as it is
     filter: Option<String>,
 }
@@ -39,6 +42,10 @@ pub fn run(permission: Permission, options: &Options) -> Result<()> {
         Needs::default()
     };
     let toolchain = setup::prepare(needs, permission)?;
+    if options.no_run {
+        println!("{}", build(&toolchain)?);
+        return Ok(());
+    }
     let filter = options.filter.iter().map(OsString::from);
     let tests = if options.emulated {
         let elf = build(&toolchain)?;

@@ -3,6 +3,7 @@ use super::{
     ADC_IRQ, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ, WWDG_IRQ,
 };
 use crate::adc::Trigger;
+use crate::dac::Dac;
 use crate::dma::Dma;
 use crate::exti::lines;
 use crate::gpio::{INPUT_DATA, Port};
@@ -24,6 +25,7 @@ pub(super) enum Device {
     Dma(usize),
     Tim(usize),
     Adc,
+    Dac,
     Usart2,
     Iwdg,
     Wwdg,
@@ -35,7 +37,7 @@ pub(super) enum Device {
 /// place in the reset register of that bus.
 type Peripheral = (u32, Device, Option<(Enr, u8)>);
 
-const PERIPHERALS: [Peripheral; 29] = [
+const PERIPHERALS: [Peripheral; 30] = [
     (0x4000_0000, Device::Tim(1), Some((Enr::Apb1, 0))),
     (0x4000_0400, Device::Tim(2), Some((Enr::Apb1, 1))),
     (0x4000_0800, Device::Tim(3), Some((Enr::Apb1, 2))),
@@ -46,6 +48,7 @@ const PERIPHERALS: [Peripheral; 29] = [
     (0x4000_3000, Device::Iwdg, None),
     (0x4000_4400, Device::Usart2, Some((Enr::Apb1, 17))),
     (0x4000_7000, Device::Pwr, Some((Enr::Apb1, 28))),
+    (0x4000_7400, Device::Dac, Some((Enr::Apb1, 29))),
     (0x4001_0000, Device::Tim(TIM1), Some((Enr::Apb2, 0))),
     (0x4001_0400, Device::Tim(TIM8), Some((Enr::Apb2, 1))),
     (0x4001_2000, Device::Adc, Some((Enr::Apb2, 8))),
@@ -107,6 +110,7 @@ impl<W: Wiring> Chip<W> {
             self.reset_device(Device::Tim(timer), now);
         }
         self.reset_device(Device::Adc, now);
+        self.reset_device(Device::Dac, now);
         self.usart.set_clock(1, HSI_HZ);
         self.usart.reset();
         self.iwdg = Iwdg::new(self.lsi_hz);
@@ -157,6 +161,7 @@ impl<W: Wiring> Chip<W> {
                 self.nvic.set_line(ADC_IRQ, self.adc.request(), now);
                 Ok(value)
             }
+            Device::Dac => self.dac.read(offset),
             Device::Usart2 => {
                 let value = self.usart.read(offset)?;
                 self.nvic.set_line(USART2_IRQ, self.usart.request(), now);
@@ -259,6 +264,7 @@ impl<W: Wiring> Chip<W> {
                 self.nvic.set_line(ADC_IRQ, self.adc.request(), now);
                 self.dma_request_possible = true;
             }
+            Device::Dac => self.dac.write(offset, value)?,
             Device::Usart2 => {
                 self.usart.write(offset, value, now)?;
                 self.nvic.set_line(USART2_IRQ, self.usart.request(), now);
@@ -351,6 +357,7 @@ impl<W: Wiring> Chip<W> {
             Device::Dma(i) => self.dma[i] = Dma::new(i + 1),
             Device::Tim(i) => self.tims[i].reset(),
             Device::Adc => self.adc.reset(),
+            Device::Dac => self.dac = Dac::default(),
             Device::Usart2 => self.usart.reset(),
             Device::Wwdg => self.wwdg.reset(now),
             Device::Syscfg => self.exti.reset_syscfg(),

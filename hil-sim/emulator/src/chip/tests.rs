@@ -45,7 +45,7 @@ impl Bench {
         self.chip.system_reset(ResetCause::PowerOn, self.now);
         for (register, clocks) in [
             (0x4002_3830, 0x0060_00ff),
-            (0x4002_3840, 0x1002_083f),
+            (0x4002_3840, 0x3002_083f),
             (0x4002_3844, 0x0006_4103),
         ] {
             let old = self.read(register).expect("an enable register");
