@@ -91,8 +91,24 @@ global_asm!(
     "bx r0",
 );
 
+// Handlers that make no exclusive access, and that leave the monitor set, of the address in r1.
+global_asm!(
+    ".section .text.handler, \"ax\", %progbits",
+    ".global does_nothing",
+    ".thumb_func",
+    "does_nothing:",
+    "bx lr",
+    ".global leaves_the_monitor_set",
+    ".thumb_func",
+    "leaves_the_monitor_set:",
+    "ldrex r2, [r1]",
+    "bx lr",
+);
+
 unsafe extern "C" {
     fn handler();
+    fn does_nothing();
+    fn leaves_the_monitor_set();
 }
 
 fn special(name: u32) -> u32 {
@@ -483,6 +499,25 @@ fn exclusive_monitor() {
         log(failed);
         log(DATA.load(Relaxed));
     }
+    let pend_sv = &VECTORS.0[14];
+    for (entered, loads) in [
+        (does_nothing as *const (), true),
+        (leaves_the_monitor_set as *const (), false),
+    ] {
+        pend_sv.store(entered as u32, Relaxed);
+        let failed: u32;
+        // SAFETY: as above; the handler reads the word at r1.
+        unsafe {
+            asm!(
+                "cbz {loads}, 2f", "ldrex {t}, [r1]", "2:",
+                "str {bit}, [{r}]", "dsb", "isb", "strex {f}, {t}, [r1]",
+                in("r1") DATA.as_ptr(), t = inout(reg) 5 => _, f = out(reg) failed, r = in(reg) ICSR,
+                bit = in(reg) 1u32 << 28, loads = in(reg) u32::from(loads),
+            )
+        }
+        log(failed);
+    }
+    pend_sv.store(handler as *const () as u32, Relaxed);
 }
 
 /// Thread mode without privilege.
