@@ -44,6 +44,8 @@ pub(crate) struct Adc {
     pclk2_hz: u32,
     /// Cycle from which conversions are accurate.
     stable_at: u64,
+    /// Why the sequence may not be converted.
+    bad_channel: Option<Refusal>,
     /// Position in the running sequence.
     position: u32,
     dma_ended: bool,
@@ -115,13 +117,8 @@ impl Adc {
         }
     }
 
-    /// Whether a conversion may start at `now`.
-    fn check_start(&self, now: u64) -> Answer<()> {
-        if now < self.stable_at {
-            return Err(Refusal::Misuse(
-                "a conversion starts less than 3 us after ADON was set (DS10693, t_STAB)",
-            ));
-        }
+    /// Why the selected sequence may not be converted. Checked when its registers change, not at each of many starts.
+    fn check_channels(&self) -> Answer<()> {
         for channel in (0..self.length()).map(|position| self.channel_at(position)) {
             match channel {
                 0..=15 => {}
@@ -132,11 +129,7 @@ impl Adc {
                         "channel 17 is converted while ADC_CCR.TSVREFE is 0, or 18 while VBATE is, too (RM0390 13.10, 13.11)",
                     ));
                 }
-                _ => {
-                    return Err(Refusal::NotModelled(
-                        "ADC channels above 18, and channel 16",
-                    ));
-                }
+                _ => return Err(Refusal::NotModelled("ADC channel 16, or above 18")),
             }
         }
         Ok(())
@@ -147,7 +140,14 @@ impl Adc {
     pub fn start(&mut self, now: u64) -> Answer<()> {
         let overrun = self.sr & OVR != 0 && self.cr2 & DMA != 0;
         if self.cr2 & ADON != 0 && self.due == u64::MAX && !overrun {
-            self.check_start(now)?;
+            if now < self.stable_at {
+                return Err(Refusal::Misuse(
+                    "a conversion starts less than 3 us after ADON was set (DS10693, t_STAB)",
+                ));
+            }
+            if let Some(refusal) = self.bad_channel {
+                return Err(refusal);
+            }
             self.position = 0;
             self.sr |= STRT;
             if !self.stuck {
@@ -292,6 +292,7 @@ impl Adc {
             }
             _ => return Err(Refusal::Offset),
         }
+        self.bad_channel = self.check_channels().err();
         Ok(())
     }
 

@@ -401,9 +401,10 @@ impl<W: Wiring> Chip<W> {
     fn sample_exti(&mut self, at: u64) {
         for line in lines(self.exti.watched()) {
             let level = self.pin(self.exti.port(line), line);
-            self.exti.set_level(line, level);
+            if self.exti.set_level(line, level) {
+                self.exti_changed(at);
+            }
         }
-        self.exti_changed(at);
     }
 
     fn exti_changed(&mut self, at: u64) {

@@ -13,8 +13,12 @@ const GROUPS: [(usize, u32); 7] = [
 ];
 
 /// Numbers of the bits that are set in a mask of the lines.
-pub(crate) fn lines(mask: u32) -> impl Iterator<Item = u8> {
-    (0..16u8).filter(move |line| mask >> line & 1 != 0)
+pub(crate) fn lines(mut mask: u32) -> impl Iterator<Item = u8> {
+    std::iter::from_fn(move || {
+        let line = mask.trailing_zeros();
+        mask &= mask.wrapping_sub(1);
+        (line < 16).then_some(line as u8)
+    })
 }
 
 #[derive(Default)]
@@ -45,15 +49,16 @@ impl Exti {
         self.levels = self.levels & !(1 << line) | u32::from(level) << line;
     }
 
-    /// New level of a line's pin.
-    pub fn set_level(&mut self, line: u8, level: bool) {
+    /// New level of a line's pin. `true`: it is an edge that is selected, and pends.
+    pub fn set_level(&mut self, line: u8, level: bool) -> bool {
         let bit = 1 << line;
-        if (self.levels & bit != 0) != level {
-            self.levels ^= bit;
-            if (if level { self.rtsr } else { self.ftsr }) & bit != 0 {
-                self.pr |= bit;
-            }
+        if (self.levels & bit != 0) == level {
+            return false;
         }
+        self.levels ^= bit;
+        let edge = bit & if level { self.rtsr } else { self.ftsr };
+        self.pr |= edge;
+        edge != 0
     }
 
     /// Interrupt requests as `(interrupt, level)`.

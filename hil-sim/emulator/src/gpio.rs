@@ -52,31 +52,33 @@ impl Port {
         }
     }
 
-    /// Whether the pin's driver only pulls low.
-    pub fn is_open_drain(&self, bit: u8) -> bool {
-        self.otyper >> bit & 1 != 0
+    /// Pins whose drivers only pull low, one bit each.
+    pub const fn open_drain(&self) -> u32 {
+        self.otyper
     }
 
     /// Level that the pin drives as a general-purpose output; `None` if it is not an output, or open-drain and high.
     pub fn output(&self, bit: u8) -> Option<bool> {
+        let is_output = self.moder >> (2 * bit) & 3 == 1;
         let high = self.odr >> bit & 1 != 0;
-        let floats = high && self.is_open_drain(bit);
-        (self.mode(bit) == Mode::Output && !floats).then_some(high)
+        let floats = high && self.otyper >> bit & 1 != 0;
+        (is_output && !floats).then_some(high)
     }
 
     /// Masks of the bits driven as general-purpose outputs, and of their levels.
     pub fn outputs(&self) -> (u32, u32) {
-        let driven = (0..16)
-            .filter(|b| self.output(*b).is_some())
-            .map(|b| 1 << b)
-            .sum();
+        let is_output = (0..16).fold(0, |mask, bit| {
+            mask | u32::from(self.moder >> (2 * bit) & 3 == 1) << bit
+        });
+        let driven = is_output & !(self.odr & self.otyper);
         (driven, self.odr & driven)
     }
 
     /// Input level of a pin that the outside drives to `external`. A floating pin reads low.
     pub fn level(&self, bit: u8, external: Option<bool>) -> bool {
         let pulled_up = self.pupdr >> (2 * bit) & 3 == 1;
-        self.output(bit).or(external).unwrap_or(pulled_up) && self.mode(bit) != Mode::Analog
+        let is_analog = self.moder >> (2 * bit) & 3 == 3;
+        self.output(bit).or(external).unwrap_or(pulled_up) && !is_analog
     }
 
     /// Reads a register; `external` gives the levels at the pins.

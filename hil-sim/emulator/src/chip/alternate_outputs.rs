@@ -8,33 +8,32 @@ use crate::gpio::Mode;
 const USART2_TX: (usize, u8, u8) = (0, 2, 7);
 
 impl<W: Wiring> Chip<W> {
-    /// Brings the timers that drive pins of a port up to `now`.
-    pub(super) fn sync_timers_of_port(&mut self, port: usize, now: u64) {
-        for (of_port, bit, function, timer, _) in TIMER_PINS {
-            let driven = usize::from(of_port) == port
-                && self.ports[port].mode(bit) == Mode::Alternate(function);
-            if driven {
-                self.tims[timer].sync(now);
-                self.timer_changed(timer, now);
+    /// Pins of a port that peripherals drive at `now`, and their levels, one bit each.
+    pub(super) fn alternate_levels(&mut self, port: usize, now: u64) -> (u32, u32) {
+        let (mut driven, mut levels) = (0, 0);
+        let mut drive = |bit: u8, level: bool| {
+            driven |= 1 << bit;
+            levels |= u32::from(level) << bit;
+        };
+        for (of_port, bit, function, timer, channel) in TIMER_PINS {
+            let pins = &self.ports[port];
+            if usize::from(of_port) != port || pins.mode(bit) != Mode::Alternate(function) {
+                continue;
+            }
+            let timer = &mut self.tims[timer];
+            timer.sync(now);
+            if timer.output(channel) != Output::Released {
+                drive(bit, timer.is_high(channel, now));
             }
         }
-    }
-
-    /// Level that a peripheral drives on a pin; `None` if none does.
-    pub(super) fn alternate_level(&self, port: usize, bit: u8, now: u64) -> Option<bool> {
-        let Mode::Alternate(function) = self.ports[port].mode(bit) else {
-            return None;
-        };
-        let level = if (port, bit, function) == USART2_TX {
-            self.usart.tx_level(now)?
-        } else {
-            let pin = (port as u8, bit, function);
-            let (.., timer, channel) = *TIMER_PINS.iter().find(|p| (p.0, p.1, p.2) == pin)?;
-            match self.tims[timer].output(channel) {
-                Output::Released => return None,
-                Output::High { .. } => self.tims[timer].is_high(channel, now),
-            }
-        };
-        (!level || !self.ports[port].is_open_drain(bit)).then_some(level)
+        let (of_port, bit, function) = USART2_TX;
+        if of_port == port
+            && self.ports[port].mode(bit) == Mode::Alternate(function)
+            && let Some(level) = self.usart.tx_level(now)
+        {
+            drive(bit, level);
+        }
+        // what an open-drain pin does not pull low, it does not drive
+        (driven & !(levels & self.ports[port].open_drain()), levels)
     }
 }

@@ -137,12 +137,14 @@ impl<W: Wiring> Chip<W> {
         let offset = address & 0x3ff;
         match device {
             Device::Gpio(port) => {
-                if offset == INPUT_DATA {
-                    self.sync_timers_of_port(port, now);
-                }
-                self.ports[port].read(offset, |bit| {
-                    let driven = self.alternate_level(port, bit, now);
-                    driven.or_else(|| self.wiring.pin(port as u8, bit))
+                let (driven, levels) = match offset {
+                    INPUT_DATA => self.alternate_levels(port, now),
+                    _ => (0, 0),
+                };
+                let wiring = &self.wiring;
+                self.ports[port].read(offset, |bit| match driven >> bit & 1 {
+                    0 => wiring.pin(port as u8, bit),
+                    _ => Some(levels >> bit & 1 != 0),
                 })
             }
             Device::Rcc => self.rcc.read(offset, now),
@@ -206,7 +208,10 @@ impl<W: Wiring> Chip<W> {
             return Ok(());
         }
         let device = self.clocked(address)?;
-        let (offset, value) = self.widened(device, address & 0x3ff, bytes, value, now)?;
+        let (offset, value) = match bytes {
+            4 => (address & 0x3ff, value),
+            _ => self.widened(device, address & 0x3ff, bytes, value, now)?,
+        };
         self.write_device(device, offset, value, now)?;
         self.refresh_next(now);
         Ok(())
