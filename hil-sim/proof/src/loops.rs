@@ -49,7 +49,7 @@ pub fn check(proof: &Proof) -> Result<Section> {
                 let owner = owner(proof, edge.0);
                 if allowed.why(tree, &owner).is_none() {
                     let chain = proof.names.chain(edge.0);
-                    section.differences.push(format!("{tree} loops: {chain}"));
+                    section.violations.push(format!("{tree} loops: {chain}"));
                 }
                 *owners.entry(owner).or_default() += 1;
             }
@@ -70,6 +70,6 @@ pub fn check(proof: &Proof) -> Result<Section> {
                 .map(|(owner, count)| format!("  {count} in {owner}")),
         );
     }
-    section.differences.extend(allowed.unused());
+    section.lines.extend(allowed.unused());
     Ok(section)
 }
