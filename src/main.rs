@@ -22,6 +22,7 @@ mod board;
 
 #[rtic::app(device = crate::board::pac, peripherals = true, dispatchers = [EXTI0])]
 mod app {
+    use core::mem::MaybeUninit;
     use core::sync::atomic::{AtomicBool, Ordering};
 
     use thermal_display::device::{DeviceInPlace, Station, execute_in_turn};
@@ -57,7 +58,7 @@ mod app {
     // address as a constant, which saves 200 instructions a tick.
     #[init(local = [
         memory: StaticMemory = StaticMemory::new(),
-        stations: [Option<Station>; FINGERS] = [const { None }; FINGERS]
+        stations: [MaybeUninit<Station>; FINGERS] = [const { MaybeUninit::uninit() }; FINGERS]
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let board = Board::set_up(cx.core.SYST, cx.device, cx.local.memory, cx.local.stations);

@@ -94,7 +94,9 @@ impl ControlLoop {
                 line_losses::DROPPED_TELEMETRY.count();
             }
         }
-        if finger == FingerIndex::FIRST
+        // The other fingers only if this one has tripped.
+        if device.is_finger_tripped(finger)
+            && finger == FingerIndex::FIRST
             && FingerIndex::all().all(|one| device.is_finger_tripped(one))
         {
             self.chip_monitor.restart_when_clock_has_come();

@@ -8,6 +8,7 @@ use super::relaxation_bank::{
     FastRelaxation, MATCH_HORIZON_TICKS, RelaxationBank, Relaxations, SlowRelaxation, WINDOW,
 };
 use super::{Celsius, Fraction, saturating_product, to_fixed};
+use crate::decimal::Shortest;
 use crate::finger::FingerProperties;
 use crate::impedance::{Impedance, Relaxation};
 use crate::material::SKIN;
@@ -85,12 +86,15 @@ impl fmt::Display for BodyError {
                     "{count} rates below 12.5 1/s; at most {SLOW_MAX} are allowed"
                 )
             }
-            Self::Rate(value) => write!(f, "rate {value} 1/s; it must be 0 to 690"),
+            Self::Rate(value) => {
+                write!(f, "rate {} 1/s; it must be 0 to 690", Shortest(*value))
+            }
             Self::Direct {
                 direct_m2k_w,
                 max_m2k_w,
             } => {
-                let (value, max) = (in_mm2(*direct_m2k_w), floor_in_mm2(*max_m2k_w));
+                let value = Shortest(in_mm2(*direct_m2k_w));
+                let max = Shortest(floor_in_mm2(*max_m2k_w));
                 write!(f, "direct {value} mm2K/W; it must be 0 to {max}")
             }
             Self::Gain {
@@ -98,7 +102,8 @@ impl fmt::Display for BodyError {
                 max_m2k_j,
                 index,
             } => {
-                let (value, max) = (in_mm2(*gain_m2k_j), floor_in_mm2(*max_m2k_j));
+                let value = Shortest(in_mm2(*gain_m2k_j));
+                let max = Shortest(floor_in_mm2(*max_m2k_j));
                 write!(
                     f,
                     "gain {value} mm2K/J of relaxation {index}; above 0 to {max} is allowed at its rate beside those before it"
@@ -283,6 +288,7 @@ const _: () = {
 };
 
 /// Response of a relaxation of rate `r` per tick to a unit flux of one tick, over its gain: `(1 - e^-r) / r`.
+#[inline(never)]
 fn mean_decay(r: f64) -> f64 {
     if r > 0.0 { -libm::expm1(-r) / r } else { 1.0 }
 }

@@ -1,7 +1,9 @@
 //! Parameters of the contact between a finger and a material, reproduced by a display surface.
 
 use super::properties::{ContactPairError, check, moderate, rate};
-use super::{Celsius, Contact, Fraction, Log2, MantissaExponent, Ratio, contact, logarithm};
+use super::{
+    Celsius, Contact, Fraction, Log2, MantissaExponent, Ratio, contact, logarithm, to_fixed,
+};
 use crate::material::{Material, Surface};
 use crate::reference;
 
@@ -38,13 +40,16 @@ impl ContactPair {
             &object.surface,
         ))?;
         let ratio = conductance / reference::mean_conductance::<f64>(&skin.surface, display);
+        if ratio >= f64::from(1 << Ratio::INT_NBITS) {
+            return Err(ContactPairError::Ratio(ratio));
+        }
         let b = (1.0 / es + 1.0 / eo) * conductance;
         Ok(Self {
-            ratio: Ratio::checked_from_num(ratio).ok_or(ContactPairError::Ratio(ratio))?,
+            ratio: to_fixed(ratio),
             rate_per_tick: rate(moderate(b * b)? * tick_s)?,
             root_rate_per_tick: rate(b * libm::sqrt(tick_s))?,
             conductance_w_m2k: rate(conductance)?,
-            weight: Fraction::saturating_from_num(1.0 / (1.0 + es / eo)),
+            weight: to_fixed(1.0 / (1.0 + es / eo)),
         })
     }
 

@@ -116,6 +116,7 @@ impl HalfSpace {
     /// The constant scaled flux that, added to a flux common to both, brings this surface to that of `other`
     /// within [`MATCH_HORIZON_TICKS`](super::MATCH_HORIZON_TICKS), K.
     #[must_use]
+    #[inline(always)]
     pub fn scaled_flux_to_match(&self, other: &Self) -> Celsius {
         self.0.scaled_flux_to_match(&other.0, &RELAXATIONS)
     }

@@ -92,7 +92,13 @@ pub fn saturated<Out: Word, Frac: LeEqU64>(wide: FixedI64<Frac>) -> Out {
 /// the ends of `Out`. NaN gives 0.
 #[must_use]
 pub fn to_fixed<Out: Word>(value: f64) -> Out {
-    Out::limited(libm::round(libm::ldexp(value, Out::PLACES as i32)) as i64)
+    Out::limited(rounded_units(value, Out::PLACES))
+}
+
+/// `value` in units of `2^-places`, rounded. Not inlined, because set-up calls it a hundred times.
+#[inline(never)]
+fn rounded_units(value: f64, places: u32) -> i64 {
+    libm::round(libm::ldexp(value, places as i32)) as i64
 }
 
 #[cfg(test)]

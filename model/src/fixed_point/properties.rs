@@ -3,6 +3,7 @@
 use core::fmt;
 
 use super::MantissaExponent;
+use crate::decimal::{Rounded, Shortest};
 use crate::material::{Material, Surface};
 
 /// A material, surface or tick that fixed point cannot represent.
@@ -25,13 +26,20 @@ impl fmt::Display for ContactPairError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Property { name, value } => {
+                let value = Shortest(*value);
                 write!(f, "{name} is {value}; it must be above 0 and finite")
             }
-            Self::Ratio(value) => write!(f, "R_display / R_object is {value}; it must be below 16"),
-            Self::OutOfRange(value) => write!(
-                f,
-                "the contact's rate is {value}; it must be within 2^-100 to 2^100"
-            ),
+            Self::Ratio(value) => {
+                let value = Rounded(*value, 2);
+                write!(f, "R_display / R_object is {value}; it must be below 16")
+            }
+            Self::OutOfRange(value) => {
+                let exponent = libm::floor(libm::log2(*value)) as i32;
+                write!(
+                    f,
+                    "the contact's rate is 2^{exponent}; it must be within 2^-100 to 2^100"
+                )
+            }
         }
     }
 }

@@ -54,6 +54,8 @@ mod tick_rate_and_rcc_monitor;
 pub(crate) mod trip_cause_recorder;
 mod window_watchdog;
 
+use core::mem::MaybeUninit;
+
 use cortex_m::peripheral::SYST;
 use heapless::spsc::Queue;
 use stm32f4xx_hal::dma::StreamsTuple;
@@ -105,8 +107,9 @@ pub struct StaticMemory {
     frame_queues: serial::FullAndEmptyFrameQueues,
     line_queue: LineQueue,
     telemetry: Queue<WithSourceFinger<Telemetry>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
-    // Created in place, because moving it while sampling runs would delay the first tick.
-    handler: Option<CommandHandler<FINGERS>>,
+    // Created in place, because moving it while sampling runs would delay the first tick. Not an `Option`, whose `None` has a bit set,
+    // so that the whole memory would be kept in flash to be copied from there at the start.
+    handler: MaybeUninit<CommandHandler<FINGERS>>,
 }
 
 impl StaticMemory {
@@ -118,7 +121,7 @@ impl StaticMemory {
             frame_queues: serial::FullAndEmptyFrameQueues::new(),
             line_queue: LineQueue::new(),
             telemetry: Queue::new(),
-            handler: None,
+            handler: MaybeUninit::uninit(),
         }
     }
 }
@@ -160,7 +163,7 @@ fn reset_and_trip_cause_at_start(rcc: &pac::RCC) -> (ResetCause, Option<TripCaus
 /// were saved in RAM before the reset. All fingers are tripped by `cause` if there is one, and by
 /// [`Fault::SettingsCorrupt`] if the settings cannot be read.
 fn create_and_restore_device(
-    places: &'static mut [Option<Station>; FINGERS],
+    places: &'static mut [MaybeUninit<Station>; FINGERS],
     cause: Option<TripCause>,
     storage: &SaveAndLoadResult,
 ) -> DeviceInPlace<FINGERS> {
@@ -181,10 +184,10 @@ fn create_and_restore_device(
 /// which never returns.
 #[inline(never)]
 fn create_handler(
-    place: &'static mut Option<CommandHandler<FINGERS>>,
+    place: &'static mut MaybeUninit<CommandHandler<FINGERS>>,
     storage: &SaveAndLoadResult,
 ) -> &'static mut CommandHandler<FINGERS> {
-    place.insert(match &storage.settings {
+    place.write(match &storage.settings {
         Ok(Some(settings)) => CommandHandler::from_stored(settings),
         Ok(None) | Err(_) => CommandHandler::new(Settings::default()),
     })
@@ -223,7 +226,7 @@ impl Board {
         systick: SYST,
         peripherals: pac::Peripherals,
         memory: &'static mut StaticMemory,
-        stations: &'static mut [Option<Station>; FINGERS],
+        stations: &'static mut [MaybeUninit<Station>; FINGERS],
     ) -> Self {
         debug_freeze::clear_freeze_bits(&peripherals.DBGMCU);
         let (reset, cause) = reset_and_trip_cause_at_start(&peripherals.RCC);

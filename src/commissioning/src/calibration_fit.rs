@@ -172,8 +172,8 @@ impl<const N: usize> NormalEquations<N> {
     }
 
     /// Solves the normal equations for the `N` unknowns that fit the added equations best; `None` if the matrix is
-    /// numerically singular.
-    fn solve(mut self) -> Option<[f64; N]> {
+    /// numerically singular. Overwrites the equations, of which a copy would need 3 KB of stack.
+    fn solve(&mut self) -> Option<[f64; N]> {
         solve_by_cholesky(&mut self.matrix, &mut self.right)?;
         Some(self.right)
     }

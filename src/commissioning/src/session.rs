@@ -130,6 +130,7 @@ impl CommissioningSession {
     /// Computes the tile's parameters from the response that the station has recorded during `tune`, and makes them the
     /// tile of the settings and of the station. Without a complete `tune`, if the response gives no tile, or if the
     /// station refuses the parameters, nothing changes.
+    #[inline(never)]
     fn identify_and_set_tile(
         &mut self,
         execute: &mut impl ExecuteOnStation,
@@ -148,6 +149,7 @@ impl CommissioningSession {
     /// Replaces the tile's parameters, and the controller gains that follow from them, in the station and in this
     /// session's settings (in RAM; only `save` writes them to flash). If the station refuses them, because it presents
     /// an object, nothing changes.
+    #[inline(never)]
     fn set_tile(&mut self, tile: Tile, execute: &mut impl ExecuteOnStation) -> Result<(), Refused> {
         let mut settings = self.settings;
         settings.set_tile(tile);
@@ -156,6 +158,7 @@ impl CommissioningSession {
         Ok(())
     }
 
+    #[inline(never)]
     fn tile_and_margins_reply(&self) -> SessionReply {
         let Settings { tile, gains, .. } = &self.settings;
         SessionReply::Tile(*tile, StabilityMargins::new(tile, gains))
@@ -182,6 +185,7 @@ impl CommissioningSession {
     /// Replaces the calibration in use and the prior of the calibration fit, and removes the calibration points of the
     /// thermistors with the indices `sensors`, because the new prior replaces what they contributed. If the station
     /// refuses the calibration, because it presents an object or runs the self-test, nothing changes.
+    #[inline(never)]
     fn replace_calibration_and_clear_points(
         &mut self,
         calibration: Calibration,
@@ -215,6 +219,7 @@ impl CommissioningSession {
     /// the corrections of both display thermistors are zero then, the converter's steps at its segment borders are set
     /// to zero, too, because only these two thermistors determine them. If the station refuses the calibration, nothing
     /// changes.
+    #[inline(never)]
     fn clear_thermistor_calibration(
         &mut self,
         sensor: usize,
@@ -237,6 +242,7 @@ impl CommissioningSession {
     /// the reference thermometer, `reference_c`, °C. Then fits the calibration to all points, and uses it in station
     /// and settings. If no allowed calibration fits, or the station refuses it, the new point is removed again and
     /// nothing changes.
+    #[inline(never)]
     fn add_point_and_refit(
         &mut self,
         sensor: usize,
@@ -272,6 +278,7 @@ impl CommissioningSession {
 
     /// The content of one line of the settings by its index, 0 to 7: two lines of converter steps, five corrections,
     /// the tile.
+    #[inline(never)]
     fn setting_at_line_index(&self, index: usize) -> Setting {
         let calibration = &self.settings.calibration;
         if let Some(steps) = calibration

@@ -2,6 +2,7 @@
 
 use core::array;
 use core::borrow::BorrowMut;
+use core::mem::MaybeUninit;
 
 use crate::command::{Command, Refused, Reply, WithSourceFinger};
 use crate::drive::BoardOutputs;
@@ -50,15 +51,13 @@ impl<const FINGERS: usize> DeviceInPlace<FINGERS> {
     #[must_use]
     #[inline(never)]
     pub fn new_in_place(
-        places: &'static mut [Option<Station>; FINGERS],
+        places: &'static mut [MaybeUninit<Station>; FINGERS],
         cause: Option<TripCause>,
         settings: &Settings,
     ) -> Self {
         let station = Station::new_optionally_tripped(cause, settings);
         Self {
-            stations: places
-                .each_mut()
-                .map(|place| place.get_or_insert_with(|| station.clone())),
+            stations: places.each_mut().map(|place| place.write(station.clone())),
         }
     }
 }

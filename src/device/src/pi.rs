@@ -1,6 +1,6 @@
 //! A proportional-integral controller from temperature error to current, with limited output and anti-windup.
 
-use contact_model::fixed_point::Celsius;
+use contact_model::fixed_point::{Celsius, Word};
 use fixed::types::{I2F30, I12F52, I16F16};
 use thermal_settings::PiGains;
 
@@ -78,6 +78,11 @@ pub struct Pi {
     integral: I12F52,
 }
 
+/// A current with the binary places of the integral.
+fn integral_of_current(current: Current) -> I12F52 {
+    I12F52::from_bits(i64::from(current.to_bits()) << EXTRA_INTEGRAL_BINARY_PLACES)
+}
+
 impl Pi {
     /// A controller whose output and integral start at 0 A, and whose output never exceeds `limit`, A, in magnitude.
     #[must_use]
@@ -102,8 +107,7 @@ impl Pi {
     /// (bumpless transfer).
     pub fn track_current(&mut self, current: Current) {
         (self.ticks_to_update, self.output) = (0, current);
-        self.integral =
-            I12F52::from_bits(i64::from(current.to_bits()) << EXTRA_INTEGRAL_BINARY_PLACES);
+        self.integral = integral_of_current(current);
     }
 
     /// Largest magnitude of the current that the controller gives, A.
@@ -138,16 +142,22 @@ impl Pi {
         } = self.coefficients;
         let proportional = error.wide_mul(proportional).to_bits()
             >> (Celsius::FRAC_NBITS + I16F16::FRAC_NBITS - Current::FRAC_NBITS);
-        let sum = self.integral.saturating_add(error.wide_mul(integral));
-        let limit = i64::from(self.limit.to_bits());
-        let wanted = proportional + (sum.to_bits() >> EXTRA_INTEGRAL_BINARY_PLACES);
+        let sum = self.integral.wrapping_add(error.wide_mul(integral));
+        let integral = sum.to_bits() >> EXTRA_INTEGRAL_BINARY_PLACES;
+        let wanted = Current::limited(proportional + integral);
         // Not `clamp`, which panics when its limits are the wrong way round.
-        let output = wanted.min(limit).max(-limit);
+        let output = wanted.min(self.limit).max(-self.limit);
         if output == wanted || (wanted > output) != (error > 0) {
-            let limit = I12F52::from_bits(limit << EXTRA_INTEGRAL_BINARY_PLACES);
-            self.integral = sum.min(limit).max(-limit);
+            let integral = Current::limited(integral);
+            let limited = integral.min(self.limit).max(-self.limit);
+            // What the shift has cut off belongs to an integral below the limit only.
+            self.integral = if limited == integral && limited < self.limit {
+                sum
+            } else {
+                integral_of_current(limited)
+            };
         }
-        Current::from_bits(output as i32)
+        output
     }
 }
 

@@ -6,6 +6,7 @@ use fixed::types::I32F32;
 use thermal_settings::Range;
 
 use crate::Error;
+use crate::decimal_number::fixed_point_from_decimal;
 
 /// Iterator over the words of a line from the host that are not read yet, separated by white space.
 pub type Words<'a> = SplitAsciiWhitespace<'a>;
@@ -62,9 +63,7 @@ pub fn read_fixed_point_in_range(
     range: &'static Range,
 ) -> Result<I32F32, Error> {
     let word = word_or_empty(words);
-    // A number with too many digits becomes the largest `I32F32`, which is outside of all ranges.
-    let value =
-        I32F32::saturating_from_str(word).map_err(|_| Error::NotANumber(range, word.into()))?;
+    let value = fixed_point_from_decimal(word).ok_or(Error::NotANumber(range, word.into()))?;
     if (I32F32::from_num(range.min)..=I32F32::from_num(range.max)).contains(&value) {
         Ok(value)
     } else {

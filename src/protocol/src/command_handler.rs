@@ -106,6 +106,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// `save` or `forget`. Otherwise the error is that of the first finger that rejects the line, and the other fingers
     /// have executed the line if their state permits it. For `clear` without an address, a finger that is not tripped
     /// gives an error only if no finger is tripped.
+    // Not inlined, so that telemetry, which the caller prints, does not need this function's stack.
+    #[inline(never)]
     pub fn answer(
         &mut self,
         line: &str,
@@ -163,6 +165,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     }
 
     /// Executes a command in the station of `finger`, or in all stations for `None`.
+    #[inline(never)]
     fn execute_in_stations(
         command: Command,
         finger: Option<FingerIndex<FINGERS>>,
@@ -203,6 +206,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// ends the upload even if it is refused, and so does a `begin` that is refused. There is one upload for all fingers,
     /// which saves the RAM of the others: it belongs to the address that began it last, so that hosts of several fingers
     /// that upload at the same time get an error and not each other's rows.
+    #[inline(never)]
     fn continue_upload(
         &mut self,
         finger: Option<FingerIndex<FINGERS>>,
@@ -297,6 +301,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// The error that rejects `save` or `forget`, or `None` if the command may be executed. Rejected are a line that
     /// addresses one of several fingers, and any line while a bridge is on or a self-test runs: the device restarts to
     /// store settings, and would switch off a display that a finger may feel.
+    #[inline(never)]
     fn save_or_forget_rejection(
         order: StorageOrder,
         finger: Option<FingerIndex<FINGERS>>,
@@ -337,6 +342,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
 const SLAB_DIFFUSION_MAX_S: f64 = 2e4;
 
 /// The body of a slab of a material, which may count as a half-space.
+#[inline(never)]
 fn slab_body(material: &Material, thickness_mm: f64, back: Back) -> Result<ObjectBody, Error> {
     let slab = Slab {
         thickness_m: 1e-3 * thickness_mm,

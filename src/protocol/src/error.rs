@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use contact_model::decimal::{Rounded, Shortest};
 use contact_model::fixed_point::{BodyError, ContactPairError};
 use contact_model::material::MATERIALS;
 
@@ -233,11 +234,14 @@ impl fmt::Display for Error {
             {
                 write!(f, "{} missing; {range}", range.name)
             }
-            Self::NotMillimetres(range, word) => write!(
-                f,
-                "{} {word}: a number of mm, such as 3 or 3mm; {} to {}",
-                range.name, range.min, range.max
-            ),
+            Self::NotMillimetres(range, word) => {
+                let (min, max) = (Shortest(range.min), Shortest(range.max));
+                write!(
+                    f,
+                    "{} {word}: a number of mm, such as 3 or 3mm; {min} to {max}",
+                    range.name
+                )
+            }
             Self::NotANumber(range, word) => {
                 write!(f, "{} {word} is not a decimal number; {range}", range.name)
             }
@@ -370,15 +374,16 @@ fn write_identification_error(
     match error {
         IdentificationError::CurrentRatio(ratio) => write!(
             f,
-            "tune measured {ratio:.2} of the current asked for; look at bridge, module and current mirror"
+            "tune measured {} of the current asked for; look at bridge, module and current mirror",
+            Rounded(*ratio, 2)
         ),
         IdentificationError::NoResponse => {
             f.write_str("tune saw no answer of the display to the current; look at its thermistor")
         }
         IdentificationError::ModelMismatch(residual) => write!(
             f,
-            "tune saw {:.2} % of what the display did come from elsewhere; look for a loose sensor, a draught, a touch",
-            100.0 * residual
+            "tune saw {} % of what the display did come from elsewhere; look for a loose sensor, a draught, a touch",
+            Rounded(100.0 * residual, 2)
         ),
         IdentificationError::OutOfRange(
             Range {
@@ -388,10 +393,13 @@ fn write_identification_error(
                 max,
             },
             value,
-        ) => write!(
-            f,
-            "tune found a {name} of {value:.3} {unit}; {min} to {max} is a tile; look at sensor and polarity"
-        ),
+        ) => {
+            let (value, min, max) = (Rounded(*value, 3), Shortest(*min), Shortest(*max));
+            write!(
+                f,
+                "tune found a {name} of {value} {unit}; {min} to {max} is a tile; look at sensor and polarity"
+            )
+        }
     }
 }
 
@@ -405,7 +413,9 @@ fn write_calibration_point_error(f: &mut fmt::Formatter<'_>, error: &PointError)
         }
         PointError::TooFar(reading) => write!(
             f,
-            "the device reads {reading:.2} C; allowed is within {REFERENCE_DIFFERENCE_MAX_K} C of that"
+            "the device reads {} C; allowed is within {} C of that",
+            Rounded(reading.to_num(), 2),
+            Shortest(REFERENCE_DIFFERENCE_MAX_K)
         ),
         PointError::Contradicts => {
             f.write_str("no correction fits this and the points before; clear them and begin again")

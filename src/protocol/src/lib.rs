@@ -9,6 +9,7 @@ mod arguments;
 mod board_status;
 mod calibrate_settings_set_commands;
 mod command_handler;
+mod decimal_number;
 mod error;
 mod finger_address;
 mod line_buffer;

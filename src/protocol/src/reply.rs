@@ -2,8 +2,9 @@
 
 use core::fmt::{self, Display as _};
 
+use contact_model::decimal::Rounded;
 use thermal_commissioning::{
-    SessionReply, Setting, StabilityMargins, StorageOrder, THERMISTOR_WORDS,
+    CONVERTER_STEPS_PER_LINE_MAX, SessionReply, Setting, StorageOrder, THERMISTOR_WORDS,
 };
 use thermal_device::command::{self, Status};
 use thermal_device::safety::{SelfTestReport, TripCause};
@@ -89,19 +90,17 @@ fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt:
     match reply {
         SessionReply::Done => f.write_str("ok"),
         SessionReply::Tile(tile, margins) => {
-            let [gain, joule, leak, lag, dead] = tile.to_array();
-            let StabilityMargins {
-                phase_deg,
-                gain: margin,
-            } = margins;
-            write!(
-                f,
-                "ok gain={gain:.4} joule={joule:.4} leak={leak:.4} lag_s={lag:.4} dead_s={dead:.4}"
-            )?;
-            write!(f, " phase_deg={phase_deg:.1} margin={margin:.2}")
+            f.write_str("ok")?;
+            let names = ["gain", "joule", "leak", "lag_s", "dead_s"];
+            for (name, value) in names.into_iter().zip(tile.to_array()) {
+                write!(f, " {name}={}", Rounded(value, 4))?;
+            }
+            let (phase, margin) = (Rounded(margins.phase_deg, 1), Rounded(margins.gain, 2));
+            write!(f, " phase_deg={phase} margin={margin}")
         }
         SessionReply::PointAdded { points, worst_mk } => {
-            write!(f, "ok points={points} worst_mk={worst_mk:.2}")
+            let worst_mk = Rounded(*worst_mk, 2);
+            write!(f, "ok points={points} worst_mk={worst_mk}")
         }
         SessionReply::SettingsLines(lines) => write!(f, "ok lines={lines}"),
         SessionReply::Setting(setting) => write_set_line(f, setting),
@@ -245,9 +244,7 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
         Setting::Steps { first, counts } => {
             write!(f, "steps {first}")?;
             let decimals = Calibration::ADC_ERROR_STEP_DECIMALS as usize;
-            counts
-                .iter()
-                .try_for_each(|count| write!(f, " {count:.decimals$}"))
+            write_numbers(f, counts, &[decimals; CONVERTER_STEPS_PER_LINE_MAX])
         }
         Setting::Correction(sensor, correction) => {
             write!(
@@ -255,16 +252,19 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
                 "correction {}",
                 THERMISTOR_WORDS[sensor % THERMISTOR_WORDS.len()]
             )?;
-            const { assert!(matches!(Calibration::CORRECTION_DECIMALS, [6, 7, 8])) };
-            let [offset, slope, curvature] = correction.to_array();
-            write!(f, " {offset:.6} {slope:.7} {curvature:.8}")
+            let decimals = Calibration::CORRECTION_DECIMALS.map(|decimals| decimals as usize);
+            write_numbers(f, &correction.to_array(), &decimals)
         }
         Setting::Tile(tile) => {
             f.write_str("tile")?;
-            let decimals = Tile::DECIMALS;
-            tile.to_array()
-                .iter()
-                .try_for_each(|value| write!(f, " {value:.decimals$}"))
+            let values = tile.to_array();
+            write_numbers(f, &values, &values.map(|_| Tile::DECIMALS))
         }
     }
+}
+
+/// Writes each number after a space, with its number of decimals.
+fn write_numbers(f: &mut fmt::Formatter<'_>, numbers: &[f64], decimals: &[usize]) -> fmt::Result {
+    let mut numbers = numbers.iter().zip(decimals);
+    numbers.try_for_each(|(number, decimals)| write!(f, " {}", Rounded(*number, *decimals)))
 }

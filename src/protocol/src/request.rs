@@ -112,11 +112,12 @@ impl Request {
     ///
     /// # Errors
     /// The line is no valid request; the error says what is wrong with it and what is allowed.
+    #[inline(never)]
     pub fn parse(line: &str, settings: &Settings) -> Result<Self, Error> {
         let mut words = line.split_ascii_whitespace();
         let name = read_word(&mut words, "command")?;
         let request = Self::parse_arguments(name, &mut words, &settings.display)?;
-        if request == Self::Upload {
+        if matches!(request, Self::Upload) {
             // Its arguments depend on the upload so far.
             return Ok(request);
         }

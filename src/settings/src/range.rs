@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use contact_model::decimal::Shortest;
+
 use super::{Calibration, Tile};
 
 /// Allowed range of a quantity in a line from the host or in the record in flash, with its name and unit for error
@@ -28,7 +30,8 @@ impl Range {
 
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} to {} {}", self.min, self.max, self.unit)
+        let (min, max) = (Shortest(self.min), Shortest(self.max));
+        write!(f, "{min} to {max} {}", self.unit)
     }
 }
 

@@ -13,6 +13,7 @@
 
 use core::fmt;
 
+use contact_model::decimal::Shortest;
 use heapless::Vec;
 
 use super::calibration::power_of_ten;
@@ -158,7 +159,7 @@ impl fmt::Display for RecordError {
                 allowed,
                 value,
             } => {
-                let name = allowed.name;
+                let (name, value) = (allowed.name, Shortest(*value));
                 write!(
                     f,
                     "{name} {value} of finger {finger} out of range; {allowed}"

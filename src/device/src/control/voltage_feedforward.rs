@@ -1,6 +1,6 @@
 //! Feed-forward: the bridge voltage that drives a given current through the module.
 
-use contact_model::fixed_point::{Celsius, product};
+use contact_model::fixed_point::{Celsius, product, to_fixed};
 use fixed::types::{I0F32, I1F15, I4F28, I8F24};
 use thermal_settings::PeltierModule;
 
@@ -65,23 +65,16 @@ impl VoltageFeedforward {
     /// start-up, not for the control tick.
     #[must_use]
     pub fn new(module: &PeltierModule) -> Self {
-        let bits = |value: f64, places: u32| libm::round(libm::ldexp(value, places as i32)) as i32;
-        let part =
-            |value: f64| VoltagePerSupply::from_bits(bits(value, VoltagePerSupply::FRAC_NBITS));
-        let resistance =
-            |ohm: f64| I4F28::from_bits(bits(ohm / module.supply_v, I4F28::FRAC_NBITS));
+        let resistance = |ohm: f64| to_fixed(ohm / module.supply_v);
         let dead_time = module.dead_time_v / module.supply_v;
         Self {
             per_ampere: resistance(module.legs_ohm + module.leads_ohm),
             rise_per_k: resistance(module.legs_ohm * RESISTIVITY_RISE_PER_K),
-            per_k: I0F32::from_bits(bits(
-                module.seebeck_v_k / module.supply_v,
-                I0F32::FRAC_NBITS,
-            )),
-            dead_time: part(dead_time),
-            ripple_a: part(module.ripple_a),
-            dead_time_a: part(module.dead_time_a),
-            dead_time_per_a: part(2.0 * dead_time / module.dead_time_a),
+            per_k: to_fixed(module.seebeck_v_k / module.supply_v),
+            dead_time: to_fixed(dead_time),
+            ripple_a: to_fixed(module.ripple_a),
+            dead_time_a: to_fixed(module.dead_time_a),
+            dead_time_per_a: to_fixed(2.0 * dead_time / module.dead_time_a),
         }
     }
 

@@ -10,7 +10,7 @@
 use core::ops::Add;
 
 use contact_model::fixed_point::{
-    Celsius, MATCH_HORIZON_TICKS, product, saturated, saturating_product,
+    Celsius, MATCH_HORIZON_TICKS, product, saturated, saturating_product, to_fixed,
 };
 use fixed::types::extra::{LeEqU32, LeEqU64, U24};
 use fixed::types::{I0F32, I1F31, I2F30, I4F28, I6F26, I8F24, I12F20, I12F52, I20F12};
@@ -122,9 +122,9 @@ struct HeatInputGains<Gain> {
 impl<Frac: LeEqU32> HeatInputGains<FixedI32<Frac>> {
     fn new([pumped, joule, finger]: [f64; 3]) -> Self {
         Self {
-            pumped: rounded_fixed_point(pumped),
-            joule: rounded_fixed_point(joule),
-            finger: rounded_fixed_point(finger),
+            pumped: to_fixed(pumped),
+            joule: to_fixed(joule),
+            finger: to_fixed(finger),
         }
     }
 
@@ -175,6 +175,7 @@ impl TileToClassRatios {
     /// for pumped heat, Joule heat and the finger's heat. `slowest` marks the relaxation towards the sink; its time
     /// constant and its gains are also divided by the ratio of the leak. The initial rate of change per watt then does
     /// not depend on the leak.
+    #[inline(never)]
     fn scale_relaxation(&self, slowest: bool, class: RelaxationParameters) -> RelaxationParameters {
         let leak = if slowest { self.leak } else { 1.0 };
         let [pumped, joule, finger] = class.gains_k_w;
@@ -210,6 +211,22 @@ struct FixedPointRelaxation {
 }
 
 impl FixedPointRelaxation {
+    #[inline(never)]
+    fn new(relaxation: RelaxationParameters) -> Self {
+        let RelaxationParameters {
+            time_constant_s,
+            gains_k_w,
+        } = relaxation;
+        let tick_decay = decay(1.0, time_constant_s);
+        Self {
+            state: I12F52::ZERO,
+            tick_gains: HeatInputGains::new(gains_k_w.map(|gain| tick_decay * gain)),
+            steady_state_gains: HeatInputGains::new(gains_k_w),
+            tick_decay: to_fixed(tick_decay),
+            horizon_decay: to_fixed(decay(CONTROL_HORIZON_TICKS, time_constant_s)),
+        }
+    }
+
     /// State of the relaxation, K or °C, rounded down to the resolution of [`ModelTemperature`] (1 µK).
     fn state_temperature(&self) -> ModelTemperature {
         ModelTemperature::from_bits(
@@ -254,8 +271,8 @@ struct LinearInLegTemperature<Value> {
 impl<Frac: LeEqU32> LinearInLegTemperature<FixedI32<Frac>> {
     fn new(value: f64, rise_per_k: f64) -> Self {
         Self {
-            value: rounded_fixed_point(value),
-            rise_per_k: rounded_fixed_point(rise_per_k * value),
+            value: to_fixed(value),
+            rise_per_k: to_fixed(rise_per_k * value),
         }
     }
 
@@ -319,10 +336,10 @@ pub struct PlateModel {
     current_per_kelvin: I20F12,
 }
 
-/// Nearest fixed-point number to `value`. Computed in floating point, so it is for start-up, not for the control tick.
-fn rounded_fixed_point<Frac: LeEqU32>(value: f64) -> FixedI32<Frac> {
-    let places = FixedI32::<Frac>::FRAC_NBITS;
-    FixedI32::from_bits(libm::round(libm::ldexp(value, places as i32)) as i32)
+/// Part of a relaxation's distance to its steady state that decays in a number of ticks.
+#[inline(never)]
+fn decay(ticks: f64, time_constant_s: f64) -> f64 {
+    1.0 - libm::exp(-ticks * TICK_S / time_constant_s)
 }
 
 impl PlateModel {
@@ -331,8 +348,6 @@ impl PlateModel {
     /// tick: for start-up and the task that serves the host.
     #[must_use]
     pub fn new(module: &PeltierModule, tile: &Tile) -> Self {
-        let decay =
-            |ticks: f64, time_constant_s: f64| 1.0 - libm::exp(-ticks * TICK_S / time_constant_s);
         let ratios = TileToClassRatios::of(tile);
         let mut slowest = true;
         let relaxations = CLASS_RELAXATIONS
@@ -346,25 +361,9 @@ impl PlateModel {
         }
         let [pumped_k_w, ..] = horizon_gains;
         Self {
-            relaxations: relaxations.map(|relaxation| {
-                let RelaxationParameters {
-                    time_constant_s,
-                    gains_k_w,
-                } = relaxation;
-                let tick_decay = decay(1.0, time_constant_s);
-                FixedPointRelaxation {
-                    state: I12F52::ZERO,
-                    tick_gains: HeatInputGains::new(gains_k_w.map(|gain| tick_decay * gain)),
-                    steady_state_gains: HeatInputGains::new(gains_k_w),
-                    tick_decay: rounded_fixed_point(tick_decay),
-                    horizon_decay: rounded_fixed_point(decay(
-                        CONTROL_HORIZON_TICKS,
-                        time_constant_s,
-                    )),
-                }
-            }),
+            relaxations: relaxations.map(FixedPointRelaxation::new),
             horizon_gains: HeatInputGains::new(horizon_gains),
-            finger_feedthrough: rounded_fixed_point(ratios.finger * FINGER_FEEDTHROUGH_K_W),
+            finger_feedthrough: to_fixed(ratios.finger * FINGER_FEEDTHROUGH_K_W),
             leg_heating: LowPass::new(Coefficient::from_time_constant_s(
                 LEG_HEATING_TIME_CONSTANT_S,
             )),
@@ -372,9 +371,7 @@ impl PlateModel {
             surface: DATA_SHEET_TEMPERATURE,
             seebeck: LinearInLegTemperature::new(module.seebeck_v_k, SEEBECK_RISE_PER_K),
             resistance: LinearInLegTemperature::new(module.legs_ohm, RESISTIVITY_RISE_PER_K),
-            current_per_kelvin: rounded_fixed_point(
-                1.0 / (pumped_k_w * module.seebeck_v_k * 300.0),
-            ),
+            current_per_kelvin: to_fixed(1.0 / (pumped_k_w * module.seebeck_v_k * 300.0)),
         }
     }
 

@@ -153,7 +153,8 @@ impl PlateObserver {
         let correction: Celsius =
             (self.correction >> CORRECTION_CURRENT_WEIGHT_IN_RESIDUAL_SHIFT).lossy_into();
         let residual = self.disturbance.output().saturating_add(correction);
-        self.valid && residual.saturating_abs() > self.largest_residual
+        let largest = self.largest_residual;
+        self.valid && (residual > largest || residual < -largest)
     }
 
     /// Computes the disturbance and the correcting current from this tick's `reading` of the display's thermistor, °C,
@@ -205,6 +206,7 @@ impl PlateObserver {
 
     /// Advances the model by one tick in which `current`, A (positive cools), flows through the real module. Does
     /// nothing until a reading has started the model, also after [`Self::invalidate`].
+    #[inline(always)]
     pub fn advance_model(&mut self, current: Current) {
         if !self.valid {
             return;

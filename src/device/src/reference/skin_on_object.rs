@@ -4,7 +4,7 @@
 //! under a changing force, and in a contact that begins soon after another one.
 
 use contact_model::fixed_point::{
-    BodyState, Celsius, ContactConductance, ContactPair, Fraction, Ratio, saturating_product,
+    BodyState, Celsius, ContactConductance, ContactPair, Fraction, Ratio, Word, saturating_product,
 };
 use fixed::types::U16F16;
 
@@ -121,6 +121,7 @@ impl SkinOnObject {
     /// Advances the simulated skin by one tick of 1 ms, for two half-spaces. `conductance` is that of the contact of skin
     /// and object. It is `None` while no finger touches; then no heat flows, and the cooling of the skin decays towards
     /// zero. `skin_above_object` is the skin's temperature minus the object's, both before contact, K.
+    #[inline(always)]
     pub fn step(
         &mut self,
         conductance: Option<&ContactConductance>,
@@ -191,14 +192,13 @@ impl SkinOnObject {
         let step_at_interface = (i64::from(cooling.to_bits())
             * i64::from(factors.inverse_weight.to_bits()))
             >> U16F16::FRAC_NBITS;
-        let step_at_object = saturating_celsius_from_bits(
-            i64::from(skin_above_object.to_bits()) - step_at_interface,
-        );
+        let step_at_object =
+            Celsius::limited(i64::from(skin_above_object.to_bits()) - step_at_interface);
         let step_at_display = (i64::from(step_at_object.to_bits())
             * i64::from(factors.ratio.to_bits()))
             >> Ratio::FRAC_NBITS;
         let skin_cooling = skin_state_on_display.map_or(cooling, SkinState::free_response);
-        saturating_celsius_from_bits(
+        Celsius::limited(
             i64::from(skin_before_contact.to_bits())
                 - i64::from(skin_cooling.to_bits())
                 - step_at_display,
@@ -228,11 +228,6 @@ impl SkinOnObject {
         };
         display.temperature_drop(scaled_flux).saturating_neg()
     }
-}
-
-/// A temperature from its bits, in units of 2^-22 K, limited to the range of [`Celsius`], ±512 °C.
-fn saturating_celsius_from_bits(bits: i64) -> Celsius {
-    Celsius::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
 }
 
 #[cfg(test)]

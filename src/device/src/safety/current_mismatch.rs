@@ -33,7 +33,8 @@ impl CurrentMismatchDetector {
     /// tick within the tolerance counts down): [`Fault::CurrentHigh`] if too much flows in this tick, else
     /// [`Fault::CurrentLow`].
     pub fn check_current(&mut self, demanded: Current, measured: Current) -> Result<(), Fault> {
-        let demanded = demanded.saturating_abs();
+        // Fewer instructions than `saturating_abs`.
+        let demanded = demanded.max(Current::ZERO.saturating_sub(demanded));
         let tolerance =
             CONSTANT_CURRENT_TOLERANCE.saturating_add(demanded >> PROPORTIONAL_TOLERANCE_SHIFT);
         let high = measured > demanded.saturating_add(tolerance);

@@ -148,7 +148,8 @@ impl FaultDetectors {
         });
         let difference = readings.display.saturating_sub(readings.check);
         let displays_differ = self.display_difference.count_tick(
-            difference.saturating_abs() > DISPLAY_THERMISTOR_DIFFERENCE_MAX,
+            !(-DISPLAY_THERMISTOR_DIFFERENCE_MAX..=DISPLAY_THERMISTOR_DIFFERENCE_MAX)
+                .contains(&difference),
             DISPLAY_DIFFERENCE_TRIP_NET_TICKS,
         );
         let room_above_skin = self.room_above_skin.count_tick(
@@ -173,14 +174,14 @@ impl FaultDetectors {
         let current = (self.current_mismatch).check_current(previous.demanded, readings.current);
         let wrong_way =
             (self.wrong_way).check_direction(previous.demanded, readings.display, above_setpoint);
-        (self.jump.check_jumps(readings))
-            .and(err_if(displays_differ, Fault::DisplaysApart))
-            .and(current)
-            .and(wrong_way)
-            .and(err_if(unlike_model, Fault::UnlikeModel))
-            .and(err_if(room_above_skin, Fault::RoomAboveSkin))
-            .and(err_if(supply_is_wrong, Fault::Supply))
-            .and(err_if(host_silent, Fault::HostSilent))
+        self.jump.check_jumps(readings)?;
+        err_if(displays_differ, Fault::DisplaysApart)?;
+        current?;
+        wrong_way?;
+        err_if(unlike_model, Fault::UnlikeModel)?;
+        err_if(room_above_skin, Fault::RoomAboveSkin)?;
+        err_if(supply_is_wrong, Fault::Supply)?;
+        err_if(host_silent, Fault::HostSilent)
     }
 
     /// Restarts the jump and wrong-direction detectors with the next readings. To be called in a tick with invalid

@@ -149,8 +149,8 @@ impl FrozenSampleDetector {
                 changed |= 1 << i;
             } else {
                 *repeats = repeats.saturating_add(1);
+                longest = longest.max(*repeats);
             }
-            longest = longest.max(*repeats);
         }
         (changed, longest)
     }

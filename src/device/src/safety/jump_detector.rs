@@ -42,8 +42,9 @@ impl JumpDetector {
             self.ticks += 1;
             return Ok(());
         }
-        let jumped =
-            |now: Celsius, then: Celsius| now.saturating_sub(then).saturating_abs() > JUMP_ABOVE;
+        let jumped = |now: Celsius, then: Celsius| {
+            !(-JUMP_ABOVE..=JUMP_ABOVE).contains(&now.saturating_sub(then))
+        };
         if jumped(readings.display, display) {
             Err(Fault::DisplayJump)
         } else if jumped(readings.check, check) {

@@ -49,26 +49,24 @@ pub fn validate_readings(
     if readings.emergency_stop {
         return Err(Fault::EmergencyStop);
     }
-    let thermistors = [
+    // One look at all sensors; which one has failed is of interest only then.
+    let (Ok(display), Ok(check), Ok(sink), Ok(skin), Ok(room), Some(force)) = (
         readings.display,
         readings.display_check,
         readings.sink,
         readings.skin,
         readings.room,
-    ];
-    if thermistors == [Err(ThermistorFault::Short); 5] {
-        return Err(Fault::Excitation);
-    }
-    let temperature = |reading: Result<Celsius, ThermistorFault>, thermistor| {
-        reading.map_err(|fault| Fault::of_open_or_shorted_thermistor(thermistor, fault))
+        readings.force,
+    ) else {
+        return Err(first_sensor_fault(readings));
     };
     let valid = ValidReadings {
-        display: temperature(readings.display, ThermistorId::Display)?,
-        check: temperature(readings.display_check, ThermistorId::Check)?,
-        sink: temperature(readings.sink, ThermistorId::Sink)?,
-        skin: temperature(readings.skin, ThermistorId::Skin)?,
-        room: temperature(readings.room, ThermistorId::Room)?,
-        force: readings.force.ok_or(Fault::ForceSensor)?,
+        display,
+        check,
+        sink,
+        skin,
+        room,
+        force,
         current: readings.current,
         supply: readings.supply,
     };
@@ -85,6 +83,27 @@ pub fn validate_readings(
         return Err(Fault::OverCurrent);
     }
     Ok(valid)
+}
+
+/// The fault of the first sensor that is open or shorted.
+#[cold]
+#[inline(never)]
+fn first_sensor_fault(readings: &Readings) -> Fault {
+    let thermistors = [
+        (readings.display, ThermistorId::Display),
+        (readings.display_check, ThermistorId::Check),
+        (readings.sink, ThermistorId::Sink),
+        (readings.skin, ThermistorId::Skin),
+        (readings.room, ThermistorId::Room),
+    ];
+    if (thermistors.iter()).all(|(reading, _)| *reading == Err(ThermistorFault::Short)) {
+        return Fault::Excitation;
+    }
+    let mut faults = thermistors.into_iter().filter_map(|(reading, thermistor)| {
+        let fault = reading.err()?;
+        Some(Fault::of_open_or_shorted_thermistor(thermistor, fault))
+    });
+    faults.next().unwrap_or(Fault::ForceSensor)
 }
 
 #[cfg(test)]

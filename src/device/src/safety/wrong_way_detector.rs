@@ -61,11 +61,13 @@ impl WrongWayDetector {
             .saturating_add(demanded.saturating_sub(self.mean_current) >> CURRENT_FILTER_SHIFT);
         // Warming is mirrored, so that a lower reading is better for both signs.
         let (display, above_setpoint) = if self.mean_current < 0 {
-            (display.saturating_neg(), above_setpoint.saturating_neg())
+            (mirrored(display), mirrored(above_setpoint))
         } else {
             (display, above_setpoint)
         };
-        if self.mean_current.saturating_abs() < DIRECTION_CHECK_CURRENT_MIN || above_setpoint <= 0 {
+        let is_small = self.mean_current > -DIRECTION_CHECK_CURRENT_MIN
+            && self.mean_current < DIRECTION_CHECK_CURRENT_MIN;
+        if is_small || above_setpoint <= 0 {
             self.best = None;
             return Ok(());
         }
@@ -87,4 +89,9 @@ impl WrongWayDetector {
             }
         }
     }
+}
+
+/// The negative number; `saturating_neg` takes more instructions.
+fn mirrored(temperature: Celsius) -> Celsius {
+    Celsius::ZERO.saturating_sub(temperature)
 }

@@ -1,6 +1,6 @@
 //! Calibration in fixed point: the error of the analogue-to-digital converter, and the correction of each thermistor.
 
-use contact_model::fixed_point::{Celsius, product};
+use contact_model::fixed_point::{Celsius, product, to_fixed};
 use fixed::types::{I0F32, U28F4};
 
 use super::{SCANS_PER_TICK, THERMISTOR_COUNT};
@@ -107,8 +107,9 @@ impl AdcErrorTable {
             error = below
                 + (((error - below) * from_transition as i32) >> BORDER_TRANSITION_SUM_WIDTH_LOG2);
         }
-        let units = (u32::from(sum) << CorrectedSum::FRAC_NBITS).saturating_add_signed(-error);
-        CorrectedSum::from_bits(units.min((1 << (u16::BITS + CorrectedSum::FRAC_NBITS)) - 1))
+        let units = (i32::from(sum) << CorrectedSum::FRAC_NBITS) - error;
+        let largest = (1 << (u16::BITS + CorrectedSum::FRAC_NBITS)) - 1;
+        CorrectedSum::from_bits(units.clamp(0, largest).unsigned_abs())
     }
 }
 
@@ -136,10 +137,11 @@ impl ThermistorCorrection {
 
     /// Converts the correction of one thermistor from `f64`. Subtracts `self_heating_k`, K, by which the thermistor is
     /// warmer than the surface that it is mounted on, so that the corrected reading is the temperature of the surface.
+    #[inline(never)]
     fn new(correction: &thermal_settings::Correction, self_heating_k: f64) -> Self {
         let coefficient = |value| I0F32::from_bits(libm::ldexp(value, 32) as i32);
         Self {
-            offset: Celsius::saturating_from_num(correction.offset_k - self_heating_k),
+            offset: to_fixed(correction.offset_k - self_heating_k),
             slope: coefficient(correction.slope),
             curvature: coefficient(correction.curvature_1_k),
         }

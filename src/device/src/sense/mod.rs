@@ -14,7 +14,7 @@ pub use thermistor_average::{ThermistorAverage, ThermistorAverages};
 
 use core::array;
 
-use contact_model::fixed_point::{Celsius, Force};
+use contact_model::fixed_point::{Celsius, Force, to_fixed};
 
 use crate::drive::Current;
 use calibration_tables::ThermistorCorrection;
@@ -170,18 +170,21 @@ fn scattering_thermistors(scans: &[Scan; SCANS_PER_TICK]) -> u8 {
 }
 
 /// Sum of each channel over the 16 scans of a tick. One addition of 32-bit words adds two codes at once: a sum of 16
-/// codes of 12 bits is at most 65520, so it fits in half a word and never carries into the other half.
+/// codes of 12 bits is at most 65520, so it fits in half a word and never carries into the other half. The processor
+/// loads several words at once only from an address that is known to be that of a word. Not inlined, so that it has all registers.
+#[inline(never)]
 fn channel_sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; ADC_CHANNELS_PER_FINGER] {
-    let mut words = [0u32; ADC_CHANNELS_PER_FINGER / 2];
-    for scan in scans {
-        let (halves, _) = scan.as_chunks::<2>();
-        for (word, [low, high]) in words.iter_mut().zip(halves) {
-            *word += u32::from(*low) | u32::from(*high) << 16;
+    type ScanWords = [u32; ADC_CHANNELS_PER_FINGER / 2];
+    if let Ok(scans) = bytemuck::try_cast_ref::<_, [ScanWords; SCANS_PER_TICK]>(scans) {
+        let mut sums = [0; ADC_CHANNELS_PER_FINGER / 2];
+        for scan in scans {
+            for (sum, word) in sums.iter_mut().zip(scan) {
+                *sum += word;
+            }
         }
+        return bytemuck::cast(sums);
     }
-    array::from_fn(|channel| {
-        (words[channel / 2 % (ADC_CHANNELS_PER_FINGER / 2)] >> (16 * (channel % 2))) as u16
-    })
+    array::from_fn(|channel| scans.iter().map(|scan| scan[channel % scan.len()]).sum())
 }
 
 /// One finger's readings of one control tick in physical units. Open or shorted sensors are marked by `Err` or `None`;
@@ -267,7 +270,7 @@ impl SampleConverter {
             thermistor: ThermistorTable::new(&settings.thermistor),
             calibration: CalibrationTables::new(settings),
             force: ForceChannel::new(&settings.force),
-            current_per_unit: Current::saturating_from_num(per_unit),
+            current_per_unit: to_fixed(per_unit),
             slow_temperatures: None,
             next_slow: 0,
         }
@@ -315,8 +318,11 @@ impl SampleConverter {
             if let Ok(now) = temperature(slow_sums[converted], &slow_corrections[converted]) {
                 last[converted] = now;
             }
-            let last = *last;
-            array::from_fn(|i| thermistor::check_wiring(slow_sums[i]).map(|()| last[i]))
+            let [skin, room] = *last;
+            [
+                thermistor::check_wiring(samples.skin).map(|()| skin),
+                thermistor::check_wiring(samples.room).map(|()| room),
+            ]
         } else {
             let all = array::from_fn(|i| temperature(slow_sums[i], &slow_corrections[i]));
             if let [Ok(skin), Ok(room)] = all {

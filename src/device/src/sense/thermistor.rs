@@ -1,6 +1,6 @@
 //! Conversion of the thermistors' sums to temperatures, and detection of open and shorted thermistors.
 
-use contact_model::fixed_point::{Celsius, product};
+use contact_model::fixed_point::{Celsius, product, to_fixed};
 use fixed::types::I0F32;
 
 use super::calibration_tables::CorrectedSum;
@@ -15,7 +15,7 @@ const OPEN_ABOVE_SUM: u16 = 4060 * 16;
 
 /// Whether the 12-bit code of one conversion is that of a shorted thermistor (below 40) or of an open one (above 4060).
 pub(super) const fn is_open_or_short_code(code: u16) -> bool {
-    code < SHORT_BELOW_SUM / 16 || code > OPEN_ABOVE_SUM / 16
+    code.wrapping_sub(SHORT_BELOW_SUM / 16) > (OPEN_ABOVE_SUM - SHORT_BELOW_SUM) / 16
 }
 
 /// Checks that a thermistor's sum of 16 conversions is that of a connected thermistor: 40 to 4060 counts a conversion.
@@ -24,10 +24,13 @@ pub(super) const fn is_open_or_short_code(code: u16) -> bool {
 /// [`ThermistorFault::Short`] if `sum` is below this range, [`ThermistorFault::Open`] if it is above; the station then
 /// trips.
 pub(super) const fn check_wiring(sum: u16) -> Result<(), ThermistorFault> {
-    match sum {
-        ..SHORT_BELOW_SUM => Err(ThermistorFault::Short),
-        SHORT_BELOW_SUM..=OPEN_ABOVE_SUM => Ok(()),
-        _ => Err(ThermistorFault::Open),
+    // One comparison for a thermistor that is connected.
+    if sum.wrapping_sub(SHORT_BELOW_SUM) <= OPEN_ABOVE_SUM - SHORT_BELOW_SUM {
+        Ok(())
+    } else if sum < SHORT_BELOW_SUM {
+        Err(ThermistorFault::Short)
+    } else {
+        Err(ThermistorFault::Open)
     }
 }
 
@@ -106,6 +109,7 @@ impl ThermistorTable {
 
 /// Coefficients, °C, lowest power first, of the cubic that has the four given values, °C, at the positions 0, 1/6, 1/3
 /// and 1/2.
+#[inline(never)]
 fn cubic_through([a, b, c, d]: [f64; 4]) -> [Celsius; 4] {
     [
         a,
@@ -113,7 +117,7 @@ fn cubic_through([a, b, c, d]: [f64; 4]) -> [Celsius; 4] {
         2.0 * (18.0 * a - 45.0 * b + 36.0 * c - 9.0 * d),
         4.0 * (-9.0 * a + 27.0 * b - 27.0 * c + 9.0 * d),
     ]
-    .map(Celsius::saturating_from_num)
+    .map(to_fixed)
 }
 
 #[cfg(test)]

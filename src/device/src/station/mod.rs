@@ -16,6 +16,7 @@ mod chosen_object;
 mod execute_command;
 mod state;
 
+use contact_model::fixed_point::to_fixed;
 use thermal_settings::Settings;
 
 pub use state::{ArmedTask, Event, State};
@@ -107,7 +108,7 @@ impl Station {
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let parameters = ControlParameters::new(settings);
-        let limit = Current::saturating_from_num(settings.module.current_limit_a);
+        let limit = to_fixed(settings.module.current_limit_a);
         Self {
             sensors: SampleConverter::new(settings),
             averages: ThermistorAverages::default(),
@@ -245,10 +246,10 @@ impl Station {
             }
         };
         let valid = valid?;
-        self.bridge_line_fault_unless_expected(readings)
-            .and(over_ticks)
-            .and(dose)
-            .and(frozen)?;
+        self.bridge_line_fault_unless_expected(readings)?;
+        over_ticks?;
+        dose?;
+        frozen?;
         Ok(valid)
     }
 
