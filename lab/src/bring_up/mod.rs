@@ -24,7 +24,7 @@ mod terminal;
 mod unit;
 
 pub use bench::{Bench, BenchError, Measurement};
-pub use check::{Check, Expected, Hand, Reading, Routine, Stage, StageId, Step, Value};
+pub use check::{Check, Expected, ManualStep, Reading, Routine, Stage, StageId, Step, Value};
 pub use emulated::{AskSurroundings, EmulatedBench};
 pub use page::page;
 pub use procedure::{Interruption, bring_up};

@@ -3,14 +3,17 @@
 use std::time::Duration;
 
 use thermal_client::client::{
-    Client, ClientError, Order, QueryBoard, QueryRaw, QuerySelfTest, QueryState, SelfTestReport,
+    Client, ClientError, PlainCommand, QueryBoard, QueryRaw, QuerySelfTest, QueryState,
+    SelfTestReport,
 };
 use thermal_client::commissioning::{CommissionError, SurroundingsError};
 use thermal_client::link::{Link, LinkError};
 use thermal_device::safety::SelfTestResult;
 
 use super::bench::{Bench, BenchError, Measurement};
-use super::check::{Check, Expected, Hand, Judgement, Kept, Reading, Stage, StageId, Step, Value};
+use super::check::{
+    Check, Expected, Judgement, Kept, ManualStep, Reading, Stage, StageId, Step, Value,
+};
 use super::fault_words::explanation;
 use super::report::{Record, Report, Resume, Verdict};
 use super::stages::STAGES;
@@ -105,7 +108,7 @@ pub fn bring_up<L: Link, B: Bench<L>>(
     procedure.resume_at_first_failure();
     let Procedure { client, report, .. } = procedure;
     // Why the procedure ended is in the report; a device that cannot be reached cannot be told either.
-    let _ignored = client.ask(&Order::Abort);
+    let _ignored = client.ask(&PlainCommand::Abort);
     saved(&report);
     report
 }
@@ -135,14 +138,14 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
                 break;
             }
             match step {
-                Step::Hand(hand) => self.act(hand)?,
+                Step::Manual(manual) => self.act(manual)?,
                 Step::Check(check) => self.check(stage, check)?,
                 Step::Routine(routine) => self.routine(stage, routine)?,
             }
         }
         // Before a person connects something for the next stage.
         if stage.id >= StageId::Latch {
-            self.client.ask(&Order::Abort)?;
+            self.client.ask(&PlainCommand::Abort)?;
         }
         Ok(())
     }
@@ -163,8 +166,8 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         }
     }
 
-    pub(super) fn act(&mut self, hand: &Hand) -> Result<(), Interruption> {
-        Ok(self.bench.act(self.client, hand)?)
+    pub(super) fn act(&mut self, manual: &ManualStep) -> Result<(), Interruption> {
+        Ok(self.bench.act(self.client, manual)?)
     }
 
     fn check(&mut self, stage: &Stage, check: &'static Check) -> Result<(), Interruption> {
@@ -308,10 +311,10 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         (self.self_test, self.self_test_failed) = (None, false);
         let tripped = self.client.ask(&QueryState)?.state.fault();
         let started = match tripped {
-            Some(_) => self.client.ask(&Order::Clear),
+            Some(_) => self.client.ask(&PlainCommand::Clear),
             None => Ok(()),
         };
-        let started = started.and_then(|()| self.client.ask(&Order::Arm));
+        let started = started.and_then(|()| self.client.ask(&PlainCommand::Arm));
         if let Err(error) = started {
             let Some(why) = error.refusal() else {
                 return Err(error.into());
@@ -331,7 +334,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
                 break;
             }
         }
-        Ok(self.client.ask(&Order::Abort)?)
+        Ok(self.client.ask(&PlainCommand::Abort)?)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use thermal_client::client::{
-    Order, QueryIdentity, QueryRaw, QueryState, RawReadings, thermistor_word,
+    PlainCommand, QueryIdentity, QueryRaw, QueryState, RawReadings, thermistor_word,
 };
 use thermal_client::commissioning::{CommissioningEvent, arm, commission};
 use thermal_client::link::Link;
@@ -11,7 +11,7 @@ use thermal_device::safety::ThermistorId;
 use thermal_settings::Settings;
 
 use super::bench::{Bench, BenchError};
-use super::check::{Expected, Hand, Routine, Stage, StageId};
+use super::check::{Expected, ManualStep, Routine, Stage, StageId};
 use super::procedure::{Interruption, Procedure};
 use super::report::{Record, Verdict};
 use super::stages::KNOWN_OHM;
@@ -117,7 +117,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         keep: &'static str,
         ohm: (f64, f64),
     ) -> Result<(), Interruption> {
-        self.act(&Hand {
+        self.act(&ManualStep {
             say: "Set the variable resistor to 10 kΩ.",
             lines: &["fit resistor check 10000"],
         })?;
@@ -194,10 +194,10 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     }
 
     fn serial_line(&mut self, ms: u64) -> Result<(), Interruption> {
-        self.client.ask(&Order::Checksum(true))?;
+        self.client.ask(&PlainCommand::Checksum(true))?;
         self.discard_telemetry()?;
         let before = self.client.counts();
-        self.client.ask(&Order::Stream(1))?;
+        self.client.ask(&PlainCommand::Stream(1))?;
         let end = self.client.link().now() + Duration::from_millis(ms);
         let mut lines = 0;
         loop {
@@ -207,9 +207,9 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             }
             lines += 1;
         }
-        self.client.ask(&Order::Stream(0))?;
+        self.client.ask(&PlainCommand::Stream(0))?;
         let after = self.client.counts();
-        self.client.ask(&Order::Checksum(false))?;
+        self.client.ask(&PlainCommand::Checksum(false))?;
         self.keep("lines", f64::from(lines));
         self.keep("lines-lost", (after.lost - before.lost) as f64);
         self.keep("lines-damaged", (after.damaged - before.damaged) as f64);
@@ -238,10 +238,10 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     /// Holds the display at a temperature, and compares its thermistors with the reference thermometer.
     fn hold(&mut self, keep: &'static str, celsius: f64) -> Result<(), Interruption> {
         arm(self.client, None)?;
-        self.client.ask(&Order::Hold(celsius))?;
+        self.client.ask(&PlainCommand::Hold(celsius))?;
         self.bench.notice(&CommissioningEvent::HoldStarted(celsius));
         self.discard_telemetry()?;
-        self.client.ask(&Order::Stream(HOLD_STREAM_MS))?;
+        self.client.ask(&PlainCommand::Stream(HOLD_STREAM_MS))?;
         let start = self.client.next_telemetry(Duration::from_secs(1))?;
         let start_c = start.and_then(|line| line.telemetry.display_c);
         let distance_k = start_c.map_or(DISTANCE_MAX_K, |start_c| (celsius - start_c).abs());
@@ -257,7 +257,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             if let Some(fault) = line.telemetry.fault() {
                 let fault = fault.name();
                 let why = super::fault_words::explanation(fault).unwrap_or("see docs/safety.md");
-                self.client.ask(&Order::Stream(0))?;
+                self.client.ask(&PlainCommand::Stream(0))?;
                 return Err(Interruption::Bench(format!(
                     "the device has tripped by `{fault}` while it held {celsius} °C: {why}"
                 )));
@@ -268,7 +268,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         // The stream goes on while the person reads: the device trips if this program or its computer stops.
         let reference_c = self.reference_c(ThermistorId::Display)?;
         let check_c = class_c(self.client.ask(&QueryRaw)?.check);
-        self.client.ask(&Order::Stream(0))?;
+        self.client.ask(&PlainCommand::Stream(0))?;
         self.keep(format!("{keep}-check"), check_c - reference_c);
         self.keep(format!("{keep}-highest"), highest_c);
         let Some(last) = last else { return Ok(()) };

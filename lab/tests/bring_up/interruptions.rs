@@ -5,8 +5,8 @@ use thermal_client::commissioning::{CommissioningEvent, Surroundings, Surroundin
 use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
 use thermal_lab::bring_up::{
-    AskSurroundings, Bench, BenchError, EmulatedBench, Hand, Measurement, Record, Report, STAGES,
-    SimulatedBoard, Stage, bring_up,
+    AskSurroundings, Bench, BenchError, EmulatedBench, ManualStep, Measurement, Record, Report,
+    STAGES, SimulatedBoard, Stage, bring_up,
 };
 use thermal_lab::link::Link;
 use thermal_sim::board::{Board, SOUND};
@@ -28,11 +28,11 @@ impl<L: AskSurroundings + Link> Bench<L> for EndsIn<'_> {
         Bench::<L>::begin(&mut self.hands, stage);
     }
 
-    fn act(&mut self, client: &mut Client<L>, hand: &Hand) -> Result<(), BenchError> {
+    fn act(&mut self, client: &mut Client<L>, manual: &ManualStep) -> Result<(), BenchError> {
         if self.is_there && !self.at_the_thermometer {
             return Err(BenchError::Aborted);
         }
-        self.hands.act(client, hand)
+        self.hands.act(client, manual)
     }
 
     fn read(

@@ -9,7 +9,7 @@ use thermal_client::client::Client;
 use thermal_client::commissioning::{CommissioningEvent, Surroundings, SurroundingsError};
 use thermal_device::safety::ThermistorId;
 use thermal_lab::bring_up::{
-    AskSurroundings, Bench, BenchError, EmulatedBench, Hand, Measurement, Record, Report,
+    AskSurroundings, Bench, BenchError, EmulatedBench, ManualStep, Measurement, Record, Report,
     SimulatedBoard, Stage, Terminal, bring_up,
 };
 use thermal_lab::link::Link;
@@ -60,10 +60,10 @@ impl<L: AskSurroundings + Link> Bench<L> for Typist<'_> {
         Bench::<L>::begin(&mut self.terminal, stage);
     }
 
-    fn act(&mut self, client: &mut Client<L>, hand: &Hand) -> Result<(), BenchError> {
-        self.hands.act(client, hand)?;
+    fn act(&mut self, client: &mut Client<L>, manual: &ManualStep) -> Result<(), BenchError> {
+        self.hands.act(client, manual)?;
         self.type_next("");
-        self.terminal.act(client, hand)
+        self.terminal.act(client, manual)
     }
 
     fn read(

@@ -6,7 +6,7 @@
 mod clock;
 mod error;
 mod fields;
-mod order;
+mod plain_command;
 mod query;
 mod reply;
 mod streams;
@@ -24,7 +24,7 @@ use streams::TelemetryStreams;
 pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
 pub use fields::Fields;
-pub use order::{Order, THERMISTORS, thermistor, thermistor_word, upload};
+pub use plain_command::{PlainCommand, THERMISTORS, thermistor, thermistor_word, upload};
 pub use query::{
     Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryIdentity, QueryLaw,
     QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState, TuneResult,

@@ -2,10 +2,10 @@
 
 use thermal_client::client::SelfTestReport;
 
-use super::super::check::{Hand, Reading, Routine, Stage, StageId, Step, Value};
+use super::super::check::{ManualStep, Reading, Routine, Stage, StageId, Step, Value};
 use super::super::unit::Unit::{Millisecond, Ohm, Ratio, Volt};
 use super::supply::line_word;
-use super::{hand, meter, read, routine};
+use super::{manual, meter, read, routine};
 
 /// nFAULT after the test line has risen, ms.
 const fn cut(
@@ -68,7 +68,7 @@ pub const LATCH: Stage = Stage {
     id: StageId::Latch,
     name: "latch",
     title: "Latch, switch and sensed supply, by the self-test; nothing at the tile terminals",
-    needs: Hand {
+    needs: ManualStep {
         say: "USB plugged in, then 12 V with a limit of 0.5 A, emergency stop released, load cell \
                  connected, 10 kΩ in place of each thermistor, nothing at the tile terminals.",
         lines: super::needs::ON,
@@ -168,7 +168,7 @@ pub const LATCH: Stage = Stage {
         )
         .blocks(StageId::Edges)
         .step(),
-        hand(
+        manual(
             "Hold the Nucleo's reset button (B2), and wait until the meter stands still.",
             &["press reset"],
         ),
@@ -187,7 +187,7 @@ pub const LATCH: Stage = Stage {
         )
         .blocks(StageId::Load)
         .step(),
-        hand("Release the reset button.", &["release reset"]),
+        manual("Release the reset button.", &["release reset"]),
         routine(Routine::Wait(1500)),
     ],
 };
@@ -202,10 +202,10 @@ pub const EDGES: Stage = Stage {
     name: "edges",
     title: "Comparator: each edge, with a variable resistor in place of the second display \
                  thermistor",
-    needs: Hand { say: "USB plugged in, then 12 V with a limit of 0.5 A, emergency stop released, load cell \
+    needs: ManualStep { say: "USB plugged in, then 12 V with a limit of 0.5 A, emergency stop released, load cell \
                  connected, 10 kΩ in place of each thermistor, nothing at the tile terminals.", lines: super::needs::ON },
     steps: &[
-        hand(
+        manual(
             "The second display thermistor's input is now turned up and down: use a resistance decade, or a 25 kΩ trimmer of \
              ten turns. Begin with 10 kΩ.",
             &["fit resistor check 10000"],
@@ -232,10 +232,10 @@ pub const EDGES: Stage = Stage {
                  pull-up R1 (10 kΩ) of the second display's divider wrong")
             .blocks(StageId::Load)
             .step(),
-        hand("Connect 10 kΩ again.", &["fit resistor check 10000"]),
+        manual("Connect 10 kΩ again.", &["fit resistor check 10000"]),
         routine(Routine::Wait(300)),
         routine(Routine::SelfTest),
-        hand("Short the second display thermistor's input.", &["fit resistor check 0"]),
+        manual("Short the second display thermistor's input.", &["fit resistor check 0"]),
         routine(Routine::Wait(50)),
         read(
             "check-short",
@@ -248,10 +248,10 @@ pub const EDGES: Stage = Stage {
                  block comparator")
             .blocks(StageId::Load)
             .step(),
-        hand("Connect 10 kΩ again.", &["fit resistor check 10000"]),
+        manual("Connect 10 kΩ again.", &["fit resistor check 10000"]),
         routine(Routine::Wait(300)),
         routine(Routine::SelfTest),
-        hand("Open the second display thermistor's input.", &["remove resistor check"]),
+        manual("Open the second display thermistor's input.", &["remove resistor check"]),
         routine(Routine::Wait(50)),
         read(
             "check-open",
@@ -264,7 +264,7 @@ pub const EDGES: Stage = Stage {
                  block comparator")
             .blocks(StageId::Load)
             .step(),
-        hand("Connect 10 kΩ again.", &["fit resistor check 10000"]),
+        manual("Connect 10 kΩ again.", &["fit resistor check 10000"]),
         routine(Routine::Wait(300)),
     ],
 };
