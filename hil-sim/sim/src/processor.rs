@@ -37,6 +37,8 @@ pub struct ChipState {
     pub lsi_hz: u32,
     /// Whether the 8 MHz clock of the debug probe is there at power-up.
     pub external_clock: bool,
+    /// The unique identifier that the factory gives each chip, in words.
+    pub unique_id: [u32; 3],
 }
 
 impl ChipState {
@@ -51,6 +53,8 @@ impl Default for ChipState {
             brown_out_code: 0,
             lsi_hz: 32_000,
             external_clock: true,
+            // No real chip's: each word ends like its address.
+            unique_id: [0x0046_0010, 0x0046_0014, 0x0046_0018],
         }
     }
 }

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use thermal_client::client::{
-    PlainCommand, QueryIdentity, QueryRaw, QueryState, RawReadings, thermistor_word,
+    Identity, PlainCommand, QueryBoard, QueryIdentity, QueryRaw, QueryState, RawReadings,
+    thermistor_word,
 };
 use thermal_client::commissioning::{CommissioningEvent, arm, commission};
 use thermal_client::link::Link;
@@ -12,7 +13,7 @@ use thermal_settings::Settings;
 
 use super::bench::{Bench, BenchError};
 use super::check::{Expected, ManualStep, Routine, Stage, StageId};
-use super::procedure::{Interruption, Procedure};
+use super::procedure::{Interruption, OtherDevice, Procedure};
 use super::report::{Record, Verdict};
 use super::stages::KNOWN_OHM;
 use super::unit::Unit;
@@ -74,8 +75,13 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         self.kept.insert(name.into(), value);
     }
 
-    fn identify(&mut self, stage: &Stage) -> Result<(), Interruption> {
+    /// Reads what the device is. Refuses it if the report keeps results of another one.
+    pub(super) fn same_device(&mut self) -> Result<(Identity, String), Interruption> {
         let identity = self.client.ask(&QueryIdentity)?;
+        let chip = match identity.can("board") {
+            true => self.client.ask(&QueryBoard)?.uid,
+            false => None,
+        };
         let text = format!(
             "{} {}, {} finger(s), protocol {}, {}",
             identity.name,
@@ -84,7 +90,22 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             identity.protocol.unwrap_or_default(),
             identity.capabilities.join(" ")
         );
-        self.report.device = Some(text.clone());
+        let device = Some(text.clone());
+        let report = &mut self.report;
+        let depends_on_firmware = report.depends_on_firmware();
+        let is_other_chip = report.chip != chip && (report.chip.is_some() || depends_on_firmware);
+        if is_other_chip || (depends_on_firmware && report.device != device) {
+            return Err(Interruption::OtherDevice(OtherDevice {
+                then: described(report.chip.as_deref(), report.device.as_deref()),
+                now: described(chip.as_deref(), device.as_deref()),
+            }));
+        }
+        (report.device, report.chip) = (device, chip);
+        Ok((identity, text))
+    }
+
+    fn identify(&mut self, stage: &Stage) -> Result<(), Interruption> {
+        let (identity, text) = self.same_device()?;
         let needed = ["self-test", "raw", "board", "checksum"];
         let missing: Vec<_> = needed
             .into_iter()
@@ -347,6 +368,15 @@ fn is_interrupted(error: &thermal_client::commissioning::CommissionError) -> boo
     matches!(
         error,
         CommissionError::Surroundings(SurroundingsError::Interrupted)
+    )
+}
+
+fn described(chip: Option<&str>, device: Option<&str>) -> String {
+    let unknown = "not known";
+    format!(
+        "microcontroller {}, firmware {}",
+        chip.unwrap_or(unknown),
+        device.unwrap_or(unknown)
     )
 }
 

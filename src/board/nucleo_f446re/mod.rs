@@ -51,6 +51,7 @@ mod settings_storage;
 mod stack_guard;
 mod tick_rate_and_rcc_monitor;
 mod trip_cause_recorder;
+mod unique_id;
 mod window_watchdog;
 
 use cortex_m::peripheral::SYST;
@@ -321,6 +322,7 @@ impl Board {
                 brown_out_level,
                 clock_is_external: has_clock,
                 reset: reset.name(),
+                unique_id: unique_id::unique_id(),
                 ..BoardStatus::default()
             },
         };

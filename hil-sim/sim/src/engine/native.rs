@@ -222,6 +222,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
             let board = &mut self.handler.board;
             board.brown_out_level = 3_u8.saturating_sub(chip.brown_out_code);
             board.clock_is_external = chip.external_clock;
+            board.unique_id = chip.unique_id;
         }
     }
 

@@ -147,6 +147,7 @@ fn chip(source: &Source<'_>, device: &file::Device) -> Result<ChipState, SceneEr
         brown_out_code: 3 - level as u8,
         lsi_hz: whole("lsi_hz", &device.lsi_hz, nominal.lsi_hz, lsi_hz)?,
         external_clock: device.external_clock,
+        ..nominal
     })
 }
 

@@ -359,6 +359,8 @@ pub struct BoardReport {
     pub rx_noise: u32,
     /// Lines to the host that were dropped.
     pub tx_dropped: u32,
+    /// Unique identifier of the microcontroller, 24 hexadecimal digits; `None` from firmware that does not report it.
+    pub uid: Option<String>,
 }
 
 impl BoardReport {
@@ -381,6 +383,7 @@ impl BoardReport {
             rx_framing: reply.number("rx_framing")?,
             rx_noise: reply.number("rx_noise")?,
             tx_dropped: reply.number("tx_dropped")?,
+            uid: reply.word("uid").map(Into::into),
         })
     }
 }

@@ -248,7 +248,7 @@ fn the_answers_for_diagnosis_are_read() {
         ),
         (
             "board",
-            "ok bor=3 watchdogs=running clock=hse pwm_lock=1 reset=power rx_overruns=0 rx_framing=1 rx_noise=2 tx_dropped=3",
+            "ok bor=3 watchdogs=running clock=hse pwm_lock=1 reset=power rx_overruns=0 rx_framing=1 rx_noise=2 tx_dropped=3 uid=00230041513250132032364E",
         ),
         (
             "cause",
@@ -277,6 +277,7 @@ fn the_answers_for_diagnosis_are_read() {
         rx_framing: 1,
         rx_noise: 2,
         tx_dropped: 3,
+        uid: Some("00230041513250132032364E".into()),
     };
     assert_eq!(client.ask(&QueryBoard).unwrap(), board);
     let cause = client.ask(&QueryCause).unwrap().unwrap();

@@ -289,6 +289,7 @@ fn the_chip_is_that_of_a_prepared_board_unless_the_scene_says_otherwise() {
         brown_out_code: 3,
         lsi_hz: 17_000,
         external_clock: false,
+        ..ChipState::default()
     };
     assert_eq!(scene(&format!("{HEAD}{keys}")).chip, expected);
 }
