@@ -52,6 +52,38 @@ fn a_late_answer_is_not_taken_for_that_of_the_next_line() {
     assert_eq!(client.query("finger").unwrap(), "ok finger=mean");
 }
 
+/// A client of a device that may be running.
+fn attached(script: impl FnMut(&str) -> Vec<(u64, String)> + 'static) -> Client<FakeDevice> {
+    Client::attach(FakeDevice::client(script).into_link()).unwrap()
+}
+
+/// The device answers an earlier client's lines after the next one has come.
+#[test]
+fn answers_to_an_earlier_client_are_not_taken_for_its_own() {
+    let unknown = |line: &str| format!("err unknown command '{line}'; known: id");
+    let mut earlier = attached(move |line| answers(&unknown(line)));
+    let (_, word) = earlier.link().sent.pop().unwrap();
+    let mut client = attached(move |line| match line {
+        "" => vec![(1, unknown(&word)), (1, "ok law=model".into())],
+        "law" => answers("ok law=pi"),
+        other => answers(&unknown(other)),
+    });
+    assert_eq!(client.query("law").unwrap(), "ok law=pi");
+}
+
+/// An error repeats 20 characters of a word, and the same time passes for each client of a simulated device.
+#[test]
+fn the_word_that_synchronizes_has_20_characters_and_is_another_each_time() {
+    let mut words = Vec::new();
+    for _ in 0..3 {
+        let mut client = attached(|line| answers(&format!("err unknown command '{line}'")));
+        let (_, word) = client.link().sent.pop().unwrap();
+        assert_eq!(word.len(), 20, "{word}");
+        assert!(!words.contains(&word), "{words:?}");
+        words.push(word);
+    }
+}
+
 #[test]
 fn what_is_no_answer_is_shown() {
     let garbage = |_: &str| answers("\u{fffd}\u{fffd}ok?\u{1}");
