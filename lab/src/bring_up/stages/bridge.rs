@@ -40,7 +40,7 @@ pub const LOAD: Stage = Stage {
             "load-ripple",
             "ripple across the load in the pulse",
             "scope load-ripple",
-            "AC coupling, 96 kHz, RMS, in the flat part of the pulse",
+            "AC coupling, 97 kHz, RMS, in the flat part of the pulse",
         )
             .range(0.0, 0.2, Volt)
             .basis("bench `edges`: 0.42 A peak to peak at half duty, 0.15 A RMS; capacitors down to 5 \
@@ -53,7 +53,7 @@ pub const LOAD: Stage = Stage {
             "mirror-ripple",
             "ripple at the current input, PC2 (CN7-35)",
             "scope mirror-ripple",
-            "AC coupling, 96 kHz, RMS, in the flat part of the pulse",
+            "AC coupling, 97 kHz, RMS, in the flat part of the pulse",
         )
             .range(0.0, 0.03, Volt)
             .basis("bench `current`: 0.0002 A by the phase of sampling; 0.03 A, 10 mV, are allowed; \

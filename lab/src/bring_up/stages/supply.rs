@@ -6,6 +6,8 @@ use super::{manual, meter, read, routine};
 
 const TO_GROUND: &str = "volt meter from the point to analog ground (CN7-20)";
 const ON_POWER_BOARD: &str = "volt meter from the point to the power board's star point";
+const LADDER: &str =
+    "the comparator's ladder R1, R2, R3 (3.4, 3.7, 3.01 kΩ) has a wrong resistor: measure each";
 
 pub const RAILS: Stage = Stage {
     id: StageId::Rails,
@@ -65,8 +67,7 @@ pub const RAILS: Stage = Stage {
         )
             .range(2.08, 2.33, Volt)
             .basis("0.669 of 3.3 V, which may be 3.2 to 3.4 V; judged as a ratio below")
-            .finding("the comparator's ladder R1, R2, R3 (3.4, 3.7, 3.01 kΩ) has a wrong resistor: \
-                 measure each")
+            .finding(LADDER)
             .blocks(StageId::Latch)
             .step(),
         meter(
@@ -77,8 +78,7 @@ pub const RAILS: Stage = Stage {
         )
             .range(0.95, 1.07, Volt)
             .basis("0.306 of 3.3 V, which may be 3.2 to 3.4 V; judged as a ratio below")
-            .finding("the comparator's ladder R1, R2, R3 (3.4, 3.7, 3.01 kΩ) has a wrong resistor: \
-                 measure each")
+            .finding(LADDER)
             .blocks(StageId::Latch)
             .step(),
         read(
