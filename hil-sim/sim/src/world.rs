@@ -146,6 +146,12 @@ impl World {
         self.plant.emergency_stop()
     }
 
+    /// Level at which the line is stuck that selects the side of the comparator's tests, if it is.
+    #[must_use]
+    pub const fn side_stuck(&self) -> Option<bool> {
+        self.plant.side_stuck()
+    }
+
     /// Advances the plant by one step with the bridge legs driven as given.
     pub fn step(&mut self, legs: BridgeOutputs) {
         self.plant.step(&legs);

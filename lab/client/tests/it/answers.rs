@@ -10,7 +10,7 @@ use thermal_client::client::{
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
 use thermal_device::StateName;
-use thermal_device::safety::{Fault, SelfTestResult};
+use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 
 use crate::fake_device::{FakeDevice, answers, knows};
 
@@ -296,6 +296,13 @@ fn the_answers_for_diagnosis_are_read() {
     let test = client.ask(&QuerySelfTest).unwrap();
     assert_eq!(test.result, SelfTestResult::Failed(Fault::Comparator));
     assert_eq!((test.hot_supply_v, test.cold_cut_ms), (Some(0.42), None));
+    assert_eq!(test.side, None, "firmware that does not report it");
+    let mut newer = knows(&[(
+        "self-test",
+        "ok hot_cut_ms=1 hot_supply_v=0.42 hot_release_ms=2 cold_cut_ms=- cold_supply_v=- cold_release_ms=- side=low supply_v=11.9 cool_a=- warm_a=- display_k=- check_k=- result=comparator",
+    )]);
+    let test = newer.ask(&QuerySelfTest).unwrap();
+    assert_eq!(test.side, Some(SideLine::StuckLow));
     let raw = client.ask(&QueryRaw).unwrap();
     assert_eq!((raw.display, raw.supply), (2048.25, 2730.0));
     assert!(raw.fault_line && !raw.stop);

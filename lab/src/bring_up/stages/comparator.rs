@@ -77,6 +77,21 @@ pub const LATCH: Stage = Stage {
         // The first self-test after power-on finds the supply off, so its first test says nothing about the switch.
         routine(Routine::SelfTest),
         routine(Routine::SelfTest),
+        read(
+            "side-line",
+            "line that selects the side of the comparator's tests, read back",
+            Reading::SelfTest(|report| report.side.map(|side| Value::Word(side.name().into()))),
+        )
+        .words(&["ok"])
+        .basis("comparator.cir: PB2 alone drives it, against 3.3 kΩ")
+        .low(
+            "PB2 (CN10-22), the line that selects the side of the comparator's test, stays at this \
+                 level whatever the microcontroller drives, so one side would be tested twice and \
+                 the other never: PB2 is shorted (to ground if it is low, to 3.3 V if it is high), \
+                 or its output in the microcontroller is destroyed",
+        )
+        .blocks(StageId::Edges)
+        .step(),
         cut(
             "hot-cut",
             "comparator's test at its hot side until nFAULT falls",
