@@ -64,6 +64,14 @@ impl World {
         })
     }
 
+    /// The world of a scene on one of the five fingers of a device.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_five_fingers(scene: &Scene) -> Result<Self, WorldError> {
+        Self::new(&scene.on_five_fingers())
+    }
+
     /// The world of a plant without a camera, with its own seed for the converter's noise.
     ///
     /// # Errors

@@ -26,7 +26,7 @@ fn elf() -> &'static Path {
 fn worlds(scenes: &[Scene; FINGERS]) -> [World; FINGERS] {
     scenes
         .each_ref()
-        .map(|scene| World::new(scene).expect("a plant for the scene"))
+        .map(|scene| World::of_five_fingers(scene).expect("a plant for the scene"))
 }
 
 fn on_image(scenes: &[Scene; FINGERS]) -> ([Outcome; FINGERS], FiveFingerBoard) {
