@@ -89,8 +89,8 @@ fn the_bridge_has_no_supply_until_the_comparator_was_tested() {
     }
 }
 
-/// At half duty the ripple of two times 4.7 uH is 12 V / 4 / (9.4 uH * 96.98 kHz) = 3.29 A from peak to peak. Scans that are whole numbers of periods apart
-/// all see it at one phase; those of the firmware are spread over a period.
+/// At half duty the ripple of two times 4.7 uH is 12 V / 4 / (9.4 uH * 96.98 kHz) = 3.29 A from peak to peak. Scans that are
+/// whole numbers of periods apart all see it at one phase; those of the firmware are spread over a period.
 #[test]
 fn a_board_without_the_filters_of_the_current_measurement_sees_the_ripple_at_its_phase() {
     let reading_a = |lag_s: f64, phase: f64, phase_step: f64| {
