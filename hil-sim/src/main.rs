@@ -76,11 +76,5 @@ fn main() -> ExitCode {
         Cli::Faults(arguments) => faults::run(&arguments),
         Cli::Thesis(arguments) => thesis::run(&arguments),
     };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(Failure { error, status }) => {
-            eprintln!("hil-sim: {error:#}");
-            ExitCode::from(status)
-        }
-    }
+    Failure::exit_code("hil-sim", done)
 }

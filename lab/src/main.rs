@@ -44,11 +44,5 @@ fn main() -> ExitCode {
         Command::Commission(arguments) => commission::run(&target, &arguments),
         Command::BringUp(arguments) => bring_up::run(&target, &arguments),
     };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(Failure { error, status }) => {
-            eprintln!("thermal-lab: {error:#}");
-            ExitCode::from(status)
-        }
-    }
+    Failure::exit_code("thermal-lab", done)
 }

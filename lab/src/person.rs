@@ -5,7 +5,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, TryRecvError};
 use std::thread;
 use std::time::Duration;
 
-use thermal_client::client::{Client, ClientError, Order, thermistor_word};
+use thermal_client::client::{Client, ClientError, PlainCommand, thermistor_word};
 use thermal_client::commissioning::{CommissioningEvent, Surroundings, SurroundingsError};
 use thermal_client::link::{Link, LinkError};
 use thermal_device::safety::ThermistorId;
@@ -129,12 +129,12 @@ fn device_reads_c<L: Link>(
     thermistor: ThermistorId,
 ) -> Result<Option<f64>, ClientError> {
     while client.next_telemetry(Duration::ZERO)?.is_some() {}
-    client.ask_finger(finger, &Order::Stream(TELEMETRY_MS))?;
+    client.ask_finger(finger, &PlainCommand::Stream(TELEMETRY_MS))?;
     let mut line = client.next_telemetry(TELEMETRY_TIMEOUT)?;
     while line.is_some_and(|line| finger.is_some() && line.finger != finger) {
         line = client.next_telemetry(TELEMETRY_TIMEOUT)?;
     }
-    client.ask_finger(finger, &Order::Stream(WATCHED_STREAM_MS))?;
+    client.ask_finger(finger, &PlainCommand::Stream(WATCHED_STREAM_MS))?;
     Ok(line.and_then(|line| match thermistor {
         ThermistorId::Display | ThermistorId::Check => line.telemetry.display_c,
         ThermistorId::Sink => line.telemetry.sink_c,

@@ -59,6 +59,7 @@ impl ControlLoop {
         let inputs = DigitalInputs {
             bridge_fault: stage.poll_fault_line_low(),
             emergency_stop: self.emergency_stop.is_pressed(),
+            comparator_side_differs: self.comparator_side.differs_from_selected(),
         };
         let needs_scatter = device.finger_needs_scatter(finger);
         let samples = Samples::from_scans(scans, inputs, needs_scatter);

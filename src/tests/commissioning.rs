@@ -68,6 +68,7 @@ impl<const FINGERS: usize> Bench<FINGERS> {
                     supply: count(3464),
                     bridge_fault: false,
                     emergency_stop: false,
+                    comparator_side_differs: false,
                     scattering_thermistors: 0,
                 };
                 self.device.step_finger(finger, &samples);

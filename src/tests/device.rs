@@ -36,6 +36,7 @@ pub fn samples(noise: u16) -> Samples {
         supply: count(3464),
         bridge_fault: false,
         emergency_stop: false,
+        comparator_side_differs: false,
         scattering_thermistors: 0,
     }
 }

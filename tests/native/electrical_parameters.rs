@@ -1,13 +1,19 @@
 //! The plant's electrical parameters against the circuits of `hardware/`: values of their netlists, and what the benches
 //! simulate with ngspice.
 
+use std::path::Path;
+
 use hardware_benches::benches;
 use hardware_benches::netlist::Netlists;
 use hardware_benches::ngspice;
 use hardware_benches::quantity::Quantity;
+use thermal_display::device::{
+    PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_PERIOD_STEPS_OF_ONE_FINGER, PWM_STEPS_PER_SECOND,
+};
 use thermal_plant::Params;
 use thermal_plant::bridge::{Bridge, BridgeOutputs, Leg, Load};
 use thermal_plant::parameters;
+use thermal_sim::scene::Scene;
 
 fn netlists() -> Netlists {
     Netlists::load().expect("the netlists of the repository")
@@ -53,6 +59,33 @@ fn parts_are_those_of_the_netlists() {
     let mirror_s =
         2.0 * part("r_shunt_filter") * part("c_shunt_filter") + 0.5 * part("r_sum") * part("c_sum");
     assert_near("sensors.mirror.lag_s", mirror_s, 0.02);
+}
+
+/// Steps of the PWM timers from scan to scan of the sensors with one finger: 180 MHz by 16 kHz.
+const SCAN_STEPS: f64 = 11_250.0;
+
+#[test]
+fn plant_and_benches_have_the_pwm_period_of_the_firmware() {
+    let period_s = |steps: u16| f64::from(steps) / f64::from(PWM_STEPS_PER_SECOND);
+    let one_s = period_s(PWM_PERIOD_STEPS_OF_ONE_FINGER);
+    let five_s = period_s(PWM_PERIOD_STEPS_OF_FIVE_FINGERS);
+    assert_near("bridge.pwm_hz", one_s.recip(), 1e-12);
+    let phase_step = SCAN_STEPS / f64::from(PWM_PERIOD_STEPS_OF_ONE_FINGER) % 1.0;
+    assert_near("sensors.mirror.phase_step", phase_step, 1e-3);
+    assert_eq!(
+        [benches::PERIOD_S, benches::PERIOD_OF_FIVE_FINGERS_S],
+        [one_s, five_s]
+    );
+
+    let scene = |tables: &str| {
+        let text = format!(
+            "duration_s = 1.0\nskin_c = 34.0\nroom_c = 24.0\nseed = 1\n[object]\nmaterial = \"copper\"\n{tables}"
+        );
+        Scene::parse(&text, Path::new("a scene")).expect("a scene")
+    };
+    let on_five_hz = |tables: &str| scene(tables).on_five_fingers().params.bridge.pwm_hz;
+    assert!((on_five_hz("") * five_s - 1.0).abs() < 1e-12);
+    assert_eq!(on_five_hz("[plant]\nbridge.pwm_hz = 50e3\n"), 50e3);
 }
 
 /// The quantities that a bench has simulated.

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use crate::number;
 
 /// Files of the folder `hardware/`, in the order in which decks include them.
-pub const FILES: [&str; 12] = [
+pub const FILES: [&str; 13] = [
     "parts",
     "dividers",
     "comparator",
@@ -20,6 +20,7 @@ pub const FILES: [&str; 12] = [
     "ground",
     "leakage",
     "multiplexer",
+    "parity",
     "stop_relay",
 ];
 

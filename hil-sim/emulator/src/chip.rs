@@ -84,6 +84,8 @@ pub(crate) struct Chip<W> {
     usart: Usart,
     /// Rate of the internal low-speed oscillator, which differs from chip to chip.
     lsi_hz: u32,
+    /// Words that the factory gives each chip.
+    unique_id: [u32; 3],
     iwdg: Iwdg,
     wwdg: Wwdg,
     /// A debugger has halted the core.
@@ -132,6 +134,7 @@ impl<W: Wiring> Chip<W> {
             tims: kinds.map(|kind| Tim::new(kind, 1)),
             usart: Usart::new(1, HSI_HZ, HOST_BAUD),
             lsi_hz: state.lsi_hz,
+            unique_id: state.unique_id,
             iwdg: Iwdg::new(state.lsi_hz),
             wwdg: Wwdg::new(),
             halted_by_debugger: false,

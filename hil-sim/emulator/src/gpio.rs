@@ -74,11 +74,12 @@ impl Port {
         (driven, self.odr & driven)
     }
 
-    /// Input level of a pin that the outside drives to `external`. A floating pin reads low.
+    /// Input level of a pin that the outside drives to `external`, also against an output: it is then shorted, or its output
+    /// is damaged. A floating pin reads low.
     pub fn level(&self, bit: u8, external: Option<bool>) -> bool {
         let pulled_up = self.pupdr >> (2 * bit) & 3 == 1;
         let is_analog = self.moder >> (2 * bit) & 3 == 3;
-        self.output(bit).or(external).unwrap_or(pulled_up) && !is_analog
+        external.or(self.output(bit)).unwrap_or(pulled_up) && !is_analog
     }
 
     /// Reads a register; `external` gives the levels at the pins.
@@ -146,6 +147,18 @@ mod tests {
             0,
             "the outside pulls it low"
         );
+    }
+
+    #[test]
+    fn an_output_reads_its_own_level_unless_it_is_shorted() {
+        let mut port = Port::new(2);
+        port.write(0x00, 0b01).unwrap();
+        for level in [0, 1] {
+            port.write(0x14, level).unwrap();
+            assert_eq!(port.read(0x10, |_| None).unwrap(), level);
+            let shorted = port.read(0x10, |_| Some(level == 0)).unwrap();
+            assert_eq!(shorted & 1, 1 - level);
+        }
     }
 
     #[test]

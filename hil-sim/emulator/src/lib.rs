@@ -55,7 +55,7 @@ pub trait Wiring {
     /// 12-bit code that ADC `channel` (0 to 15) converts at `now`, the end of the conversion.
     fn adc(&mut self, channel: u8, now: u64) -> u16;
 
-    /// Level that the circuit drives on a pin (port 0 is A). `None`: not driven; the pin has the level of its pull-up or
+    /// Level that the circuit drives on a pin (port 0 is A); on an output that is a short. `None`: not driven; the pin has the level of its pull-up or
     /// pull-down, and a floating pin reads low. Break inputs and EXTI lines are sampled at every device event, so at least
     /// once per conversion.
     fn pin(&self, port: u8, bit: u8) -> Option<bool>;

@@ -74,6 +74,9 @@ pub struct ComparatorDefects {
     pub ladder_shift_k: f64,
     /// The latch.
     pub latch: LatchDefect,
+    /// Level, true is high, that the line has which selects the side of a test, whatever the device drives: every test
+    /// is that of the cold side if it is high, of the hot side if it is low.
+    pub side_stuck: Option<bool>,
 }
 
 /// The comparator and its latch.
@@ -127,8 +130,14 @@ impl Comparator {
         }
     }
 
-    /// Sets the test. Its end clears the latch, with a delay, if the thermistor is in the window.
+    /// Sets the test. Its end clears the latch, with a delay, if the thermistor is in the window. A line of the side that
+    /// is stuck makes it a test of its own side.
     pub fn set_test(&mut self, test: ComparatorTest) {
+        let test = match (test, self.defects.side_stuck) {
+            (ComparatorTest::None, _) | (_, None) => test,
+            (_, Some(false)) => ComparatorTest::Hot,
+            (_, Some(true)) => ComparatorTest::Cold,
+        };
         let ended = self.test != ComparatorTest::None && test == ComparatorTest::None;
         self.test = test;
         self.latched |= self.is_outside();

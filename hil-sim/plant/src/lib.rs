@@ -203,6 +203,12 @@ impl Plant {
         self.defects.supply.emergency_stop || self.defects.supply.stop_sense_open
     }
 
+    /// Level at which the line is stuck that selects the side of the comparator's tests, if it is.
+    #[must_use]
+    pub const fn side_stuck(&self) -> Option<bool> {
+        self.defects.comparator.side_stuck
+    }
+
     /// Current out of the bridge in the last step.
     #[must_use]
     pub const fn bridge_current(&self) -> Current {

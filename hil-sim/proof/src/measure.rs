@@ -136,7 +136,7 @@ fn together(firmware: &Firmware) -> Result<Measured> {
         .map_err(|other: Vec<_>| anyhow::anyhow!("{} scenes", other.len()))?;
     let mut worlds = Vec::new();
     for scene in &scenes {
-        worlds.push(World::new(scene)?);
+        worlds.push(World::of_five_fingers(scene)?);
     }
     let worlds = worlds.try_into().map_err(|_| anyhow::anyhow!("worlds"))?;
     let mut hand = FiveFingerBoard::new(firmware, worlds)?;

@@ -7,6 +7,7 @@ pub mod board;
 pub mod commissioning;
 pub mod dose;
 pub mod engine;
+mod failure;
 pub mod five_fingers;
 mod flash_cells;
 pub mod host;
@@ -23,6 +24,7 @@ pub mod trace;
 pub mod upload;
 mod world;
 
+pub use failure::Failure;
 pub use flash_cells::FlashCells;
 pub use runner::{NativeRunner, RamLayout, SceneRunner, run_scene_on};
 pub use world::{World, WorldError};

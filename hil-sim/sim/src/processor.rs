@@ -57,6 +57,8 @@ pub struct ChipState {
     pub flash: FlashTiming,
     /// Whether the emulator checks what it otherwise leaves out, to be fast: the alignment of accesses to several words.
     pub strict: bool,
+    /// The unique identifier that the factory gives each chip, in words.
+    pub unique_id: [u32; 3],
 }
 
 impl ChipState {
@@ -74,6 +76,8 @@ impl Default for ChipState {
             slow_flash: false,
             flash: FlashTiming::default(),
             strict: false,
+            // No real chip's: each word ends like its address.
+            unique_id: [0x0046_0010, 0x0046_0014, 0x0046_0018],
         }
     }
 }

@@ -64,6 +64,14 @@ impl World {
         })
     }
 
+    /// The world of a scene on one of the five fingers of a device.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_five_fingers(scene: &Scene) -> Result<Self, WorldError> {
+        Self::new(&scene.on_five_fingers())
+    }
+
     /// The world of a plant without a camera, with its own seed for the converter's noise.
     ///
     /// # Errors
@@ -144,6 +152,12 @@ impl World {
     #[must_use]
     pub const fn emergency_stop(&self) -> bool {
         self.plant.emergency_stop()
+    }
+
+    /// Level at which the line is stuck that selects the side of the comparator's tests, if it is.
+    #[must_use]
+    pub const fn side_stuck(&self) -> Option<bool> {
+        self.plant.side_stuck()
     }
 
     /// Advances the plant by one step with the bridge legs driven as given.

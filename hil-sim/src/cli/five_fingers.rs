@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::anyhow;
+use anyhow::{Context, anyhow};
 use clap::Args;
 use serde::Serialize;
 use thermal_sim::World;
@@ -46,9 +46,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut scenes = Vec::new();
     let mut worlds = Vec::new();
     for path in &arguments.scenes {
-        let (scene, world) = engine::scene(path)?;
+        let scene = engine::read(path)?;
+        let world = World::of_five_fingers(&scene).with_context(|| path.display().to_string());
+        worlds.push(world.map_err(Failure::input)?);
         scenes.push(scene);
-        worlds.push(world);
     }
     let five = || Failure::input(anyhow!("a hand has {FINGERS} scenes"));
     let scenes: [Scene; FINGERS] = scenes.try_into().map_err(|_| five())?;

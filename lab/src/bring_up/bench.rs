@@ -3,7 +3,7 @@
 use thermal_client::client::Client;
 use thermal_client::commissioning::Surroundings;
 
-use super::check::{Hand, Stage};
+use super::check::{ManualStep, Stage};
 use super::report::Record;
 use super::unit::Unit;
 
@@ -45,7 +45,7 @@ pub trait Bench<L>: Surroundings<L> {
     ///
     /// # Errors
     /// It cannot be done, or the person has ended the procedure.
-    fn act(&mut self, client: &mut Client<L>, hand: &Hand) -> Result<(), BenchError>;
+    fn act(&mut self, client: &mut Client<L>, manual: &ManualStep) -> Result<(), BenchError>;
 
     /// Reads an instrument.
     ///

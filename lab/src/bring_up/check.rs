@@ -48,7 +48,7 @@ pub struct Stage {
     /// Headline.
     pub title: &'static str,
     /// What is connected at its beginning: said, and done on an emulated board, if a bring-up goes on here.
-    pub needs: Hand,
+    pub needs: ManualStep,
     /// Steps in their order.
     pub steps: &'static [Step],
 }
@@ -57,7 +57,7 @@ pub struct Stage {
 #[derive(Clone, Copy, Debug)]
 pub enum Step {
     /// Something to do by hand.
-    Hand(Hand),
+    Manual(ManualStep),
     /// A value to measure and to compare.
     Check(Check),
     /// Something that the program does with the device, and that leaves values behind.
@@ -66,7 +66,7 @@ pub enum Step {
 
 /// Something to do by hand.
 #[derive(Clone, Copy, Debug)]
-pub struct Hand {
+pub struct ManualStep {
     /// What the person is told.
     pub say: &'static str,
     /// The same in the words of the line to the surroundings of an emulated board.

@@ -10,7 +10,7 @@ use thermal_client::link::Link;
 use thermal_device::safety::ThermistorId;
 
 use super::bench::{Bench, BenchError, Measurement};
-use super::check::{Hand, Stage};
+use super::check::{ManualStep, Stage};
 use super::report::Record;
 
 /// Step by which a resistor is turned, as a fraction of its value: 0.05 K.
@@ -51,8 +51,8 @@ impl<L: AskSurroundings + Link> Bench<L> for EmulatedBench<'_> {
         (self.watch)(stage.title);
     }
 
-    fn act(&mut self, client: &mut Client<L>, hand: &Hand) -> Result<(), BenchError> {
-        for line in hand.lines {
+    fn act(&mut self, client: &mut Client<L>, manual: &ManualStep) -> Result<(), BenchError> {
+        for line in manual.lines {
             ask(client, parse(line)?)?;
         }
         Ok(())

@@ -24,11 +24,11 @@ mod terminal;
 mod unit;
 
 pub use bench::{Bench, BenchError, Measurement};
-pub use check::{Check, Expected, Hand, Reading, Routine, Stage, StageId, Step, Value};
+pub use check::{Check, Expected, ManualStep, Reading, Routine, Stage, StageId, Step, Value};
 pub use emulated::{AskSurroundings, EmulatedBench};
 pub use page::page;
-pub use procedure::{Interruption, bring_up};
-pub use report::{Record, Report, Resume, Verdict};
+pub use procedure::{Interruption, OtherDevice, bring_up};
+pub use report::{OtherImage, Record, Report, Resume, Verdict};
 pub use simulated::SimulatedBoard;
 pub use stages::STAGES;
 pub use terminal::Terminal;

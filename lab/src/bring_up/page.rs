@@ -51,10 +51,12 @@ fn write_page(html: &mut String, report: &Report) -> std::fmt::Result {
     }
     let unknown = || "not known".to_owned();
     let device = report.device.as_deref().map_or_else(unknown, escaped);
+    let chip = report.chip.as_deref().map_or_else(unknown, escaped);
     let image = report.image.as_deref().map_or_else(unknown, escaped);
     write!(
         html,
         "<p class=\"box {class}\">{verdict}.</p>\n<table>\n<tr><th>device</th><td>{device}</td></tr>\n\
+         <tr><th>microcontroller, unique identifier</th><td><code>{chip}</code></td></tr>\n\
          <tr><th>image, CRC-32</th><td><code>{image}</code></td></tr>\n</table>\n"
     )?;
     let findings = report.findings();

@@ -3,14 +3,17 @@
 use std::time::Duration;
 
 use thermal_client::client::{
-    Client, ClientError, Order, QueryBoard, QueryRaw, QuerySelfTest, QueryState, SelfTestReport,
+    Client, ClientError, PlainCommand, QueryBoard, QueryRaw, QuerySelfTest, QueryState,
+    SelfTestReport,
 };
 use thermal_client::commissioning::{CommissionError, SurroundingsError};
 use thermal_client::link::{Link, LinkError};
 use thermal_device::safety::SelfTestResult;
 
 use super::bench::{Bench, BenchError, Measurement};
-use super::check::{Check, Expected, Hand, Judgement, Kept, Reading, Stage, StageId, Step, Value};
+use super::check::{
+    Check, Expected, Judgement, Kept, ManualStep, Reading, Stage, StageId, Step, Value,
+};
 use super::fault_words::explanation;
 use super::report::{Record, Report, Resume, Verdict};
 use super::stages::STAGES;
@@ -31,6 +34,22 @@ pub enum Interruption {
     /// The device does not answer.
     #[error("{0}")]
     Client(ClientError),
+    /// The report keeps results of another device.
+    #[error(transparent)]
+    OtherDevice(OtherDevice),
+}
+
+/// Why a bring-up does not go on: what is connected is not what the earlier stages were done with.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the results of the earlier stages are those of {then}; connected is {now}. Allowed: that device; with other firmware on the \
+     same microcontroller --from chip; with another microcontroller a bring-up of its own, without --from and with another --out"
+)]
+pub struct OtherDevice {
+    /// What the earlier stages were done with.
+    pub then: String,
+    /// What is connected.
+    pub now: String,
 }
 
 impl From<BenchError> for Interruption {
@@ -69,13 +88,17 @@ impl From<CommissionError> for Interruption {
 
 /// Leads through all stages from the one with the name `from` on, or from the first, and adds to a report. `saved` is called
 /// with the report after each stage. When it ends, by whatever reason, the bridge is off if the device can be reached.
+///
+/// # Errors
+/// The report has results of another device. `saved` has not been called then, if the bring-up went on with a stage that
+/// needs the device.
 pub fn bring_up<L: Link, B: Bench<L>>(
     client: &mut Client<L>,
     bench: &mut B,
     report: Report,
     from: Option<&Stage>,
     saved: &mut dyn FnMut(&Report),
-) -> Report {
+) -> Result<Report, OtherDevice> {
     let mut procedure = Procedure {
         client,
         bench,
@@ -93,6 +116,11 @@ pub fn bring_up<L: Link, B: Bench<L>>(
         }
         let resumed = from.is_some_and(|from| from.id == stage.id);
         if let Err(why) = procedure.stage(stage, resumed) {
+            if let Interruption::OtherDevice(refusal) = why {
+                // An answer is of no more use.
+                let _ignored = procedure.client.ask(&PlainCommand::Abort);
+                return Err(refusal);
+            }
             let reason = procedure.interrupted(stage, &why);
             procedure.report.resume = Some(Resume {
                 stage: stage.name.into(),
@@ -105,9 +133,9 @@ pub fn bring_up<L: Link, B: Bench<L>>(
     procedure.resume_at_first_failure();
     let Procedure { client, report, .. } = procedure;
     // Why the procedure ended is in the report; a device that cannot be reached cannot be told either.
-    let _ignored = client.ask(&Order::Abort);
+    let _ignored = client.ask(&PlainCommand::Abort);
     saved(&report);
-    report
+    Ok(report)
 }
 
 /// The procedure while it runs.
@@ -129,20 +157,23 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         self.bench.begin(stage);
         if resumed {
             self.bench.act(self.client, &stage.needs)?;
+            if stage.id > StageId::Chip {
+                self.same_device()?;
+            }
         }
         for step in stage.steps {
             if self.is_blocked(stage) {
                 break;
             }
             match step {
-                Step::Hand(hand) => self.act(hand)?,
+                Step::Manual(manual) => self.act(manual)?,
                 Step::Check(check) => self.check(stage, check)?,
                 Step::Routine(routine) => self.routine(stage, routine)?,
             }
         }
         // Before a person connects something for the next stage.
         if stage.id >= StageId::Latch {
-            self.client.ask(&Order::Abort)?;
+            self.client.ask(&PlainCommand::Abort)?;
         }
         Ok(())
     }
@@ -163,8 +194,8 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         }
     }
 
-    pub(super) fn act(&mut self, hand: &Hand) -> Result<(), Interruption> {
-        Ok(self.bench.act(self.client, hand)?)
+    pub(super) fn act(&mut self, manual: &ManualStep) -> Result<(), Interruption> {
+        Ok(self.bench.act(self.client, manual)?)
     }
 
     fn check(&mut self, stage: &Stage, check: &'static Check) -> Result<(), Interruption> {
@@ -276,7 +307,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     /// Says why a stage was not finished.
     fn interrupted(&mut self, stage: &Stage, why: &Interruption) -> String {
         let finding = match why {
-            Interruption::Aborted => return why.to_string(),
+            Interruption::Aborted | Interruption::OtherDevice(_) => return why.to_string(),
             Interruption::Bench(why) => why.clone(),
             Interruption::Client(error @ ClientError::Refused { .. }) => {
                 format!("{error}: not the firmware of this repository, or a step was left out")
@@ -308,10 +339,10 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         (self.self_test, self.self_test_failed) = (None, false);
         let tripped = self.client.ask(&QueryState)?.state.fault();
         let started = match tripped {
-            Some(_) => self.client.ask(&Order::Clear),
+            Some(_) => self.client.ask(&PlainCommand::Clear),
             None => Ok(()),
         };
-        let started = started.and_then(|()| self.client.ask(&Order::Arm));
+        let started = started.and_then(|()| self.client.ask(&PlainCommand::Arm));
         if let Err(error) = started {
             let Some(why) = error.refusal() else {
                 return Err(error.into());
@@ -331,7 +362,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
                 break;
             }
         }
-        Ok(self.client.ask(&Order::Abort)?)
+        Ok(self.client.ask(&PlainCommand::Abort)?)
     }
 }
 

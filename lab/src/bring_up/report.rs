@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::check::Stage;
+use super::check::{Stage, StageId};
 use super::stages::STAGES;
 
 /// What became of a check.
@@ -69,11 +69,25 @@ pub struct Resume {
     pub reason: String,
 }
 
+/// Why a bring-up does not go on: with another image earlier results may be others.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "--from {stage}: the results of the earlier stages are those of the image with CRC-32 {then}; that of --image now is {now}. \
+     Allowed: --image with the earlier image, if that is flashed; or --from chip, or a stage before it, with any image"
+)]
+pub struct OtherImage {
+    stage: &'static str,
+    then: String,
+    now: String,
+}
+
 /// A bring-up, finished or not.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Report {
     /// The device's answer to `id`.
     pub device: Option<String>,
+    /// Unique identifier of the microcontroller.
+    pub chip: Option<String>,
     /// CRC-32 of the image that was flashed, eight hexadecimal digits.
     pub image: Option<String>,
     /// Whether the board is emulated.
@@ -87,23 +101,49 @@ pub struct Report {
 }
 
 impl Report {
-    /// Forgets the results of a stage and of all later ones, because it is done again.
-    pub fn keep_before(&mut self, stage: &Stage) {
+    /// Forgets the results of a stage and of all later ones, because it is done again with this image.
+    ///
+    /// # Errors
+    /// Results that would be kept are those of another image.
+    pub fn keep_before(&mut self, stage: &Stage, image: Option<String>) -> Result<(), OtherImage> {
         let earlier = STAGES.iter().take_while(|known| known.id < stage.id);
         let earlier: Vec<_> = earlier.map(|stage| stage.name).collect();
         self.records
             .retain(|record| earlier.contains(&record.stage.as_str()));
-        self.resume = None;
+        if self.depends_on_firmware() && self.image != image {
+            let known = |image: Option<String>| image.unwrap_or_else(|| "not known".into());
+            return Err(OtherImage {
+                stage: stage.name,
+                then: known(self.image.take()),
+                now: known(image),
+            });
+        }
+        if self.records.is_empty() {
+            (self.device, self.chip) = (None, None);
+        }
+        if stage.id <= StageId::Commissioning {
+            self.settings.clear();
+        }
+        (self.image, self.resume) = (image, None);
+        Ok(())
+    }
+
+    /// Whether there are results that the firmware had a part in.
+    pub(super) fn depends_on_firmware(&self) -> bool {
+        let mut stages = STAGES.iter().filter(|stage| stage.id >= StageId::Chip);
+        stages.any(|stage| self.has_results_of(stage))
+    }
+
+    fn has_results_of(&self, stage: &Stage) -> bool {
+        self.records.iter().any(|record| record.stage == stage.name)
     }
 
     /// Whether every stage was done and every check passed.
     #[must_use]
     pub fn passed(&self) -> bool {
-        let is_done =
-            |stage: &Stage| (self.records.iter()).any(|record| record.stage == stage.name);
         let mut records = self.records.iter();
         self.resume.is_none()
-            && STAGES.iter().all(is_done)
+            && STAGES.iter().all(|stage| self.has_results_of(stage))
             && records.all(|record| record.verdict == Verdict::Passed)
     }
 

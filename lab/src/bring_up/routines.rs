@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use thermal_client::client::{
-    Order, QueryIdentity, QueryRaw, QueryState, RawReadings, thermistor_word,
+    Identity, PlainCommand, QueryBoard, QueryIdentity, QueryRaw, QueryState, RawReadings,
+    thermistor_word,
 };
 use thermal_client::commissioning::{CommissioningEvent, arm, commission};
 use thermal_client::link::Link;
@@ -11,8 +12,8 @@ use thermal_device::safety::ThermistorId;
 use thermal_settings::Settings;
 
 use super::bench::{Bench, BenchError};
-use super::check::{Expected, Hand, Routine, Stage, StageId};
-use super::procedure::{Interruption, Procedure};
+use super::check::{Expected, ManualStep, Routine, Stage, StageId};
+use super::procedure::{Interruption, OtherDevice, Procedure};
 use super::report::{Record, Verdict};
 use super::stages::KNOWN_OHM;
 use super::unit::Unit;
@@ -74,8 +75,13 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         self.kept.insert(name.into(), value);
     }
 
-    fn identify(&mut self, stage: &Stage) -> Result<(), Interruption> {
+    /// Reads what the device is. Refuses it if the report keeps results of another one.
+    pub(super) fn same_device(&mut self) -> Result<(Identity, String), Interruption> {
         let identity = self.client.ask(&QueryIdentity)?;
+        let chip = match identity.can("board") {
+            true => self.client.ask(&QueryBoard)?.uid,
+            false => None,
+        };
         let text = format!(
             "{} {}, {} finger(s), protocol {}, {}",
             identity.name,
@@ -84,7 +90,22 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             identity.protocol.unwrap_or_default(),
             identity.capabilities.join(" ")
         );
-        self.report.device = Some(text.clone());
+        let device = Some(text.clone());
+        let report = &mut self.report;
+        let depends_on_firmware = report.depends_on_firmware();
+        let is_other_chip = report.chip != chip && (report.chip.is_some() || depends_on_firmware);
+        if is_other_chip || (depends_on_firmware && report.device != device) {
+            return Err(Interruption::OtherDevice(OtherDevice {
+                then: described(report.chip.as_deref(), report.device.as_deref()),
+                now: described(chip.as_deref(), device.as_deref()),
+            }));
+        }
+        (report.device, report.chip) = (device, chip);
+        Ok((identity, text))
+    }
+
+    fn identify(&mut self, stage: &Stage) -> Result<(), Interruption> {
+        let (identity, text) = self.same_device()?;
         let needed = ["self-test", "raw", "board", "checksum"];
         let missing: Vec<_> = needed
             .into_iter()
@@ -117,7 +138,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         keep: &'static str,
         ohm: (f64, f64),
     ) -> Result<(), Interruption> {
-        self.act(&Hand {
+        self.act(&ManualStep {
             say: "Set the variable resistor to 10 kΩ.",
             lines: &["fit resistor check 10000"],
         })?;
@@ -194,10 +215,10 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     }
 
     fn serial_line(&mut self, ms: u64) -> Result<(), Interruption> {
-        self.client.ask(&Order::Checksum(true))?;
+        self.client.ask(&PlainCommand::Checksum(true))?;
         self.discard_telemetry()?;
         let before = self.client.counts();
-        self.client.ask(&Order::Stream(1))?;
+        self.client.ask(&PlainCommand::Stream(1))?;
         let end = self.client.link().now() + Duration::from_millis(ms);
         let mut lines = 0;
         loop {
@@ -207,9 +228,9 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             }
             lines += 1;
         }
-        self.client.ask(&Order::Stream(0))?;
+        self.client.ask(&PlainCommand::Stream(0))?;
         let after = self.client.counts();
-        self.client.ask(&Order::Checksum(false))?;
+        self.client.ask(&PlainCommand::Checksum(false))?;
         self.keep("lines", f64::from(lines));
         self.keep("lines-lost", (after.lost - before.lost) as f64);
         self.keep("lines-damaged", (after.damaged - before.damaged) as f64);
@@ -238,10 +259,10 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     /// Holds the display at a temperature, and compares its thermistors with the reference thermometer.
     fn hold(&mut self, keep: &'static str, celsius: f64) -> Result<(), Interruption> {
         arm(self.client, None)?;
-        self.client.ask(&Order::Hold(celsius))?;
+        self.client.ask(&PlainCommand::Hold(celsius))?;
         self.bench.notice(&CommissioningEvent::HoldStarted(celsius));
         self.discard_telemetry()?;
-        self.client.ask(&Order::Stream(HOLD_STREAM_MS))?;
+        self.client.ask(&PlainCommand::Stream(HOLD_STREAM_MS))?;
         let start = self.client.next_telemetry(Duration::from_secs(1))?;
         let start_c = start.and_then(|line| line.telemetry.display_c);
         let distance_k = start_c.map_or(DISTANCE_MAX_K, |start_c| (celsius - start_c).abs());
@@ -257,7 +278,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             if let Some(fault) = line.telemetry.fault() {
                 let fault = fault.name();
                 let why = super::fault_words::explanation(fault).unwrap_or("see docs/safety.md");
-                self.client.ask(&Order::Stream(0))?;
+                self.client.ask(&PlainCommand::Stream(0))?;
                 return Err(Interruption::Bench(format!(
                     "the device has tripped by `{fault}` while it held {celsius} °C: {why}"
                 )));
@@ -268,7 +289,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         // The stream goes on while the person reads: the device trips if this program or its computer stops.
         let reference_c = self.reference_c(ThermistorId::Display)?;
         let check_c = class_c(self.client.ask(&QueryRaw)?.check);
-        self.client.ask(&Order::Stream(0))?;
+        self.client.ask(&PlainCommand::Stream(0))?;
         self.keep(format!("{keep}-check"), check_c - reference_c);
         self.keep(format!("{keep}-highest"), highest_c);
         let Some(last) = last else { return Ok(()) };
@@ -347,6 +368,15 @@ fn is_interrupted(error: &thermal_client::commissioning::CommissionError) -> boo
     matches!(
         error,
         CommissionError::Surroundings(SurroundingsError::Interrupted)
+    )
+}
+
+fn described(chip: Option<&str>, device: Option<&str>) -> String {
+    let unknown = "not known";
+    format!(
+        "microcontroller {}, firmware {}",
+        chip.unwrap_or(unknown),
+        device.unwrap_or(unknown)
     )
 }
 

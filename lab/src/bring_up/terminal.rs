@@ -8,7 +8,7 @@ use thermal_client::link::Link;
 use thermal_device::safety::ThermistorId;
 
 use super::bench::{Bench, BenchError, Measurement};
-use super::check::{Hand, Stage};
+use super::check::{ManualStep, Stage};
 use super::report::Record;
 use super::unit::Unit;
 use crate::person::Person;
@@ -113,9 +113,9 @@ impl<L: Link> Bench<L> for Terminal<'_> {
         self.person.tell(&format!("\n== {title} ({name}) ==\n"));
     }
 
-    fn act(&mut self, client: &mut Client<L>, hand: &Hand) -> Result<(), BenchError> {
+    fn act(&mut self, client: &mut Client<L>, manual: &ManualStep) -> Result<(), BenchError> {
         let why = "the next checks need it; wiring and parts are in hardware/wiring.md and hardware/schematic.svg";
-        self.confirm(client, hand.say, why)
+        self.confirm(client, manual.say, why)
     }
 
     fn read(

@@ -31,7 +31,8 @@ stage; an interrupted bring-up goes on with --from. Exit status 1 if not everyth
 #[derive(Args)]
 #[command(after_help = USAGE)]
 pub struct Arguments {
-    /// Go on at this stage; results of earlier ones are read from bring-up.json in the folder of --out
+    /// Go on at this stage; results of earlier ones, of the same microcontroller and image, are read from bring-up.json in
+    /// the folder of --out
     #[arg(long, value_name = "STAGE", value_parser = stage)]
     from: Option<&'static Stage>,
     /// Folder for the page and the record
@@ -133,6 +134,13 @@ const RECORD: &str = "bring-up.json";
 
 /// The report to which results are added: an empty one, or that of the earlier stages.
 fn first_report(arguments: &Arguments) -> anyhow::Result<Report> {
+    let image = match &arguments.image {
+        Some(path) => {
+            let bytes = fs::read(path).with_context(|| format!("--image {}", path.display()))?;
+            Some(format!("{:08x}", CRC_32.checksum(&bytes)))
+        }
+        None => None,
+    };
     let mut report = Report::default();
     if let Some(from) = arguments.from {
         let path = arguments.out.join(RECORD);
@@ -144,11 +152,9 @@ fn first_report(arguments: &Arguments) -> anyhow::Result<Report> {
             )
         })?;
         report = serde_json::from_str(&text).with_context(|| path.display().to_string())?;
-        report.keep_before(from);
-    }
-    if let Some(path) = &arguments.image {
-        let bytes = fs::read(path).with_context(|| format!("--image {}", path.display()))?;
-        report.image = Some(format!("{:08x}", CRC_32.checksum(&bytes)));
+        report.keep_before(from, image)?;
+    } else {
+        report.image = image;
     }
     Ok(report)
 }
@@ -193,7 +199,9 @@ fn by_a_person(
         lines(BufReader::new(stdin())),
         &mut screen,
     ));
-    target.with_late_client(|client| bring_up(client, &mut terminal, report, arguments.from, saved))
+    target
+        .with_late_client(|client| bring_up(client, &mut terminal, report, arguments.from, saved))?
+        .map_err(Failure::input)
 }
 
 /// On an emulated board that another program serves.
@@ -209,13 +217,14 @@ fn served(
         .map_err(Failure::input)?;
     report.emulated = true;
     let mut bench = EmulatedBench { watch: &mut watch };
-    Ok(bring_up(
+    bring_up(
         &mut Client::new(link),
         &mut bench,
         report,
         arguments.from,
         saved,
-    ))
+    )
+    .map_err(Failure::input)
 }
 
 /// On a board that is simulated here.
@@ -233,13 +242,14 @@ fn simulated(
     let mut engine = LossyLine::new(NativeEngine::new(world), interval);
     let link = SimulatedBoard::new(&mut engine, bench);
     let mut bench = EmulatedBench { watch: &mut watch };
-    Ok(bring_up(
+    bring_up(
         &mut Client::new(link),
         &mut bench,
         report,
         arguments.from,
         saved,
-    ))
+    )
+    .map_err(Failure::input)
 }
 
 /// Prints progress on standard error, which may be closed.

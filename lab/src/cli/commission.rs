@@ -4,7 +4,7 @@ use std::io::{BufReader, Write, stderr, stdin};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
-use thermal_client::client::{Client, Order};
+use thermal_client::client::{Client, PlainCommand};
 use thermal_client::commissioning::{CommissioningEvent, CommissioningRecord};
 use thermal_lab::commissioning::{clear_calibration, commission};
 use thermal_lab::link::{ServedLink, ServedOperator};
@@ -55,7 +55,7 @@ fn by_a_person(target: &Target, arguments: &Arguments) -> Result<CommissioningRe
     );
     target.with_client(|client| {
         clear_calibration(client, arguments.finger).map_err(Failure::run)?;
-        (client.ask_finger(arguments.finger, &Order::Stream(WATCHED_STREAM_MS)))
+        (client.ask_finger(arguments.finger, &PlainCommand::Stream(WATCHED_STREAM_MS)))
             .map_err(Failure::run)?;
         commission(client, arguments.finger, &mut person).map_err(Failure::run)
     })

@@ -7,7 +7,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use anyhow::Context;
 use clap::Args;
-use thermal_client::client::{Order, ReceivedTelemetry, TickTime};
+use thermal_client::client::{PlainCommand, ReceivedTelemetry, TickTime};
 use thermal_client::link::{Link, LinkError};
 
 use super::target::AnyClient;
@@ -77,7 +77,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             unix.map_err(Failure::run)?.as_secs_f64() - client.link().now().as_secs_f64()
         };
         client
-            .ask(&Order::Stream(arguments.interval))
+            .ask(&PlainCommand::Stream(arguments.interval))
             .map_err(Failure::run)?;
         let end = arguments.duration.map(|time| client.link().now() + time);
         let logged = log(client, end, zero_s, &mut out);
@@ -89,7 +89,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             client.clock().restarts()
         );
         logged?;
-        client.ask(&Order::Stream(0)).map_err(Failure::run)
+        client.ask(&PlainCommand::Stream(0)).map_err(Failure::run)
     })
 }
 

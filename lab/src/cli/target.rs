@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
-use thermal_client::client::{Client, Order};
+use thermal_client::client::{Client, PlainCommand};
 use thermal_client::link::{Interruptible, Link};
 use thermal_lab::link::{self, LazyLink, SimulatedLink};
 use thermal_plant::Params;
@@ -61,7 +61,7 @@ impl Target {
         let done = work(&mut client);
         if interrupted.load(Ordering::Relaxed) {
             // Whatever failed is reported; a link that is gone fails here, too.
-            let _ignored = client.ask(&Order::Abort);
+            let _ignored = client.ask(&PlainCommand::Abort);
         }
         done
     }

@@ -35,6 +35,11 @@ const FOUND: &[(&str, &str, &[&str])] = &[
         &["comparator does not cut", "cold side X4"],
     ),
     (
+        "side-stuck",
+        "latch",
+        &["PB2 (CN10-22)", "low", "destroyed"],
+    ),
+    (
         "latch-not-set",
         "supply",
         &["latch X6", "not set at power-on"],
@@ -92,9 +97,10 @@ const FOUND: &[(&str, &str, &[&str])] = &[
 /// Stages in which the bridge drives a current.
 const DRIVEN: [&str; 4] = ["load", "tile", "commissioning", "run"];
 /// Boards whose comparator, latch or switch cannot cut the supply.
-const WITHOUT_COMPARATOR: [&str; 5] = [
+const WITHOUT_COMPARATOR: [&str; 6] = [
     "dead-comparator",
     "dead-cold-side",
+    "side-stuck",
     "latch-not-set",
     "shorted-switch",
     "missing-bleeder",

@@ -25,5 +25,6 @@ fn brought_up(board: Board, report: Report, from: Option<&Stage>) -> Report {
     let (mut engine, bench) = on_the_bench(board);
     let mut client = Client::new(SimulatedBoard::new(&mut engine, bench));
     let mut hands = EmulatedBench { watch: &mut |_| () };
-    bring_up(&mut client, &mut hands, report, from, &mut |_| ())
+    let report = bring_up(&mut client, &mut hands, report, from, &mut |_| ());
+    report.expect("the same device")
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use hardware_benches::netlist::Netlists;
 use thermal_client::commissioning::{BenchRequest, MeterPoint};
-use thermal_lab::bring_up::{Check, Expected, Hand, Reading, STAGES, Step};
+use thermal_lab::bring_up::{Check, Expected, ManualStep, Reading, STAGES, Step};
 use thermal_sim::board::Wiring;
 
 fn checks() -> impl Iterator<Item = &'static Check> {
@@ -15,13 +15,13 @@ fn checks() -> impl Iterator<Item = &'static Check> {
     })
 }
 
-fn hands() -> impl Iterator<Item = &'static Hand> {
+fn manual_steps() -> impl Iterator<Item = &'static ManualStep> {
     let steps = STAGES.iter().flat_map(|stage| stage.steps);
-    let hands = steps.filter_map(|step| match step {
-        Step::Hand(hand) => Some(hand),
+    let manual = steps.filter_map(|step| match step {
+        Step::Manual(step) => Some(step),
         _ => None,
     });
-    hands.chain(STAGES.iter().map(|stage| &stage.needs))
+    manual.chain(STAGES.iter().map(|stage| &stage.needs))
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn names_are_unique_and_stages_are_in_their_order() {
 
 #[test]
 fn an_emulated_board_understands_every_line_and_every_point() {
-    for line in hands().flat_map(|hand| hand.lines) {
+    for line in manual_steps().flat_map(|step| step.lines) {
         let request: BenchRequest = line.parse().expect(line);
         assert_eq!(request.to_string(), *line);
     }

@@ -56,6 +56,44 @@ fn json_has_the_verdict_and_the_findings() {
     assert!(page.contains("plate is not bonded") && page.contains("emulated board"));
 }
 
+#[test]
+fn it_goes_on_with_the_same_microcontroller_and_image_only_and_leaves_the_record_otherwise() {
+    let folder = folder("bring-up-other-device");
+    let record = || fs::read_to_string(folder.join("bring-up.json")).expect("a record");
+    let image = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+    let other = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
+    let go_on = |arguments: &[&str]| {
+        let out = folder.to_str().expect("a path");
+        // Its first finding keeps it from 12 V at the bridge.
+        let board = ["--simulated", "--board", "missing-pull-down", "--out", out];
+        run(&[&board[..], arguments].concat(), "")
+    };
+    assert_eq!(go_on(&["--image", image]).status.code(), Some(1));
+    let first = record();
+    for (arguments, part) in [
+        (
+            &["--from", "reset", "--image", other][..],
+            "--from reset: the results of the earlier stages are those of the image",
+        ),
+        (&["--from", "reset"], "that of --image now is not known"),
+        (
+            &["--from", "reset", "--image", image, "--draw", "5"],
+            "those of microcontroller 004600100046001400460018, ",
+        ),
+    ] {
+        let refused = go_on(arguments);
+        let shown = text(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2), "{shown}");
+        assert!(shown.contains(part), "{shown}");
+        assert_eq!(record(), first);
+    }
+    let same = go_on(&["--from", "reset", "--image", image]);
+    assert_eq!(same.status.code(), Some(1));
+    assert!(text(&same.stdout).contains("pull-down R3"), "{same:?}");
+    let page = fs::read_to_string(folder.join("bring-up.html")).expect("a page");
+    assert!(page.contains("<code>004600100046001400460018</code>"));
+}
+
 /// The first stage needs no device: its port comes with its power.
 #[test]
 fn a_person_begins_without_a_device_and_ends_with_abort() {

@@ -5,11 +5,12 @@ use std::io::{self, Write};
 use std::rc::Rc;
 use std::sync::mpsc::{self, Sender};
 
-use thermal_client::client::Client;
+use thermal_client::client::{Client, QueryState};
 use thermal_client::commissioning::{CommissioningEvent, Surroundings, SurroundingsError};
+use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
 use thermal_lab::bring_up::{
-    AskSurroundings, Bench, BenchError, EmulatedBench, Hand, Measurement, Record, Report,
+    AskSurroundings, Bench, BenchError, EmulatedBench, ManualStep, Measurement, Record, Report,
     SimulatedBoard, Stage, Terminal, bring_up,
 };
 use thermal_lab::link::Link;
@@ -42,28 +43,49 @@ impl Write for Screen {
     }
 }
 
+/// Where a person ends a bring-up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// At the first task of this stage.
+    Task(&'static str),
+    /// When the reference thermometer is to be read in this stage.
+    Thermometer(&'static str),
+}
+
 /// Hands that do what the terminal says, and type what the instruments show.
 struct Typist<'a> {
     terminal: Terminal<'a>,
     hands: EmulatedBench<'a>,
     answer: Rc<RefCell<String>>,
+    stage: &'static str,
+    end: Option<End>,
 }
 
 impl Typist<'_> {
     fn type_next(&self, text: impl ToString) {
         *self.answer.borrow_mut() = text.to_string();
     }
+
+    /// Types this, or ends the bring-up if it shall end here.
+    fn type_or_end(&self, here: End, text: impl ToString) {
+        if self.end == Some(here) {
+            self.type_next("abort");
+        } else {
+            self.type_next(text);
+        }
+    }
 }
 
 impl<L: AskSurroundings + Link> Bench<L> for Typist<'_> {
     fn begin(&mut self, stage: &Stage) {
+        self.stage = stage.name;
         Bench::<L>::begin(&mut self.terminal, stage);
     }
 
-    fn act(&mut self, client: &mut Client<L>, hand: &Hand) -> Result<(), BenchError> {
-        self.hands.act(client, hand)?;
-        self.type_next("");
-        self.terminal.act(client, hand)
+    fn act(&mut self, client: &mut Client<L>, manual: &ManualStep) -> Result<(), BenchError> {
+        self.hands.act(client, manual)?;
+        self.type_or_end(End::Task(self.stage), "");
+        self.terminal.act(client, manual)
     }
 
     fn read(
@@ -105,7 +127,7 @@ impl<L: AskSurroundings + Link> Surroundings<L> for Typist<'_> {
         thermistor: ThermistorId,
     ) -> Result<f64, SurroundingsError> {
         let shown_c = self.hands.reference_c(client, thermistor)?;
-        self.type_next(format!("{shown_c:.3}"));
+        self.type_or_end(End::Thermometer(self.stage), format!("{shown_c:.3}"));
         self.terminal.reference_c(client, thermistor)
     }
 
@@ -129,8 +151,16 @@ impl<L: AskSurroundings + Link> Surroundings<L> for Typist<'_> {
     }
 }
 
-#[test]
-fn a_person_who_types_every_value_comes_to_a_pass() {
+/// What a bring-up by a typing person has left.
+pub struct Typed {
+    pub report: Report,
+    pub state: StateName,
+    /// What the terminal has shown.
+    shown: String,
+}
+
+/// A bring-up of a sound board by a person who types everything, to its end or where the person ends it.
+pub fn typed(end: Option<End>) -> Typed {
     let (keys, lines) = mpsc::channel();
     let (answer, shown) = <(Rc<RefCell<String>>, Rc<RefCell<String>>)>::default();
     let mut screen = Screen {
@@ -142,18 +172,25 @@ fn a_person_who_types_every_value_comes_to_a_pass() {
         terminal: Terminal::new(Person::new(None, lines, &mut screen)),
         hands: EmulatedBench { watch: &mut |_| () },
         answer,
+        stage: "",
+        end,
     };
     let board = Board::named(SOUND, None).expect("a board");
     let (mut engine, bench) = on_the_bench(board);
     let mut client = Client::new(SimulatedBoard::new(&mut engine, bench));
-    let report = bring_up(
-        &mut client,
-        &mut typist,
-        Report::default(),
-        None,
-        &mut |_| (),
-    );
-    let shown = shown.borrow();
+    let report = Report::default();
+    let report = bring_up(&mut client, &mut typist, report, None, &mut |_| ());
+    let shown = shown.borrow().clone();
+    Typed {
+        report: report.expect("the same device"),
+        state: client.ask(&QueryState).expect("a state").state,
+        shown,
+    }
+}
+
+#[test]
+fn a_person_who_types_every_value_comes_to_a_pass() {
+    let Typed { report, shown, .. } = typed(None);
     assert!(report.passed(), "{:#?}\n{shown}", report.findings());
     for part in [
         "== Bare board: continuity, pull-downs, short circuits (bare-board) ==",

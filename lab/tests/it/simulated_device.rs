@@ -12,7 +12,7 @@ use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_lab::client::{
-    Calibrate, Client, CountSettings, Order, QueryAssumedFinger, QueryBoard, QueryCause,
+    Calibrate, Client, CountSettings, PlainCommand, QueryAssumedFinger, QueryBoard, QueryCause,
     QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState,
     upload,
 };
@@ -43,33 +43,33 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
         relaxations: &relaxations,
     };
     let mut orders = vec![
-        Order::Material("oak".into()),
-        Order::Material("granite".into()),
-        Order::CustomMaterial(copper),
-        Order::ObjectTemperature(Some(-3.25)),
-        Order::ObjectTemperature(None),
-        Order::HalfSpace,
-        Order::Slab {
+        PlainCommand::Material("oak".into()),
+        PlainCommand::Material("granite".into()),
+        PlainCommand::CustomMaterial(copper),
+        PlainCommand::ObjectTemperature(Some(-3.25)),
+        PlainCommand::ObjectTemperature(None),
+        PlainCommand::HalfSpace,
+        PlainCommand::Slab {
             thickness_mm: 2.5,
             back: Back::Film(12.5),
         },
-        Order::Slab {
+        PlainCommand::Slab {
             thickness_mm: 3.0,
             back: Back::Held,
         },
-        Order::Slab {
+        PlainCommand::Slab {
             thickness_mm: 4.0,
             back: Back::Insulated,
         },
-        Order::AssumedFinger(AssumedFinger::MeanOnPad),
-        Order::Mode(ContactModel::SemiInfinite),
-        Order::Law(Law::Pi10Hz),
-        Order::Checksum(true),
-        Order::Stream(7),
-        Order::Stream(0),
-        Order::Checksum(false),
-        Order::Set(setting),
-        Order::ClearCalibration(ThermistorId::Check),
+        PlainCommand::AssumedFinger(AssumedFinger::MeanOnPad),
+        PlainCommand::Mode(ContactModel::SemiInfinite),
+        PlainCommand::Law(Law::Pi10Hz),
+        PlainCommand::Checksum(true),
+        PlainCommand::Stream(7),
+        PlainCommand::Stream(0),
+        PlainCommand::Checksum(false),
+        PlainCommand::Set(setting),
+        PlainCommand::ClearCalibration(ThermistorId::Check),
     ];
     orders.extend(upload(&object));
     let refused: Vec<_> = (orders.iter())
@@ -98,12 +98,12 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     );
     assert_eq!(client.ask(&QueryCause).unwrap(), None);
     arm(&mut client, None).unwrap();
-    client.ask(&Order::Start).unwrap();
-    client.ask(&Order::Arm).unwrap();
-    client.ask(&Order::Hold(30.0)).unwrap();
-    client.ask(&Order::Tune).unwrap();
-    client.ask(&Order::Abort).unwrap();
-    let refused = client.ask(&Order::Clear).unwrap_err();
+    client.ask(&PlainCommand::Start).unwrap();
+    client.ask(&PlainCommand::Arm).unwrap();
+    client.ask(&PlainCommand::Hold(30.0)).unwrap();
+    client.ask(&PlainCommand::Tune).unwrap();
+    client.ask(&PlainCommand::Abort).unwrap();
+    let refused = client.ask(&PlainCommand::Clear).unwrap_err();
     assert_eq!(refused.refusal(), Some("no fault to clear"));
     let point = Calibrate {
         thermistor: ThermistorId::Room,
@@ -118,12 +118,16 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     let before: Vec<_> = (1..=lines)
         .map(|n| client.ask(&QuerySettings(n)).unwrap())
         .collect();
-    client.ask(&Order::Store(StorageOrder::Save)).unwrap();
+    client
+        .ask(&PlainCommand::Store(StorageOrder::Save))
+        .unwrap();
     let after: Vec<_> = (1..=lines)
         .map(|n| client.ask(&QuerySettings(n)).unwrap())
         .collect();
     assert_eq!(before, after);
-    client.ask(&Order::Store(StorageOrder::Forget)).unwrap();
+    client
+        .ask(&PlainCommand::Store(StorageOrder::Forget))
+        .unwrap();
     assert!((client.ask(&QueryMargins).unwrap().gain_k_s_a - 2.91).abs() < 1e-9);
 }
 
@@ -152,7 +156,7 @@ fn telemetry_comes_at_its_interval_and_a_device_that_restarts_is_noticed() {
     let mut engine = device();
     let mut client = Client::new(SimulatedLink::new(&mut engine));
     client.wait(Duration::from_millis(100)).unwrap();
-    client.ask(&Order::Stream(5)).unwrap();
+    client.ask(&PlainCommand::Stream(5)).unwrap();
     client.wait(Duration::from_secs(3)).unwrap();
     let mut last = None;
     while let Some(line) = client.next_telemetry(Duration::ZERO).unwrap() {
@@ -169,8 +173,10 @@ fn telemetry_comes_at_its_interval_and_a_device_that_restarts_is_noticed() {
         time.error_s < 1.1e-3 && time.drift_ppm.abs() < 1.0,
         "{time:?}"
     );
-    client.ask(&Order::Store(StorageOrder::Forget)).unwrap();
-    client.ask(&Order::Stream(5)).unwrap();
+    client
+        .ask(&PlainCommand::Store(StorageOrder::Forget))
+        .unwrap();
+    client.ask(&PlainCommand::Stream(5)).unwrap();
     client.wait(Duration::from_millis(50)).unwrap();
     let line = client.next_telemetry(Duration::ZERO).unwrap().unwrap();
     assert!(line.telemetry.tick < 100, "{line:?}");
@@ -184,7 +190,7 @@ fn a_driven_device_whose_host_only_listens_does_not_trip() {
     let mut client = Client::new(SimulatedLink::new(&mut engine));
     client.wait(Duration::from_millis(500)).unwrap();
     arm(&mut client, None).unwrap();
-    client.ask(&Order::Stream(1000)).unwrap();
+    client.ask(&PlainCommand::Stream(1000)).unwrap();
     client.wait(Duration::from_secs(120)).unwrap();
     assert_eq!(client.ask(&QueryState).unwrap().state, StateName::Armed);
 }

@@ -6,7 +6,7 @@ use thermal_display::protocol::BoardStatus;
 use super::brown_out_level::REQUIRED_LEVEL;
 use super::late_clock::LateClock;
 use super::wiring::FingerPowerStage;
-use super::{debug_freeze, line_losses, ordered_restart};
+use super::{debug_freeze, line_losses, requested_restart};
 
 /// Checks in every tick the settings of the microcontroller on which the safety of the bridges
 /// depends.
@@ -59,7 +59,7 @@ impl ChipMonitor {
             && late_clock.count_tick_and_check_stable()
         {
             defmt::info!("the 8 MHz clock has come");
-            ordered_restart::restart();
+            requested_restart::restart();
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The line that selects the side of the comparators' tests.
 
 use stm32f4xx_hal::gpio::{Input, Output, PB2};
+use stm32f4xx_hal::pac::GPIOB;
 use thermal_display::device::drive::ComparatorTest;
 
 /// PB2, common to all fingers: low connects the input of a comparator under test to a level above its window (hot), high
@@ -20,5 +21,13 @@ impl ComparatorSide {
             ComparatorTest::Hot => self.0.set_low(),
             ComparatorTest::Cold => self.0.set_high(),
         }
+    }
+
+    /// Whether the pin does not have the level that it drives: it is shorted, or its output is
+    /// damaged. To be called in the next tick, when the level has settled.
+    pub fn differs_from_selected(&self) -> bool {
+        // SAFETY: a load without side effects.
+        let level_is_high = unsafe { &*GPIOB::ptr() }.idr().read().idr2().is_high();
+        level_is_high != self.0.is_set_high()
     }
 }

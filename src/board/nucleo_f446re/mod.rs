@@ -40,8 +40,8 @@ mod late_clock;
 pub mod line_losses;
 #[cfg(not(feature = "five-fingers"))]
 mod one_finger;
-mod ordered_restart;
 mod pwm_settings;
+mod requested_restart;
 pub(crate) mod reset_cause;
 mod sample_error;
 mod sampler;
@@ -52,6 +52,7 @@ pub(crate) mod settings_storage;
 pub(crate) mod stack_guard;
 mod tick_rate_and_rcc_monitor;
 pub(crate) mod trip_cause_recorder;
+mod unique_id;
 mod window_watchdog;
 
 use core::mem::MaybeUninit;
@@ -139,10 +140,10 @@ fn reset_and_trip_cause_at_start(rcc: &pac::RCC) -> (ResetCause, Option<TripCaus
     if reset == ResetCause::PowerOn {
         saved_dose::zero_saved_doses();
     }
-    let restart_was_ordered = ordered_restart::was_ordered();
+    let restart_was_requested = requested_restart::was_requested();
     let mut cause = trip_cause_recorder::store_reset_fault_and_load_cause(
         reset,
-        settings_storage::save_is_pending() || restart_was_ordered,
+        settings_storage::save_is_pending() || restart_was_requested,
     );
     // A fault that no tick has recorded is a consequence of the overrun. The first start of another
     // version of the firmware is excepted, because its predecessor may have used the words of the
@@ -325,6 +326,7 @@ impl Board {
                 brown_out_level,
                 clock_is_external: has_clock,
                 reset: reset.name(),
+                unique_id: unique_id::unique_id(),
                 ..BoardStatus::default()
             },
         };

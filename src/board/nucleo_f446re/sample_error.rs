@@ -21,7 +21,7 @@ pub enum SampleError {
     /// SysTick runs at a wrong rate, or the tick was delayed.
     TickRate,
     /// The register RCC_CFGR, with the source and the prescalers of the clocks, has changed since
-    /// the start.
+    /// the start, or the clock security system has been switched off.
     Clocks,
     /// ADC1 has lost a conversion: its result was ready before the DMA stream had fetched the one
     /// before.

@@ -6,6 +6,9 @@
 //! also while the core waits for interrupts, and needs no interrupt of its own. The prescaler of
 //! the core's clock acts on both, so its register is compared with the value that was set.
 //!
+//! The clock security system, which acts when the 8 MHz clock stops, must stay on; its bit is in
+//! another register.
+//!
 //! The monitor cannot detect a wrong frequency of the 8 MHz oscillator, from which both counters
 //! are derived.
 
@@ -31,12 +34,22 @@ pub struct TickRateAndRccMonitor {
     /// Value of the register RCC_CFGR when the monitor was created. If the register changes
     /// afterwards, sampling stops with [`SampleError::Clocks`].
     rcc_cfgr_at_start: u32,
+    /// Whether the clock security system was on when the monitor was created. If it is then switched
+    /// off, sampling stops with [`SampleError::Clocks`]. Off at first, it may be switched on: a
+    /// device that waits for the clock does that.
+    clock_security_must_be_on: bool,
 }
 
 /// Reads the register RCC_CFGR: source and prescalers of the clocks.
 fn read_rcc_cfgr() -> u32 {
     // SAFETY: a load without side effects, from a register that is written at the start only.
     unsafe { &*RCC::ptr() }.cfgr().read().bits()
+}
+
+/// Whether the clock security system is on.
+fn clock_security_is_on() -> bool {
+    // SAFETY: a load without side effects.
+    unsafe { &*RCC::ptr() }.cr().read().csson().is_on()
 }
 
 impl TickRateAndRccMonitor {
@@ -52,6 +65,7 @@ impl TickRateAndRccMonitor {
         Self {
             tick_rate: TickRateMonitor::new(hclk_hz / (TICK_HZ * FINGERS as u32)),
             rcc_cfgr_at_start: read_rcc_cfgr(),
+            clock_security_must_be_on: clock_security_is_on(),
         }
     }
 
@@ -61,10 +75,13 @@ impl TickRateAndRccMonitor {
     /// number of fingers.
     ///
     /// # Errors
-    /// [`SampleError::Clocks`] if the register RCC_CFGR has changed since the start,
-    /// [`SampleError::TickRate`] if the call is early or late by more than a quarter of a period.
+    /// [`SampleError::Clocks`] if the register RCC_CFGR has changed since the start, or the clock
+    /// security system has been switched off; [`SampleError::TickRate`] if the call is early or late by more than a quarter of a period.
     pub fn check_rcc_cfgr_and_tick_rate(&mut self) -> Result<(), SampleError> {
         if read_rcc_cfgr() != self.rcc_cfgr_at_start {
+            return Err(SampleError::Clocks);
+        }
+        if self.clock_security_must_be_on && !clock_security_is_on() {
             return Err(SampleError::Clocks);
         }
         if !self.tick_rate.tick_is_on_schedule(SYST::get_current()) {

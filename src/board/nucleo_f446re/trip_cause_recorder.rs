@@ -69,7 +69,7 @@ pub fn erase_stored_trip_cause() {
 
 /// The cause by which all fingers must be tripped when the device starts after `reset`: the stored
 /// cause or, if none is stored, the fault that the reset itself indicates, which is then stored
-/// too. After power-on the old cause is erased first. `restart_is_planned`: the program has ordered
+/// too. After power-on the old cause is erased first. `restart_is_planned`: the program has requested
 /// the reset, so it is no fault.
 pub fn store_reset_fault_and_load_cause(
     reset: ResetCause,

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::line_checksum::TwoHexDigits;
+
 /// What the board tells of the microcontroller and of the serial line, for bring-up and diagnosis: the answer to the
 /// command `board`. The default is that of a prepared board after power-on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +26,8 @@ pub struct BoardStatus {
     pub receive_noise: u32,
     /// Lines of telemetry that were dropped because the line to the host was too slow, since the start.
     pub telemetry_dropped: u32,
+    /// Unique identifier of the microcontroller, in words. The default is no chip's.
+    pub unique_id: [u32; 3],
 }
 
 impl Default for BoardStatus {
@@ -38,6 +42,7 @@ impl Default for BoardStatus {
             receive_framing_errors: 0,
             receive_noise: 0,
             telemetry_dropped: 0,
+            unique_id: [0; 3],
         }
     }
 }
@@ -53,6 +58,7 @@ impl fmt::Display for BoardStatus {
             receive_framing_errors,
             receive_noise,
             telemetry_dropped,
+            unique_id,
             ..
         } = self;
         let watchdogs = if self.watchdogs_may_freeze {
@@ -72,7 +78,9 @@ impl fmt::Display for BoardStatus {
         )?;
         write!(
             f,
-            " rx_noise={receive_noise} tx_dropped={telemetry_dropped}"
-        )
+            " rx_noise={receive_noise} tx_dropped={telemetry_dropped} uid="
+        )?;
+        let mut bytes = unique_id.iter().flat_map(|word| word.to_be_bytes());
+        bytes.try_for_each(|byte| TwoHexDigits(byte).fmt(f))
     }
 }

@@ -11,7 +11,7 @@ use thermal_device::{FingerIndex, StateName, TICK_S};
 use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode_settings_record};
 
 use crate::arguments::{expect_end, read_word};
-use crate::finger_address::split_address;
+use crate::finger_address::{legible_address, split_address};
 use crate::line_checksum::{strip_checksum, write_line};
 use crate::upload::Upload;
 use crate::{BoardStatus, Error, OutgoingLine, Reply, Request, UploadError};
@@ -114,8 +114,10 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         const { assert!(FINGERS > 0 && FINGERS <= 10) };
-        let line = strip_checksum(line)
-            .map_err(|error| WithSourceFinger::from_whole_device(Error::Checksum(error)))?;
+        let line = strip_checksum(line).map_err(|error| WithSourceFinger {
+            finger: legible_address::<FINGERS>(line),
+            content: Error::Checksum(error),
+        })?;
         let (finger, line) = split_address(line)?;
         let number = finger.map(FingerIndex::index_u8);
         let addressed = |content| WithSourceFinger {

@@ -34,3 +34,10 @@ pub fn split_address<const FINGERS: usize>(
         ))),
     }
 }
+
+/// Index of the finger whose address a damaged line has, for the answer that refuses the line; `None` without an address of
+/// a finger of this device. The damage may be in the address itself.
+pub fn legible_address<const FINGERS: usize>(line: &str) -> Option<u8> {
+    let (finger, _) = split_address::<FINGERS>(line).ok()?;
+    finger.map(FingerIndex::index_u8)
+}

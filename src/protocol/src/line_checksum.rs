@@ -49,7 +49,7 @@ pub fn strip_checksum(line: &str) -> Result<&str, ChecksumError> {
     }
 }
 
-/// A checksum, written with two upper-case digits. `{:02X}` would add 0.9 KB to the image.
+/// A byte, written with two upper-case digits. `{:02X}` would add 0.9 KB to the image.
 pub struct TwoHexDigits(pub u8);
 
 impl fmt::Display for TwoHexDigits {

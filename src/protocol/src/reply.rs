@@ -7,7 +7,7 @@ use thermal_commissioning::{
     CONVERTER_STEPS_PER_LINE_MAX, SessionReply, Setting, StorageOrder, THERMISTOR_WORDS,
 };
 use thermal_device::command::{self, Status};
-use thermal_device::safety::{SelfTestReport, TripCause};
+use thermal_device::safety::{SelfTestReport, SideLine, TripCause};
 use thermal_device::sense::Samples;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
 use thermal_settings::{Calibration, Tile};
@@ -183,6 +183,8 @@ fn comparator_test_answer_words(report: &SelfTestReport) -> LineBuffer {
         line.push_str_if_fits(release);
         line.push_integer_or_dash(side.release_ms);
     }
+    line.push_str_if_fits(" side=");
+    line.push_str_if_fits(report.side_line.map_or("-", SideLine::name));
     line
 }
 

@@ -19,7 +19,9 @@ use thermal_device::command::{self, Command, ObjectBody, Status};
 use thermal_device::control::Law;
 use thermal_device::drive::Current;
 use thermal_device::reference::ContactModel;
-use thermal_device::safety::{ComparatorSideReport, Fault, SelfTestReport, SelfTestResult};
+use thermal_device::safety::{
+    ComparatorSideReport, Fault, SelfTestReport, SelfTestResult, SideLine,
+};
 use thermal_device::sense::SupplyVoltage;
 use thermal_device::{StateName, Telemetry};
 use thermal_settings::Settings;
@@ -252,6 +254,7 @@ fn the_longest_answers_fit_their_limit() {
         release_ms: Some(19),
     };
     let report = SelfTestReport {
+        side_line: Some(SideLine::StuckHigh),
         hot: side,
         cold: side,
         supply: Some(SupplyVoltage::from_sum(u16::MAX)),
@@ -264,7 +267,7 @@ fn the_longest_answers_fit_their_limit() {
     assert_eq!(
         answer,
         "ok hot_cut_ms=19 hot_supply_v=14.2 hot_release_ms=19 cold_cut_ms=19 cold_supply_v=14.2 cold_release_ms=19 \
-         supply_v=14.2 cool_a=10.24 warm_a=10.24 display_k=-99.00 check_k=-99.00 result=settings-corrupt"
+         side=high supply_v=14.2 cool_a=10.24 warm_a=10.24 display_k=-99.00 check_k=-99.00 result=settings-corrupt"
     );
     assert!(answer.len() <= ANSWER_MAX_BYTES);
 
@@ -297,10 +300,15 @@ fn the_longest_status_of_a_board_fits_an_answer() {
         receive_framing_errors: u32::MAX,
         receive_noise: u32::MAX,
         telemetry_dropped: u32::MAX,
+        unique_id: [0x0023_0041, 0x5132_5013, 0x2032_364e],
         ..BoardStatus::default()
     };
     let answer = Reply::Board(status).to_string();
     assert!(answer.len() <= ANSWER_MAX_BYTES, "{answer}");
+    assert!(
+        answer.ends_with(" uid=00230041513250132032364E"),
+        "{answer}"
+    );
 }
 
 #[test]

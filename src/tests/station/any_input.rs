@@ -40,11 +40,12 @@ fn samples() -> impl Strategy<Value = Samples> {
         sum(50_000..60_900),
         prop::bool::weighted(0.02),
         prop::bool::weighted(0.02),
+        prop::bool::weighted(0.02),
     );
     (temperatures, others).prop_map(
         |(
             (display, display_check, sink, skin, room),
-            (force, current, supply, bridge_fault, emergency_stop),
+            (force, current, supply, bridge_fault, emergency_stop, comparator_side_differs),
         )| Samples {
             display,
             display_check,
@@ -56,6 +57,7 @@ fn samples() -> impl Strategy<Value = Samples> {
             supply,
             bridge_fault,
             emergency_stop,
+            comparator_side_differs,
             scattering_thermistors: 5,
         },
     )

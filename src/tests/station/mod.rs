@@ -47,6 +47,8 @@ struct TestBench {
     /// Bridge supply behind its switch.
     supply_v: f64,
     emergency_stop: bool,
+    /// The line of the comparator's side does not have the level that the board drives.
+    comparator_side_differs: bool,
     /// A byte from the host arrives before every tick.
     host_alive: bool,
     /// The plate responds to the demanded current as the nominal tile does.
@@ -74,6 +76,7 @@ impl TestBench {
             bridge_fault: false,
             supply_v: 12.0,
             emergency_stop: false,
+            comparator_side_differs: false,
             host_alive: true,
             plate_responds: false,
             noise: 1,
@@ -172,6 +175,7 @@ impl TestBench {
             supply: (16.0 * 4096.0 / 3.3 * 10.0 / 43.0 * self.supply_v).round() as u16,
             bridge_fault: self.bridge_fault,
             emergency_stop: self.emergency_stop,
+            comparator_side_differs: self.comparator_side_differs,
             scattering_thermistors: 0,
         }
     }

@@ -10,6 +10,9 @@ enum Broken {
     Nothing,
     HotSide,
     ColdSide,
+    /// The line that selects the side stays low, or high.
+    SideLow,
+    SideHigh,
     /// The latch does not release the fault line.
     Release,
     SwitchShorted,
@@ -23,6 +26,11 @@ fn self_test(bench: &mut TestBench, broken: Broken) -> u32 {
     let mut ticks = 0;
     while bench.state() == StateName::SelfTest {
         bench.step_self_test_with(|bench, test| {
+            bench.comparator_side_differs = match test {
+                ComparatorTest::None => false,
+                ComparatorTest::Hot => broken == Broken::SideHigh,
+                ComparatorTest::Cold => broken == Broken::SideLow,
+            };
             bench.bridge_fault = match test {
                 ComparatorTest::None => broken == Broken::Release,
                 ComparatorTest::Hot => broken != Broken::HotSide,
@@ -46,7 +54,7 @@ fn a_sound_circuit_passes_and_the_report_has_all_that_was_measured() {
     let mut bench = TestBench::new();
     assert_eq!(
         bench.send("self-test"),
-        "ok hot_cut_ms=- hot_supply_v=- hot_release_ms=- cold_cut_ms=- cold_supply_v=- cold_release_ms=- supply_v=- \
+        "ok hot_cut_ms=- hot_supply_v=- hot_release_ms=- cold_cut_ms=- cold_supply_v=- cold_release_ms=- side=- supply_v=- \
          cool_a=- warm_a=- display_k=- check_k=- result=none"
     );
     self_test(&mut bench, Broken::Nothing);
@@ -55,7 +63,7 @@ fn a_sound_circuit_passes_and_the_report_has_all_that_was_measured() {
     assert_eq!(
         bench.send("self-test"),
         "ok hot_cut_ms=1 hot_supply_v=4.1 hot_release_ms=1 cold_cut_ms=1 cold_supply_v=4.1 cold_release_ms=1 \
-         supply_v=12.0 cool_a=1.00 warm_a=1.00 display_k=0.54 check_k=0.54 result=passed"
+         side=ok supply_v=12.0 cool_a=1.00 warm_a=1.00 display_k=0.54 check_k=0.54 result=passed"
     );
 }
 
@@ -72,6 +80,17 @@ fn each_broken_part_has_its_fault_and_its_place_in_the_report() {
             "comparator",
             "hot_release_ms=1 cold_cut_ms=- cold_supply_v=-",
         ),
+        // The other side would answer in its place.
+        (
+            Broken::SideLow,
+            "comparator",
+            "hot_release_ms=1 cold_cut_ms=- cold_supply_v=- cold_release_ms=- side=low",
+        ),
+        (
+            Broken::SideHigh,
+            "comparator",
+            "hot_cut_ms=- hot_supply_v=- hot_release_ms=- cold_cut_ms=- cold_supply_v=- cold_release_ms=- side=high",
+        ),
         (
             Broken::Release,
             "comparator",
@@ -85,7 +104,8 @@ fn each_broken_part_has_its_fault_and_its_place_in_the_report() {
         (
             Broken::SwitchOpen,
             "supply",
-            "hot_release_ms=1 cold_cut_ms=- cold_supply_v=- cold_release_ms=- supply_v=4.1",
+            "hot_release_ms=1 cold_cut_ms=- cold_supply_v=- cold_release_ms=- side=ok \
+             supply_v=4.1",
         ),
         (Broken::SenseOpen, "supply", "hot_supply_v=0.0"),
     ] {

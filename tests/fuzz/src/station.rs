@@ -285,6 +285,7 @@ pub fn run(input: &[u8]) -> bool {
                     supply,
                     bridge_fault,
                     emergency_stop,
+                    comparator_side_differs: false,
                     scattering_thermistors: 5,
                 };
                 device.step(FINGER, &samples);

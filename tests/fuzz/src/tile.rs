@@ -93,6 +93,7 @@ impl Tile {
             },
             bridge_fault: self.comparator_tripped,
             emergency_stop: false,
+            comparator_side_differs: false,
             scattering_thermistors: 0,
         }
     }

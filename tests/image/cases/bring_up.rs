@@ -25,6 +25,7 @@ fn brought_up<E: Engine>(name: &str, start: impl FnOnce(World) -> E) -> Report {
         None,
         &mut |_| (),
     )
+    .expect("the same device")
 }
 
 fn on_the_image(name: &str) -> Report {

@@ -2,8 +2,7 @@
 
 use anyhow::Result;
 
-use super::Bench;
-use super::transients::PERIOD_S;
+use super::{Bench, PERIOD_S};
 use crate::netlist::Netlists;
 use crate::ngspice;
 use crate::picture::Scene;
@@ -50,8 +49,11 @@ fn deck(henry: f64, current_a: f64, duty: f64) -> String {
 
 /// Mean reading and half of its ripple, A, for a tile current and duty.
 fn reading(netlists: &Netlists, current_a: f64, duty: f64) -> Result<[f64; 2]> {
+    let from_s = 3.125e-3 - 10.0 * PERIOD_S;
     let lines = deck(2.0 * netlists.param("l_leg")?, current_a, duty)
-        + "\n.meas tran mean avg v(adc) from=3.02083m to=3.125m\n.meas tran ripple pp v(adc) from=3.02083m to=3.125m\n";
+        + &format!(
+            "\n.meas tran mean avg v(adc) from={from_s:e} to=3.125m\n.meas tran ripple pp v(adc) from={from_s:e} to=3.125m\n"
+        );
     let measured = ngspice::run("current", netlists, &lines)?;
     let ampere = |volt: f64| volt * COUNTS_PER_V / COUNTS_PER_A;
     Ok([

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use super::Bench;
+use super::{Bench, PERIOD_S};
 use crate::netlist::Netlists;
 use crate::ngspice;
 use crate::quantity::Quantity;
@@ -67,11 +67,14 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
             (0.2, 1.0),
         ),
     ]);
-    let ripple = "V3 v3 0 3.3\nVt tc 0 25\nXn pin 0 tc ntc\nX1 v3 pin in adc divider\nIn 0 pin SIN(0 10u 96k)\n\
-        .options reltol=1e-4 vntol=1n\n.tran 0.2u 6m 5.9m 0.2u\n.meas tran ripple pp v(adc)\n.meas tran input pp v(pin)";
-    let measured = ngspice::run("divider-ripple", netlists, ripple)?;
+    let ripple = format!(
+        "V3 v3 0 3.3\nVt tc 0 25\nXn pin 0 tc ntc\nX1 v3 pin in adc divider\nIn 0 pin SIN(0 10u {pwm_hz:e})\n\
+        .options reltol=1e-4 vntol=1n\n.tran 0.2u 6m 5.9m 0.2u\n.meas tran ripple pp v(adc)\n.meas tran input pp v(pin)",
+        pwm_hz = PERIOD_S.recip(),
+    );
+    let measured = ngspice::run("divider-ripple", netlists, &ripple)?;
     all.push(Quantity::at_least(
-        "attenuation of 96 kHz from the connector to the converter",
+        "attenuation of the PWM's frequency from the connector to the converter",
         measured.get("input")? / measured.get("ripple")?,
         "1",
         20.0,

@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 
-use super::Bench;
 use super::transients::OPTIONS;
+use super::{Bench, PERIOD_S};
 use crate::netlist::Netlists;
 use crate::ngspice::{self, Measured};
 use crate::picture::Scene;
@@ -21,13 +21,20 @@ pub const BENCH: Bench = Bench {
 /// The gate driver's line without parameters.
 const DRIVER: &str = "X3 i1 i2 vbr nfault gh1 o1 gl1 sa gh2 o2 gl2 sb gate_driver";
 
+/// Source of the input IN2: half of each period low, from 198.917 us on and whole periods before and after.
+pub fn half_duty() -> String {
+    let (first_s, low_s) = (198.917e-6 - 19.0 * PERIOD_S, 0.5 * PERIOD_S - 5e-9);
+    format!("Vin2 in2 0 PULSE(3.3 0 {first_s:e} 5n 5n {low_s:e} {PERIOD_S:e})")
+}
+
 /// Half duty into the tile with a Seebeck voltage that makes this current.
-pub fn deck(seebeck_v: f64) -> String {
+fn deck(seebeck_v: f64) -> String {
     format!(
         "V3 v3 0 3.3\nVbr vbr 0 12\nVin1 in1 0 3.3\n\
-         Vin2 in2 0 PULSE(3.3 0 1u 5n 5n 5.2033u 10.41667u)\nVen enable 0 3.3\n\
+         {pulses}\nVen enable 0 3.3\n\
          X1 vbr v3 in1 in2 enable nfault p n sa sb bridge\nVi p pt 0\nXt pt n tile seebeck={seebeck_v}\n\
-         {OPTIONS}\n.tran 5n 230u 0 25n"
+         {OPTIONS}\n.tran 5n 230u 0 25n",
+        pulses = half_duty(),
     )
 }
 
@@ -37,10 +44,11 @@ pub fn simulate(netlists: &Netlists, seebeck_v: f64) -> Result<Measured> {
         "{circuit}\nBin pin 0 V=-12*I(Vbr)\nBout pout 0 V=V(p,n)*I(Vi)\n\
          .meas tran command when v(in2)=1.65 fall=1 td=198u\n.meas tran command_end when v(in2)=1.65 rise=1 td=200u\n\
          .meas tran out when v(x1.o1)=6 rise=1 td=198u\n.meas tran out_end when v(x1.o1)=6 fall=1 td=200u\n\
-         .meas tran current avg i(vi) from=114.5833u to=218.75u\n\
-         .meas tran ripple pp i(vi) from=114.5833u to=218.75u\n\
-         .meas tran input avg v(pin) from=114.5833u to=218.75u\n.meas tran output avg v(pout) from=114.5833u to=218.75u\n",
+         .meas tran current avg i(vi) from={from_s:e} to=218.75u\n\
+         .meas tran ripple pp i(vi) from={from_s:e} to=218.75u\n\
+         .meas tran input avg v(pin) from={from_s:e} to=218.75u\n.meas tran output avg v(pout) from={from_s:e} to=218.75u\n",
         circuit = deck(seebeck_v),
+        from_s = 218.75e-6 - 10.0 * PERIOD_S,
     );
     ngspice::run("edges", netlists, &lines)
 }

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use super::Bench;
+use super::{Bench, PERIOD_S};
 use crate::netlist::Netlists;
 use crate::ngspice;
 use crate::quantity::Quantity;
@@ -39,7 +39,10 @@ fn touch_ua(netlists: &Netlists, sources: &str) -> Result<f64> {
 fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let mains = "Vm mains 0 SIN(0 358 50)";
     let quiet = "Vt tile common 0\nVu usb 0 0\n.tran 20u 100m 0 20u";
-    let pwm = "Vm mains 0 0\nVt tile common PULSE(0 12 0 30n 30n 5.2u 10.4167u)\nVu usb 0 0\n.tran 0.5u 3m 0 0.2u";
+    let high_s = 0.5 * PERIOD_S;
+    let pwm = format!(
+        "Vm mains 0 0\nVt tile common PULSE(0 12 0 30n 30n {high_s:e} {PERIOD_S:e})\nVu usb 0 0\n.tran 0.5u 3m 0 0.2u"
+    );
     let touch = touch_ua(netlists, &format!("{mains}\n{quiet}"))?;
     let cracked = touch_ua(
         &cracked_netlists(netlists)?,

@@ -9,6 +9,7 @@ mod force;
 mod ground;
 mod leakage;
 mod multiplexer;
+mod parity;
 mod pins;
 mod self_test;
 mod shorts;
@@ -17,10 +18,19 @@ mod timing;
 mod transients;
 
 use anyhow::Result;
+use thermal_device::{
+    PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_PERIOD_STEPS_OF_ONE_FINGER, PWM_STEPS_PER_SECOND,
+};
 
 use crate::netlist::Netlists;
 use crate::picture::Picture;
 use crate::quantity::Quantity;
+
+/// The firmware's PWM period for one finger, s.
+pub const PERIOD_S: f64 = PWM_PERIOD_STEPS_OF_ONE_FINGER as f64 / PWM_STEPS_PER_SECOND as f64;
+/// The firmware's PWM period for five fingers, s.
+pub const PERIOD_OF_FIVE_FINGERS_S: f64 =
+    PWM_PERIOD_STEPS_OF_FIVE_FINGERS as f64 / PWM_STEPS_PER_SECOND as f64;
 
 /// One bench.
 #[derive(Clone, Copy)]
@@ -38,7 +48,7 @@ pub struct Bench {
 }
 
 /// All benches.
-pub const ALL: [Bench; 15] = [
+pub const ALL: [Bench; 16] = [
     thresholds::BENCH,
     self_test::BENCH,
     faults::BENCH,
@@ -53,5 +63,6 @@ pub const ALL: [Bench; 15] = [
     ground::BENCH,
     leakage::BENCH,
     multiplexer::BENCH,
+    parity::BENCH,
     five_fingers::BENCH,
 ];

@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 
-use super::Bench;
 use super::transients::OPTIONS;
+use super::{Bench, PERIOD_S};
 use crate::netlist::Netlists;
 use crate::ngspice;
 use crate::picture::Scene;
@@ -54,15 +54,17 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     Ok(all)
 }
 
-/// A bridge that drives 6 A, and a switch that closes at 60 us.
+/// A bridge that drives 6 A, and a switch that closes at 60 us, between two pulses.
 fn deck(short: &str, most_us: f64) -> String {
     format!(
         "V3 v3 0 3.3\nVs vs 0 12\nRs vs vx 20m\nLs vx vbr 0.2u\nCs vbr c 20u\nRc c 0 3m\nVin1 in1 0 3.3\n\
-         Vin2 in2 0 PULSE(0 3.3 5.6u 5n 5n 4.8u 10.4166u)\nVen enable 0 3.3\n\
+         Vin2 in2 0 PULSE(0 3.3 {first_high_s:e} 5n 5n {high_s:e} {PERIOD_S:e})\nVen enable 0 3.3\n\
          X1 vbr v3 in1 in2 enable nfault p n sa sb bridge\nXt p n tile\n\
          {short}\nVshort s 0 PWL(0 0 60u 0 60.05u 1)\n\
          .model short sw(vt=0.5 vh=0.1 ron=5m roff=1meg)\n\
          {OPTIONS}\n.tran 20n {end_us}u 0 60n",
+        first_high_s = 60e-6 - 5.22 * PERIOD_S,
+        high_s = 0.46 * PERIOD_S,
         end_us = 80.0 + most_us,
     )
 }

@@ -47,12 +47,13 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
 fn disable(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let lines = format!(
         "V3 v3 0 3.3\nVs vs 0 12\nRs vs vbr 20m\nCs vbr 0 20u\nVin1 in1 0 3.3\n\
-         Vin2 in2 0 PULSE(3.3 0 1u 5n 5n 5.2033u 10.41667u)\nVen enable 0 PWL(0 3.3 200u 3.3 200.005u 0)\n\
+         {pulses}\nVen enable 0 PWL(0 3.3 200u 3.3 200.005u 0)\n\
          X1 vbr v3 in1 in2 enable nfault p n sa sb bridge\nVi p pt 0\nXt pt n tile seebeck=-0.6\n\
          Bg gate 0 V=V(x1.gh1,x1.o1)\n\
          {OPTIONS}\n.tran 5n 260u 0 25n\n\
          .meas tran high_off when v(gate)=1 fall=1 td=200u\n.meas tran low_off when v(x1.gl2)=1 fall=1 td=200u\n\
-         .meas tran gone when i(vi)=0.3 fall=1 td=200u\n.meas tran most max v(vbr) from=200u to=260u\n"
+         .meas tran gone when i(vi)=0.3 fall=1 td=200u\n.meas tran most max v(vbr) from=200u to=260u\n",
+        pulses = edges::half_duty(),
     );
     let measured = ngspice::run("timing-disable", netlists, &lines)?;
     Ok(vec![

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use super::Bench;
+use super::{Bench, PERIOD_S};
 use crate::netlist::Netlists;
 use crate::ngspice;
 use crate::picture::{Chart, Scene};
@@ -19,8 +19,6 @@ pub const BENCH: Bench = Bench {
 /// On-resistance of a MOSFET at 125 °C against 25 °C, and tolerance of the gate driver's limit (recalled, check).
 const HOT_MOSFET: f64 = 1.6;
 const LIMIT_TOLERANCE: f64 = 1.25;
-/// PWM period, s. The firmware has 1856 steps of 180 MHz, or 1882 for five fingers, which differ from it by 1 %.
-pub const PERIOD_S: f64 = 1.0 / 96e3;
 /// Supply at the upper end of its tolerance, V.
 const SUPPLY_V: f64 = 12.6;
 /// Options for circuits with MOSFETs.
@@ -57,11 +55,13 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
         let lines = format!(
             "{circuit}\n\
              .meas tran enable_peak max i(l.x1.l1) from=100u to=200u\n\
-             .meas tran before avg i(vi) from=208.33u to=312.5u\n\
+             .meas tran before avg i(vi) from={before_s:e} to=312.5u\n\
              .meas tran reversal_peak min i(l.x1.l1) from=312.5u to=400u\n\
-             .meas tran after avg i(vi) from=416.66u to=500u\n\
+             .meas tran after avg i(vi) from={after_s:e} to=500u\n\
              .meas tran fault min v(nfault) from=100u to=500u\n",
             circuit = enable_and_reversal(),
+            before_s = 312.5e-6 - 10.0 * PERIOD_S,
+            after_s = 500e-6 - 8.0 * PERIOD_S,
         );
         let measured = ngspice::run("transients", &changed, &lines)?;
         for (what, peak_a) in [
@@ -97,15 +97,17 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     Ok(all)
 }
 
-/// Enabled at 100 us with the duty of 6 A; cooling changes to warming at 312.5 us, a whole number of PWM periods.
+/// Enabled at 102 us, between two pulses, with the duty of 6 A; cooling changes to warming at 312.5 us, at the begin of a period.
 fn enable_and_reversal() -> String {
     let low_s = PERIOD_S * 0.55;
+    let first_high_s = 312.5e-6 - 30.0 * PERIOD_S + low_s;
+    let enable_s = 312.5e-6 - 20.4 * PERIOD_S;
     format!(
         "V3 v3 0 3.3\nVs vs 0 {SUPPLY_V}\nRs vs vbr 20m\nCs vbr 0 20u\n\
-         Vpwm pwm 0 PULSE(0 3.3 {low_s:e} 5n 5n {high_s:e} {PERIOD_S:e})\n\
+         Vpwm pwm 0 PULSE(0 3.3 {first_high_s:e} 5n 5n {high_s:e} {PERIOD_S:e})\n\
          Vw w 0 PWL(0 0 312.5u 0 312.505u 1)\n\
          B1 in1 0 V=V(w)*V(pwm)+(1-V(w))*3.3\nB2 in2 0 V=(1-V(w))*V(pwm)+V(w)*3.3\n\
-         Ven enable 0 PULSE(0 3.3 100u 5n)\n\
+         Ven enable 0 PULSE(0 3.3 {enable_s:e} 5n)\n\
          X1 vbr v3 in1 in2 enable nfault p n sa sb bridge\nVi p pt 0\nXt pt n tile\nVl l 0 0\n\
          {OPTIONS}\n.tran 20n 500u 0 60n",
         high_s = PERIOD_S - low_s,
@@ -115,7 +117,7 @@ fn enable_and_reversal() -> String {
 fn enable_scene() -> Scene {
     Scene {
         lines: enable_and_reversal(),
-        time: ("time, us; enabled at 100 us", 1e6),
+        time: ("time, us; enabled at 102 us", 1e6),
         range: 90.0..200.0,
         charts: CURRENTS,
     }

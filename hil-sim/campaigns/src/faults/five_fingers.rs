@@ -56,7 +56,7 @@ pub fn five_finger_cases() -> Vec<FaultCase> {
 }
 
 /// Whether the fault is one of what the fingers share: processor, host, converter, reference of the thermistors, emergency
-/// stop.
+/// stop, line of the comparators' side.
 fn is_shared(fault: &InjectedFault) -> bool {
     match fault {
         InjectedFault::Processor(_) => true,
@@ -65,6 +65,7 @@ fn is_shared(fault: &InjectedFault) -> bool {
             fault.kind,
             FaultKind::AdcStuck
                 | FaultKind::EmergencyStop
+                | FaultKind::SideStuck
                 | FaultKind::ReferenceOff
                 | FaultKind::HostGarbage
                 | FaultKind::HostSilent

@@ -12,7 +12,7 @@ use thermal_sim::scene::Scene;
 
 use super::meter::Meter;
 use super::one_finger::{ADC_INPUTS, OneFingerBoard, StartError, power_up, resets};
-use super::{A, B, Bridge, C, D, EMERGENCY_STOP, FIRST_BRIDGE, Pin, bridge, inject};
+use super::{A, B, Bridge, C, D, EMERGENCY_STOP, FIRST_BRIDGE, Pin, TEST_SIDE, bridge, inject};
 use crate::{Firmware, Machine, Stop, Wiring};
 
 const BRIDGES: [Bridge; FINGERS] = [
@@ -261,6 +261,9 @@ impl Wiring for Pins {
     fn pin(&self, port: u8, bit: u8) -> Option<bool> {
         if (port, bit) == EMERGENCY_STOP {
             return Some(!self.worlds.iter().any(World::emergency_stop));
+        }
+        if (port, bit) == TEST_SIDE {
+            return self.worlds.iter().find_map(World::side_stuck);
         }
         if (port, bit) == PARITY {
             return Some(self.select.iter().filter(|level| **level).count() % 2 == 1);

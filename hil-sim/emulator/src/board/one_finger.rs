@@ -11,7 +11,7 @@ use thermal_sim::scene::Scene;
 use thermal_sim::{RamLayout, SceneRunner, World, run_scene_on};
 
 use super::meter::{Meter, TICK};
-use super::{EMERGENCY_STOP, FIRST_BRIDGE, inject, refused};
+use super::{EMERGENCY_STOP, FIRST_BRIDGE, TEST_SIDE, inject, refused};
 use crate::{Firmware, Machine, RAM_BASE, RAM_SIZE, Stop, Wiring};
 
 /// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2, PC4.
@@ -220,6 +220,7 @@ impl Wiring for Pins {
         match (port, bit) {
             pin if pin == FIRST_BRIDGE.fault => Some(!self.world.bridge_fault()),
             EMERGENCY_STOP => Some(!self.world.emergency_stop()),
+            TEST_SIDE => self.world.side_stuck(),
             _ => None,
         }
     }

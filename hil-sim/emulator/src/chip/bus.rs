@@ -82,9 +82,12 @@ fn device(address: u32) -> Option<(Device, Option<(Enr, u8)>)> {
 
 /// Factory words of the system memory (RM0390 chapter 34, DS10693): unique identifier, flash size in KiB,
 /// calibration codes of the internal reference and of the temperature sensor at 30 and 110 degC, all nominal.
-fn signature(address: u32) -> Option<u32> {
+fn signature(address: u32, unique_id: [u32; 3]) -> Option<u32> {
+    let [first, second, third] = unique_id;
     Some(match address {
-        0x1fff_7a10 | 0x1fff_7a14 | 0x1fff_7a18 => 0x0046_0000 | address & 0xff,
+        0x1fff_7a10 => first,
+        0x1fff_7a14 => second,
+        0x1fff_7a18 => third,
         0x1fff_7a20 => 512 << 16,
         0x1fff_7a28 => u32::from(INTERNAL_REFERENCE) << 16,
         0x1fff_7a2c => 1207 << 16 | 959,
@@ -130,7 +133,7 @@ impl<W: Wiring> Chip<W> {
             }
             return self.ppb.read(&self.nvic, address, now, ipsr);
         }
-        if let Some(word) = signature(address) {
+        if let Some(word) = signature(address, self.unique_id) {
             return Ok(word);
         }
         let device = self.clocked(address)?;

@@ -7,7 +7,7 @@
 pub struct BridgeParams {
     /// Supply, V.
     pub supply_v: f64,
-    /// PWM frequency, Hz.
+    /// PWM frequency, Hz; that of the firmware for one finger, 180 MHz by 1856 steps. Five fingers have one of their own.
     pub pwm_hz: f64,
     /// Time for which both switches of a leg are off at each edge, s, 0 to half a period.
     pub dead_time_s: f64,
@@ -33,7 +33,7 @@ impl BridgeParams {
     /// Values of the reference design.
     pub const NOMINAL: Self = Self {
         supply_v: 12.0,
-        pwm_hz: 96e3,
+        pwm_hz: 180e6 / 1856.0,
         dead_time_s: 0.16e-6,
         diode_v: 0.9,
         on_ohm: 0.04,

@@ -139,13 +139,13 @@ fn without_filter_the_ripple_heat_is_that_of_antiphase_drive() {
 
 #[test]
 fn dead_time_reduces_the_current_equally_in_both_directions() {
-    // Far from zero current: 12 V plus two diode drops for 0.16 us of 10.4 us, divided by the total resistance.
+    // Far from zero current: 12 V plus two diode drops for 0.16 us of 10.31 us, divided by the total resistance.
     let params = BridgeParams::NOMINAL;
     let ideal = BridgeParams {
         dead_time_s: 0.0,
         ..params
     };
-    let lost_a = (12.0 + 2.0 * 0.9) * 0.16e-6 * 96e3 / (1.061 + 0.04 + 0.01);
+    let lost_a = (12.0 + 2.0 * 0.9) * 0.16e-6 * 180e6 / 1856.0 / (1.061 + 0.04 + 0.01);
     for (a, b) in [(1.0, 0.5), (0.5, 1.0)] {
         let [with, without] =
             [params, ideal].map(|params| current(params, &driven(a, b), &TILE).mean_a);

@@ -57,6 +57,11 @@ pub const BROKEN_BOARDS: &[BrokenBoard] = &[
         break_it: |board| board.defects.comparator.cold_dead = true,
     },
     BrokenBoard {
+        name: "side-stuck",
+        what: "the microcontroller's output PB2 for the side of the comparator's test is destroyed and stays low",
+        break_it: |board| board.defects.comparator.side_stuck = Some(false),
+    },
+    BrokenBoard {
         name: "latch-not-set",
         what: "the latch of the comparator is never set",
         break_it: |board| board.defects.comparator.latch = LatchDefect::StuckClear,

@@ -75,9 +75,12 @@ impl Board {
 
     fn sound(seed: Option<u64>) -> Self {
         let mut params = Params::nominal();
+        let mut chip = ChipState::default();
         let wiring = match seed {
             Some(seed) => {
                 parameters::draw(&mut params, seed);
+                // Each drawn board has a chip of its own.
+                [chip.unique_id[1], chip.unique_id[2]] = [(seed >> 32) as u32, seed as u32];
                 Wiring::drawn(seed)
             }
             None => Wiring::NOMINAL,
@@ -85,7 +88,7 @@ impl Board {
         Self {
             params,
             defects: Defects::default(),
-            chip: ChipState::default(),
+            chip,
             wiring,
             stop_is_bypassed: false,
             force_is_reversed: false,

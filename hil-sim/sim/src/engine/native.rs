@@ -63,6 +63,8 @@ pub struct NativeDevice<const FINGERS: usize> {
     incoming: VecDeque<(u64, u8)>,
     outgoing: Vec<u8>,
     pwm_period_steps: u16,
+    /// Level that the board drives on the line that selects the side of the comparators' tests.
+    side_is_high: bool,
     /// Time for which no tick has run, while the outputs keep their state.
     hung_ms: Option<u64>,
     resets: Vec<DeviceReset>,
@@ -126,11 +128,12 @@ impl Finger {
         self.filled += count;
     }
 
-    /// The samples of the tick whose scans are complete, with the scatter of the thermistors if the device needs it.
-    fn samples(&mut self, emergency_stop: bool, needs_scatter: bool) -> Samples {
+    /// The samples of the tick whose scans are complete, with the scatter of the thermistors if the device needs it, and with
+    /// the inputs that all fingers share.
+    fn samples(&mut self, shared: DigitalInputs, needs_scatter: bool) -> Samples {
         let inputs = DigitalInputs {
             bridge_fault: self.fault,
-            emergency_stop,
+            ..shared
         };
         self.fault = self.world.bridge_fault();
         Samples::from_scans(&self.scans, inputs, needs_scatter)
@@ -191,6 +194,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
             incoming: VecDeque::new(),
             outgoing: Vec::new(),
             pwm_period_steps,
+            side_is_high: false,
             hung_ms: None,
             resets: Vec::new(),
             stored: None,
@@ -204,12 +208,23 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
     /// Runs the tick of a finger, at this time.
     fn tick(&mut self, index: FingerIndex<FINGERS>, at_ns: u64) {
         self.execute_received_lines(at_ns);
-        // One button for all fingers.
-        let emergency_stop = (self.fingers.iter()).any(|finger| finger.world.emergency_stop());
+        let mut worlds = self.fingers.iter().map(|finger| &finger.world);
+        let shared = DigitalInputs {
+            emergency_stop: worlds.clone().any(World::emergency_stop),
+            comparator_side_differs: worlds
+                .find_map(World::side_stuck)
+                .is_some_and(|level| level != self.side_is_high),
+            ..DigitalInputs::default()
+        };
         let finger = &mut self.fingers[index.index()];
         let needs_scatter = self.device.finger_needs_scatter(index);
-        let samples = finger.samples(emergency_stop, needs_scatter);
-        finger.set_outputs(self.device.step_finger(index, &samples));
+        let samples = finger.samples(shared, needs_scatter);
+        let outputs = self.device.step_finger(index, &samples);
+        match outputs.comparator_test {
+            ComparatorTest::None => {}
+            test => self.side_is_high = test == ComparatorTest::Cold,
+        }
+        finger.set_outputs(outputs);
         if let Some(telemetry) = self.device.finger_telemetry_if_due(index) {
             self.send_line(&wrap_as_telemetry_line(telemetry));
         }
@@ -222,6 +237,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
             let board = &mut self.handler.board;
             board.brown_out_level = 3_u8.saturating_sub(chip.brown_out_code);
             board.clock_is_external = chip.external_clock;
+            board.unique_id = chip.unique_id;
         }
     }
 
@@ -259,6 +275,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         self.read_chip();
         self.reader = LineReader::new();
         self.hung_ms = None;
+        self.side_is_high = false;
         for finger in &mut self.fingers {
             (finger.fault, finger.outputs) = (false, OFF);
         }

@@ -92,7 +92,7 @@ pub fn run<H: FiveFingerEngine>(
 ) -> Result<[Outcome; FINGERS], RunError<H::Stop>> {
     let settings: Vec<_> = (scenes
         .iter()
-        .map(commissioning::settings_for_scene)
+        .map(|scene| commissioning::settings_for_scene(&scene.on_five_fingers()))
         .collect::<Result<_, _>>())
     .map_err(RunError::Commission)?;
     let began = Instant::now();

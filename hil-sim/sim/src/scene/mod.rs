@@ -19,6 +19,8 @@ use contact_model::reference::{Contact, interface_temperature};
 pub use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
+use thermal_device::{PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_STEPS_PER_SECOND};
+use thermal_plant::bridge::BridgeParams;
 use thermal_plant::finger::FingerParams;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::parameters::FingerDraw;
@@ -228,6 +230,17 @@ impl Scene {
             seed: self.seed,
             params: self.params.clone(),
         }
+    }
+
+    /// This scene on a device for five fingers, whose PWM has a frequency of its own; a frequency that the scene gives stays.
+    #[must_use]
+    pub fn on_five_fingers(&self) -> Self {
+        let mut scene = self.clone();
+        let pwm_hz = &mut scene.params.bridge.pwm_hz;
+        if *pwm_hz == BridgeParams::NOMINAL.pwm_hz {
+            *pwm_hz = f64::from(PWM_STEPS_PER_SECOND) / f64::from(PWM_PERIOD_STEPS_OF_FIVE_FINGERS);
+        }
+        scene
     }
 
     /// Settling time before time zero, ms.

@@ -154,6 +154,7 @@ fn chip(source: &Source<'_>, device: &file::Device) -> Result<ChipState, SceneEr
             file::FlashTiming::Unaccelerated => FlashTiming::Unaccelerated,
         },
         strict: device.strict,
+        ..nominal
     })
 }
 

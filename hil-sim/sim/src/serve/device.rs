@@ -39,7 +39,7 @@ pub fn read_scene(path: Option<&Path>) -> Result<Scene, SceneError> {
 pub fn scenes_of_five_fingers(scene: &Scene) -> [Scene; FINGERS] {
     std::array::from_fn(|finger| Scene {
         seed: scene.seed.wrapping_add(finger as u64),
-        ..scene.clone()
+        ..scene.on_five_fingers()
     })
 }
 

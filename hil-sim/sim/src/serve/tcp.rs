@@ -2,7 +2,7 @@
 
 use std::io::{ErrorKind, Write as _};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::ClientLine;
 use super::client::{IncomingBytes, OutgoingBytes};
@@ -30,17 +30,32 @@ pub enum TcpLineError {
     },
 }
 
+/// Time in which a client that has closed its writing side still receives, as the answers to its last lines.
+const LAST_ANSWERS: Duration = Duration::from_millis(500);
+
 /// A TCP port with one client at a time. A second one gets a line that says so, and its connection ends.
+///
+/// A client that has closed its writing side, as one that vanishes does too, is a client no more and holds up no other one.
+/// The device executes what it has sent, and the answers of the next half second are sent to it.
 #[derive(Debug)]
 pub struct TcpLine {
     listener: TcpListener,
-    client: Option<(TcpStream, SocketAddr, OutgoingBytes)>,
+    client: Option<Client>,
     /// Clients so far.
     clients: u64,
     incoming: IncomingBytes,
     /// The client that was refused last. Its connection is open until the next one is refused: an early end could take the
     /// line away before the client has read it.
     refused: Option<TcpStream>,
+}
+
+#[derive(Debug)]
+struct Client {
+    stream: TcpStream,
+    peer: SocketAddr,
+    outgoing: OutgoingBytes,
+    /// When its writing side was found closed.
+    ended: Option<Instant>,
 }
 
 impl TcpLine {
@@ -80,15 +95,22 @@ impl TcpLine {
 
     fn accept(&mut self, mut stream: TcpStream, peer: SocketAddr) -> std::io::Result<()> {
         stream.set_nonblocking(true)?;
-        if let Some((_, first, _)) = &self.client {
-            let line =
-                format!("err busy: the client {first} is connected, and there is one at a time\n");
+        if let Some(first) = self.client.as_ref().filter(|client| client.ended.is_none()) {
+            let line = format!(
+                "err busy: the client {} is connected, and there is one at a time\n",
+                first.peer
+            );
             stream.write_all(line.as_bytes())?;
             stream.shutdown(Shutdown::Write)?;
             self.refused = Some(stream);
         } else {
             stream.set_nodelay(true)?;
-            self.client = Some((stream, peer, OutgoingBytes::default()));
+            self.client = Some(Client {
+                stream,
+                peer,
+                outgoing: OutgoingBytes::default(),
+                ended: None,
+            });
             self.clients += 1;
         }
         Ok(())
@@ -98,12 +120,14 @@ impl TcpLine {
 impl ClientLine for TcpLine {
     fn poll(&mut self) -> Option<u64> {
         // First, so that a client that comes right after another one has gone is accepted.
-        if let Some((stream, _, outgoing)) = &mut self.client {
-            outgoing.flush(stream);
-            if !self.incoming.receive(stream) {
-                self.client = None;
+        if let Some(client) = &mut self.client {
+            client.outgoing.flush(&mut client.stream);
+            if client.ended.is_none() && !self.incoming.receive(&mut client.stream) {
+                client.ended = Some(Instant::now());
             }
         }
+        self.client
+            .take_if(|client| (client.ended).is_some_and(|at| at.elapsed() > LAST_ANSWERS));
         loop {
             match self.listener.accept() {
                 // A client that has gone already needs no answer.
@@ -112,7 +136,10 @@ impl ClientLine for TcpLine {
                 Err(_) => break,
             }
         }
-        self.client.is_some().then_some(self.clients)
+        let client = self.client.as_ref();
+        client
+            .is_some_and(|client| client.ended.is_none())
+            .then_some(self.clients)
     }
 
     fn read(&mut self, limit: usize) -> Vec<u8> {
@@ -121,7 +148,7 @@ impl ClientLine for TcpLine {
 
     fn write(&mut self, bytes: &[u8], patience: Duration) -> usize {
         match &mut self.client {
-            Some((stream, _, outgoing)) => outgoing.send(stream, bytes, patience),
+            Some(client) => client.outgoing.send(&mut client.stream, bytes, patience),
             None => 0,
         }
     }

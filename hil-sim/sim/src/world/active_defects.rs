@@ -66,6 +66,7 @@ impl ActiveDefects {
             FaultKind::WindowDead => (comparator.hot_dead, comparator.cold_dead) = (true, true),
             FaultKind::WindowHotDead => comparator.hot_dead = true,
             FaultKind::WindowColdDead => comparator.cold_dead = true,
+            FaultKind::SideStuck => comparator.side_stuck = Some(value >= 0.5),
             FaultKind::LadderShift => comparator.ladder_shift_k += value,
             FaultKind::SwitchShorted => supply.switch = SwitchDefect::Shorted,
             FaultKind::SwitchOpen => supply.switch = SwitchDefect::Open,

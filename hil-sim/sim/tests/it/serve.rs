@@ -362,6 +362,23 @@ fn a_second_client_is_told_so_and_may_come_when_the_first_has_gone() {
 }
 
 #[test]
+fn a_client_that_has_closed_its_writing_side_gets_its_answers_and_holds_up_no_other_one() {
+    let served = Served::new();
+    for _ in 0..20 {
+        let mut client = served.connect();
+        client.send(b"id\nlaw\n");
+        let shut = client.0.get_ref().shutdown(std::net::Shutdown::Write);
+        shut.expect("a connection");
+        let answers = [client.answer(), client.answer()];
+        assert!(answers[0].starts_with(IDENTITY), "{answers:?}");
+        assert_eq!(answers[1], "ok law=model");
+        // Its connection is open; the next client is not refused.
+        assert!(served.connect().query("id").starts_with(IDENTITY));
+        assert_eq!(client.line(), "", "the connection has ended");
+    }
+}
+
+#[test]
 fn only_addresses_of_this_machine_are_listened_on() {
     let refusal = |address| match TcpLine::listen(address) {
         Ok(line) => panic!("{line:?}"),

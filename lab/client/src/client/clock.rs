@@ -11,6 +11,9 @@
 //! ```
 //!
 //! A delay that all lines have cannot be seen from one end: it stays in the offset, and is not part of the error.
+//!
+//! Without checksums a damaged digit may give a line a wrong tick. A line whose tick does not follow from the one before
+//! counts only if the next line agrees with it, as those of a device that has restarted do.
 
 use std::time::Duration;
 
@@ -19,8 +22,11 @@ const TICK_S: f64 = thermal_settings::TICK_S;
 /// Length of a span at first, s, and number of spans that are kept; then two become one of twice the length.
 const SPAN_S: f64 = 0.5;
 const SPANS_MAX: usize = 64;
-/// A tick that lies further back than this is of a device that has restarted; telemetry of several fingers may differ by less.
-const BACK_MAX_TICKS: u32 = 200;
+/// By how much a tick may differ from what has passed since the latest one: lines are late, and those of several fingers
+/// overtake each other.
+const DIFFERENCE_MAX_TICKS: f64 = 200.0;
+/// By how much the rates of two clocks may differ. The device's internal oscillator has 1 %.
+const RATE_TOLERANCE: f64 = 0.03;
 
 /// Estimate of when ticks happen by the link's clock. It begins anew when the device restarts.
 #[derive(Clone, Debug)]
@@ -28,11 +34,35 @@ pub struct DeviceClock {
     /// Restarts of the device that were seen.
     restarts: u32,
     /// The latest tick, and the ticks before it that its 32 bits do not count.
-    latest: Option<u32>,
+    latest: Option<Arrival>,
     wrapped: u64,
+    /// The last line, if its tick does not follow from the latest one.
+    doubted: Option<Arrival>,
     span_s: f64,
     /// The earliest arrival of each span: tick time, s, and how much later it arrived, s.
     minima: Vec<(f64, f64)>,
+}
+
+/// A tick and when its line arrived.
+#[derive(Clone, Copy, Debug)]
+struct Arrival {
+    tick: u32,
+    at: Duration,
+}
+
+impl Arrival {
+    /// Ticks from an earlier arrival to this one; negative if they go back.
+    const fn ticks_since(self, before: Self) -> i32 {
+        self.tick.wrapping_sub(before.tick).cast_signed()
+    }
+
+    /// Whether one run of the device can have sent both.
+    fn follows(self, before: Self) -> bool {
+        let passed = self.at.saturating_sub(before.at).as_secs_f64() / TICK_S;
+        let ticks = f64::from(self.ticks_since(before));
+        (-DIFFERENCE_MAX_TICKS..=passed * (1.0 + RATE_TOLERANCE) + DIFFERENCE_MAX_TICKS)
+            .contains(&ticks)
+    }
 }
 
 /// When a tick happened.
@@ -52,6 +82,7 @@ impl Default for DeviceClock {
             restarts: 0,
             latest: None,
             wrapped: 0,
+            doubted: None,
             span_s: SPAN_S,
             minima: Vec::new(),
         }
@@ -75,19 +106,34 @@ impl DeviceClock {
 
     /// Takes note of a line that names a tick and arrived at a time of the link's clock.
     pub fn observe(&mut self, tick: u32, at: Duration) {
-        if let Some(latest) = self.latest {
-            let back = latest.wrapping_sub(tick);
-            if back > BACK_MAX_TICKS && back <= u32::MAX / 2 {
-                self.restart();
-            } else if tick < latest && back > u32::MAX / 2 {
+        let line = Arrival { tick, at };
+        if let Some(latest) = self.latest.filter(|latest| !line.follows(*latest)) {
+            let doubted = self.doubted.replace(line);
+            let Some(first) = doubted.filter(|first| line.follows(*first)) else {
+                return;
+            };
+            // Ticks that jump ahead are of no restart: those before were wrong.
+            let restarts = self.restarts + u32::from(line.ticks_since(latest) < 0);
+            *self = Self {
+                restarts,
+                ..Self::default()
+            };
+            self.add(first);
+        }
+        self.doubted = None;
+        self.add(line);
+    }
+
+    fn add(&mut self, line: Arrival) {
+        let Arrival { tick, at } = line;
+        let ahead = self.latest.is_none_or(|latest| {
+            if tick < latest.tick && line.ticks_since(latest) > 0 {
                 self.wrapped += 1 << 32;
             }
-        }
-        if self
-            .latest
-            .is_none_or(|latest| tick.wrapping_sub(latest) <= u32::MAX / 2)
-        {
-            self.latest = Some(tick);
+            line.ticks_since(latest) >= 0
+        });
+        if ahead {
+            self.latest = Some(line);
         }
         let tick_s = self.tick_s(tick);
         let late_s = at.as_secs_f64() - tick_s;
@@ -124,7 +170,7 @@ impl DeviceClock {
 
     fn tick_s(&self, tick: u32) -> f64 {
         let after_wrap = self.latest.is_some_and(|latest| {
-            tick > latest && tick.wrapping_sub(latest) > u32::MAX / 2 && self.wrapped > 0
+            tick > latest.tick && tick.wrapping_sub(latest.tick) > u32::MAX / 2 && self.wrapped > 0
         });
         let wrapped = self.wrapped - if after_wrap { 1 << 32 } else { 0 };
         (wrapped + u64::from(tick)) as f64 * TICK_S

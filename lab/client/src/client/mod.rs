@@ -6,7 +6,7 @@
 mod clock;
 mod error;
 mod fields;
-mod order;
+mod plain_command;
 mod query;
 mod reply;
 mod streams;
@@ -14,6 +14,7 @@ mod telemetry;
 
 use std::collections::VecDeque;
 use std::fmt;
+use std::hash::{BuildHasher, RandomState};
 use std::time::Duration;
 
 use thermal_protocol::{LINE_MAX_BYTES, line_checksum, strip_checksum};
@@ -24,7 +25,7 @@ use streams::TelemetryStreams;
 pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
 pub use fields::Fields;
-pub use order::{Order, THERMISTORS, thermistor, thermistor_word, upload};
+pub use plain_command::{PlainCommand, THERMISTORS, thermistor, thermistor_word, upload};
 pub use query::{
     Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryIdentity, QueryLaw,
     QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState, TuneResult,
@@ -78,7 +79,8 @@ pub struct Client<L> {
     checksums: bool,
     /// Whether an answer may still come that nobody waits for.
     out_of_step: bool,
-    synchronizations: u32,
+    /// Number in the last line that synchronized answers with lines.
+    synchronization: u32,
 }
 
 impl<L: Link> Client<L> {
@@ -93,7 +95,8 @@ impl<L: Link> Client<L> {
             counts: LineCounts::default(),
             checksums: false,
             out_of_step: false,
-            synchronizations: 0,
+            // The standard library's hashers have random keys, others for each client and each process.
+            synchronization: RandomState::new().hash_one(()) as u32,
         }
     }
 
@@ -250,15 +253,16 @@ impl<L: Link> Client<L> {
     }
 
     /// Makes sure that the next answer is that of the next line. A line is sent whose answer, an error, repeats a word that
-    /// no other answer has; everything before that answer is discarded.
+    /// no other answer has, not even to an earlier client of the device; everything before that answer is discarded. The word
+    /// has always the same length, so that a simulated device answers after the same time, and is as long as an error repeats.
     fn synchronize(&mut self) -> Result<(), ClientError> {
         self.out_of_step = true;
         if self.checksums {
             // A device that has restarted meanwhile has forgotten it.
             self.transmit("checksum on")?;
         }
-        self.synchronizations += 1;
-        let line = format!("synchronize-{}", self.synchronizations);
+        self.synchronization = self.synchronization.wrapping_add(1);
+        let line = format!("synchronize-{:08x}", self.synchronization);
         self.transmit(&line)?;
         while !self.answer(&line)?.contains(&format!("'{line}'")) {}
         self.out_of_step = false;

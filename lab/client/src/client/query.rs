@@ -7,7 +7,7 @@ use thermal_device::control::Law;
 use thermal_device::safety::ThermistorId;
 
 use super::fields::in_table;
-use super::order::thermistor_word;
+use super::plain_command::thermistor_word;
 use super::reply::{
     BoardReport, CalibrationFit, Cause, IdentifiedTile, Identity, RawReadings, SelfTestReport,
     SettingsLine, Status,

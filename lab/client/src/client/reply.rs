@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 use thermal_commissioning::{SessionRequest, Setting};
 use thermal_device::StateName;
 use thermal_device::reference::ContactModel;
-use thermal_device::safety::{Fault, SelfTestResult};
+use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_protocol::{CONTACT_MODEL_WORDS, Request};
 use thermal_settings::Settings;
 
@@ -248,6 +248,9 @@ pub struct SelfTestReport {
     pub cold_supply_v: Option<f64>,
     /// The same at the cold side.
     pub cold_release_ms: Option<f64>,
+    /// What both have shown of the line that selects the side; `None` also from firmware that does not read it back.
+    #[serde(serialize_with = "side_line_word")]
+    pub side: Option<SideLine>,
     /// Sensed supply after both, V.
     pub supply_v: Option<f64>,
     /// Current of the cooling pulse, A.
@@ -273,6 +276,23 @@ fn self_test_result(word: &str) -> Option<SelfTestResult> {
     known.or_else(|| fault(word).map(SelfTestResult::Failed))
 }
 
+/// What the answer says of the line that selects the side of the comparator's tests.
+fn side_line(word: Option<&str>) -> Option<Option<SideLine>> {
+    let Some(word) = word.filter(|word| *word != "-") else {
+        return Some(None);
+    };
+    let known = [SideLine::Follows, SideLine::StuckLow, SideLine::StuckHigh];
+    let known = known.into_iter().find(|known| known.name() == word);
+    known.map(Some)
+}
+
+fn side_line_word<S: Serializer>(
+    side: &Option<SideLine>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    side.map(SideLine::name).serialize(serializer)
+}
+
 fn result_word<S: Serializer>(result: &SelfTestResult, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(result.name())
 }
@@ -286,6 +306,7 @@ impl SelfTestReport {
             cold_cut_ms: reply.number_or_unknown("cold_cut_ms")?,
             cold_supply_v: reply.number_or_unknown("cold_supply_v")?,
             cold_release_ms: reply.number_or_unknown("cold_release_ms")?,
+            side: side_line(reply.word("side"))?,
             supply_v: reply.number_or_unknown("supply_v")?,
             cool_a: reply.number_or_unknown("cool_a")?,
             warm_a: reply.number_or_unknown("warm_a")?,
@@ -359,6 +380,8 @@ pub struct BoardReport {
     pub rx_noise: u32,
     /// Lines to the host that were dropped.
     pub tx_dropped: u32,
+    /// Unique identifier of the microcontroller, 24 hexadecimal digits; `None` from firmware that does not report it.
+    pub uid: Option<String>,
 }
 
 impl BoardReport {
@@ -381,6 +404,7 @@ impl BoardReport {
             rx_framing: reply.number("rx_framing")?,
             rx_noise: reply.number("rx_noise")?,
             tx_dropped: reply.number("tx_dropped")?,
+            uid: reply.word("uid").map(Into::into),
         })
     }
 }

@@ -11,7 +11,7 @@ use super::{
     CalibrationPoint, CommissionError, CommissioningEvent, CommissioningRecord, Surroundings,
 };
 use crate::client::{
-    Calibrate, Client, ClientError, CountSettings, IdentifiedTile, Order, QueryMargins,
+    Calibrate, Client, ClientError, CountSettings, IdentifiedTile, PlainCommand, QueryMargins,
     QuerySettings, QueryState, THERMISTORS, TuneResult, thermistor_word,
 };
 use crate::link::Link;
@@ -66,7 +66,7 @@ pub fn commission<L: Link>(
     let done = procedure.run();
     if done.is_err() {
         // The reason why it failed is reported; a link that is gone fails here, too.
-        let _ignored = client.ask_finger(finger, &Order::Abort);
+        let _ignored = client.ask_finger(finger, &PlainCommand::Abort);
     }
     done
 }
@@ -113,10 +113,10 @@ pub fn clear_calibration<L: Link>(
     client: &mut Client<L>,
     finger: Option<u8>,
 ) -> Result<(), ClientError> {
-    client.ask_finger(finger, &Order::Abort)?;
+    client.ask_finger(finger, &PlainCommand::Abort)?;
     THERMISTORS
         .into_iter()
-        .try_for_each(|one| client.ask_finger(finger, &Order::ClearCalibration(one)))
+        .try_for_each(|one| client.ask_finger(finger, &PlainCommand::ClearCalibration(one)))
 }
 
 /// All settings of a device or of one of its fingers, as lines.
@@ -141,7 +141,7 @@ pub fn settings<L: Link>(
 /// # Errors
 /// The device refuses, trips, or is not armed in time.
 pub fn arm<L: Link>(client: &mut Client<L>, finger: Option<u8>) -> Result<(), CommissionError> {
-    client.ask_finger(finger, &Order::Arm)?;
+    client.ask_finger(finger, &PlainCommand::Arm)?;
     for _ in 0..SELF_TEST_MS / POLL_MS {
         match client.ask_finger(finger, &QueryState)?.state {
             StateName::Armed => return Ok(()),
@@ -197,7 +197,7 @@ impl<L: Link> Procedure<'_, L> {
         arm(self.client, self.finger)?;
         self.start_step("tune again, with calibrated sensors");
         let tile = self.tune()?;
-        self.client.ask_finger(self.finger, &Order::Abort)?;
+        self.client.ask_finger(self.finger, &PlainCommand::Abort)?;
         self.start_step("calibrate the skin's thermistor in a bath");
         self.calibrate_in_baths(ThermistorId::Skin, SKIN_C)?;
         self.start_step("calibrate the room's thermistor in a bath");
@@ -206,7 +206,7 @@ impl<L: Link> Procedure<'_, L> {
         self.calibrate_in_baths(ThermistorId::Sink, SINK_C)?;
         self.start_step("save what was found");
         let settings = settings(self.client, self.finger)?;
-        self.client.ask(&Order::Store(StorageOrder::Save))?;
+        self.client.ask(&PlainCommand::Store(StorageOrder::Save))?;
         expect_settings(self.client, self.finger, &settings)?;
         Ok(CommissioningRecord {
             settings,
@@ -226,7 +226,7 @@ impl<L: Link> Procedure<'_, L> {
 
     /// Makes the device identify its tile.
     fn tune(&mut self) -> Result<IdentifiedTile, CommissionError> {
-        self.client.ask_finger(self.finger, &Order::Tune)?;
+        self.client.ask_finger(self.finger, &PlainCommand::Tune)?;
         for _ in 0..TUNE_S {
             self.wait_ms(1000)?;
             match self.client.ask_finger(self.finger, &TuneResult) {
@@ -250,7 +250,8 @@ impl<L: Link> Procedure<'_, L> {
         let (mut points, mut check_points, mut why) = (0, 0, String::new());
         for hold_c in hold_temperatures_c() {
             let distance_k = (hold_c - self.reference_c(ThermistorId::Display)?).abs();
-            self.client.ask_finger(self.finger, &Order::Hold(hold_c))?;
+            self.client
+                .ask_finger(self.finger, &PlainCommand::Hold(hold_c))?;
             self.surroundings
                 .notice(&CommissioningEvent::HoldStarted(hold_c));
             self.wait_ms((distance_k * MS_PER_DEGREE) as u64 + SETTLE_MS)?;

@@ -5,19 +5,19 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use thermal_client::client::{
-    BoardReport, Client, ClientError, Order, QueryBoard, QueryCause, QueryIdentity, QueryRaw,
-    QuerySelfTest, QueryState,
+    BoardReport, Client, ClientError, PlainCommand, QueryBoard, QueryCause, QueryIdentity,
+    QueryRaw, QuerySelfTest, QueryState,
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
 use thermal_device::StateName;
-use thermal_device::safety::{Fault, SelfTestResult};
+use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 
 use crate::fake_device::{FakeDevice, answers, knows};
 
 #[test]
 fn a_refusal_has_the_devices_text() {
     let mut client = knows(&[("start", "err start needs arm first")]);
-    let error = client.ask(&Order::Start).unwrap_err();
+    let error = client.ask(&PlainCommand::Start).unwrap_err();
     assert_eq!(error.refusal(), Some("start needs arm first"));
     assert_eq!(
         error.to_string(),
@@ -28,7 +28,7 @@ fn a_refusal_has_the_devices_text() {
 #[test]
 fn a_device_that_does_not_answer_is_given_up_after_two_seconds() {
     let mut client = FakeDevice::client(|_| Vec::new());
-    let error = client.ask(&Order::Arm).unwrap_err();
+    let error = client.ask(&PlainCommand::Arm).unwrap_err();
     assert!(matches!(error, ClientError::TimedOut { .. }), "{error}");
     assert_eq!(
         error.to_string(),
@@ -52,10 +52,44 @@ fn a_late_answer_is_not_taken_for_that_of_the_next_line() {
     assert_eq!(client.query("finger").unwrap(), "ok finger=mean");
 }
 
+/// A client of a device that may be running.
+fn attached(script: impl FnMut(&str) -> Vec<(u64, String)> + 'static) -> Client<FakeDevice> {
+    Client::attach(FakeDevice::client(script).into_link()).unwrap()
+}
+
+/// The device answers an earlier client's lines after the next one has come.
+#[test]
+fn answers_to_an_earlier_client_are_not_taken_for_its_own() {
+    let unknown = |line: &str| format!("err unknown command '{line}'; known: id");
+    let mut earlier = attached(move |line| answers(&unknown(line)));
+    let (_, word) = earlier.link().sent.pop().unwrap();
+    let mut client = attached(move |line| match line {
+        "" => vec![(1, unknown(&word)), (1, "ok law=model".into())],
+        "law" => answers("ok law=pi"),
+        other => answers(&unknown(other)),
+    });
+    assert_eq!(client.query("law").unwrap(), "ok law=pi");
+}
+
+/// An error repeats 20 characters of a word, and the same time passes for each client of a simulated device.
+#[test]
+fn the_word_that_synchronizes_has_20_characters_and_is_another_each_time() {
+    let mut words = Vec::new();
+    for _ in 0..3 {
+        let mut client = attached(|line| answers(&format!("err unknown command '{line}'")));
+        let (_, word) = client.link().sent.pop().unwrap();
+        assert_eq!(word.len(), 20, "{word}");
+        assert!(!words.contains(&word), "{words:?}");
+        words.push(word);
+    }
+}
+
 #[test]
 fn what_is_no_answer_is_shown() {
     let garbage = |_: &str| answers("\u{fffd}\u{fffd}ok?\u{1}");
-    let error = FakeDevice::client(garbage).ask(&Order::Arm).unwrap_err();
+    let error = FakeDevice::client(garbage)
+        .ask(&PlainCommand::Arm)
+        .unwrap_err();
     assert!(matches!(error, ClientError::NotUnderstood { .. }));
     assert!(error.to_string().contains("ok?"), "{error}");
     // An answer of another form.
@@ -66,7 +100,7 @@ fn what_is_no_answer_is_shown() {
     );
     let mut client = knows(&[("arm", "ok 7")]);
     assert!(matches!(
-        client.ask(&Order::Arm).unwrap_err(),
+        client.ask(&PlainCommand::Arm).unwrap_err(),
         ClientError::NotUnderstood { .. }
     ));
 }
@@ -78,7 +112,7 @@ fn garbage_before_an_answer_is_counted_and_skipped() {
             .map(|line| (1, line.to_owned()))
             .into()
     });
-    client.ask(&Order::Arm).unwrap();
+    client.ask(&PlainCommand::Arm).unwrap();
     assert_eq!(client.counts().damaged, 3);
 }
 
@@ -90,10 +124,10 @@ fn the_answer_of_another_finger_is_not_taken() {
         ("@1 law", "@1 err tripped by dose; clear it first"),
         ("abort", "@3 err busy"),
     ]);
-    client.ask_finger(Some(2), &Order::Arm).unwrap();
-    assert!(client.ask_finger(Some(3), &Order::Arm).is_err());
+    client.ask_finger(Some(2), &PlainCommand::Arm).unwrap();
+    assert!(client.ask_finger(Some(3), &PlainCommand::Arm).is_err());
     assert_eq!(
-        client.ask(&Order::Abort).unwrap_err().refusal(),
+        client.ask(&PlainCommand::Abort).unwrap_err().refusal(),
         Some("busy")
     );
 }
@@ -114,7 +148,7 @@ fn a_link_that_vanishes_is_an_error_at_once_and_the_reason_is_given() {
     let mut client = FakeDevice::client(|_| Vec::new());
     client.link().vanishes_at = Some(Duration::from_millis(300));
     let gone = ClientError::Link(LinkError::Gone("unplugged".into()));
-    assert_eq!(client.ask(&Order::Arm).unwrap_err(), gone);
+    assert_eq!(client.ask(&PlainCommand::Arm).unwrap_err(), gone);
     assert!(client.wait(Duration::from_secs(1)).is_err());
     assert!(client.next_telemetry(Duration::from_secs(1)).is_err());
 }
@@ -181,19 +215,21 @@ fn with_checksums_damaged_answers_are_not_taken() {
         "law" => answers("ok law=pi"),
         other => answers(&format!("err unknown command '{other}'")),
     });
-    client.ask(&Order::Checksum(true)).unwrap();
+    client.ask(&PlainCommand::Checksum(true)).unwrap();
     assert_eq!(client.query("law").unwrap(), "ok law=model");
     assert_eq!(client.counts().damaged, 2);
-    client.ask(&Order::Checksum(false)).unwrap();
+    client.ask(&PlainCommand::Checksum(false)).unwrap();
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
 }
 
 #[test]
 fn abort_is_sent_to_a_device_whose_answers_do_not_come_through() {
     let mut client = FakeDevice::client(|_| Vec::new());
-    client.ask(&Order::Hold(41.0)).unwrap_err();
-    client.ask(&Order::Abort).unwrap_err();
-    client.ask_finger(Some(2), &Order::Abort).unwrap_err();
+    client.ask(&PlainCommand::Hold(41.0)).unwrap_err();
+    client.ask(&PlainCommand::Abort).unwrap_err();
+    client
+        .ask_finger(Some(2), &PlainCommand::Abort)
+        .unwrap_err();
     let sent = &client.link().sent;
     for abort in ["abort", "@2 abort"] {
         assert!(sent.iter().any(|(_, line)| line == abort), "{sent:?}");
@@ -220,7 +256,7 @@ fn a_device_that_restarts_while_checksums_are_on_is_reached_again() {
             answer
         })
     });
-    client.ask(&Order::Checksum(true)).unwrap();
+    client.ask(&PlainCommand::Checksum(true)).unwrap();
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
     // Restarts before this line.
     assert!(client.query("law").is_err());
@@ -244,7 +280,7 @@ fn the_answers_for_diagnosis_are_read() {
         ),
         (
             "board",
-            "ok bor=3 watchdogs=running clock=hse pwm_lock=1 reset=power rx_overruns=0 rx_framing=1 rx_noise=2 tx_dropped=3",
+            "ok bor=3 watchdogs=running clock=hse pwm_lock=1 reset=power rx_overruns=0 rx_framing=1 rx_noise=2 tx_dropped=3 uid=00230041513250132032364E",
         ),
         (
             "cause",
@@ -260,6 +296,13 @@ fn the_answers_for_diagnosis_are_read() {
     let test = client.ask(&QuerySelfTest).unwrap();
     assert_eq!(test.result, SelfTestResult::Failed(Fault::Comparator));
     assert_eq!((test.hot_supply_v, test.cold_cut_ms), (Some(0.42), None));
+    assert_eq!(test.side, None, "firmware that does not report it");
+    let mut newer = knows(&[(
+        "self-test",
+        "ok hot_cut_ms=1 hot_supply_v=0.42 hot_release_ms=2 cold_cut_ms=- cold_supply_v=- cold_release_ms=- side=low supply_v=11.9 cool_a=- warm_a=- display_k=- check_k=- result=comparator",
+    )]);
+    let test = newer.ask(&QuerySelfTest).unwrap();
+    assert_eq!(test.side, Some(SideLine::StuckLow));
     let raw = client.ask(&QueryRaw).unwrap();
     assert_eq!((raw.display, raw.supply), (2048.25, 2730.0));
     assert!(raw.fault_line && !raw.stop);
@@ -273,6 +316,7 @@ fn the_answers_for_diagnosis_are_read() {
         rx_framing: 1,
         rx_noise: 2,
         tx_dropped: 3,
+        uid: Some("00230041513250132032364E".into()),
     };
     assert_eq!(client.ask(&QueryBoard).unwrap(), board);
     let cause = client.ask(&QueryCause).unwrap().unwrap();

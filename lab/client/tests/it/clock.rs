@@ -61,6 +61,47 @@ fn a_restart_begins_a_new_estimate() {
     assert!((time.at_s - 41.0).abs() < 1e-3, "{time:?}");
 }
 
+/// Without checksums a damaged digit passes for a tick.
+#[test]
+fn damaged_ticks_neither_restart_the_estimate_nor_move_it() {
+    for damaged in [
+        &[200_017][..],
+        &[17],
+        &[30_517],
+        &[17, 90_517, 4_000_000_000],
+    ] {
+        let mut clock = DeviceClock::default();
+        observed(&mut clock, 1.0, 10.0, 0, 30);
+        let before = clock.time_of(30_000);
+        for (i, tick) in damaged.iter().enumerate() {
+            clock.observe(*tick, Duration::from_secs_f64(31.0 + 0.01 * i as f64));
+        }
+        assert_eq!(clock.time_of(30_000), before, "{damaged:?}");
+        for i in 0..100 {
+            let tick = 30_100 + 10 * i;
+            clock.observe(
+                tick,
+                Duration::from_secs_f64(1.0 + 1.000_01e-3 * f64::from(tick)),
+            );
+        }
+        assert_eq!(clock.restarts(), 0, "{damaged:?}");
+        let error_s = clock.time_of(31_000).unwrap().at_s - 32.000_31;
+        assert!(error_s.abs() < 1e-3, "{damaged:?}: {error_s}");
+    }
+}
+
+/// After a pause of the stream the ticks go on with the time that has passed, to the tolerance of an oscillator.
+#[test]
+fn a_stream_that_paused_for_an_hour_is_no_restart() {
+    let mut clock = DeviceClock::default();
+    observed(&mut clock, 1.0, 0.0, 0, 10);
+    let tick = 3_600_000 + 36_000;
+    clock.observe(tick, Duration::from_secs(3601));
+    assert_eq!(clock.restarts(), 0);
+    let time = clock.time_of(tick).unwrap();
+    assert!((time.at_s - 3601.0).abs() < 40.0, "{time:?}");
+}
+
 /// After 49 days.
 #[test]
 fn a_tick_that_wraps_is_no_restart() {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{Client, Order};
+use thermal_client::client::{Client, PlainCommand};
 use thermal_device::StateName;
 use thermal_device::safety::Fault;
 
@@ -21,7 +21,7 @@ fn streaming(interval_ms: u32) -> Client<FakeDevice> {
         "" => Vec::new(),
         _ => answers("ok"),
     });
-    client.ask(&Order::Stream(interval_ms)).unwrap();
+    client.ask(&PlainCommand::Stream(interval_ms)).unwrap();
     client
 }
 
@@ -89,7 +89,7 @@ fn a_client_that_waits_gives_a_sign_of_life_while_the_device_streams_and_only_th
     ]);
     client.wait(Duration::from_secs(10)).unwrap();
     assert!(client.link().blank_ms().is_empty());
-    client.ask(&Order::Stream(50)).unwrap();
+    client.ask(&PlainCommand::Stream(50)).unwrap();
     let from_ms = client.link().sent[0].0.as_millis();
     client.wait(Duration::from_secs(7)).unwrap();
     client.query("law").unwrap();
@@ -105,7 +105,7 @@ fn a_client_that_waits_gives_a_sign_of_life_while_the_device_streams_and_only_th
         last_ms = at.as_millis();
     }
     assert!(last_ms > 24_000, "{last_ms}");
-    client.ask(&Order::Stream(0)).unwrap();
+    client.ask(&PlainCommand::Stream(0)).unwrap();
     let before = client.link().blank_ms().len();
     client.wait(Duration::from_secs(10)).unwrap();
     assert_eq!(client.link().blank_ms().len(), before);

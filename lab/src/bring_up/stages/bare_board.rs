@@ -1,8 +1,8 @@
 //! Everything unpowered and unplugged: continuity, pull-downs, short circuits.
 
-use super::super::check::{Hand, Stage, StageId, Step};
+use super::super::check::{ManualStep, Stage, StageId, Step};
 use super::super::unit::Unit::Ohm;
-use super::{hand, meter};
+use super::{manual, meter};
 
 const GROUND: &str =
     "ohm meter from the point to analog ground (CN7-20); wait until the value stands still";
@@ -26,12 +26,12 @@ pub const STAGE: Stage = Stage {
     id: StageId::BareBoard,
     name: "bare-board",
     title: "Bare board: continuity, pull-downs, short circuits",
-    needs: Hand {
+    needs: ManualStep {
         say: "Everything off and unplugged.",
         lines: &[],
     },
     steps: &[
-        hand(
+        manual(
             "Everything off. Unplug the Nucleo's USB, the 12 V supply, the tile, all thermistors and the load cell; the \
              Nucleo stays on the boards. Release the emergency stop. Wait a minute, until the capacitors are empty.",
             &[],
@@ -187,7 +187,7 @@ pub const STAGE: Stage = Stage {
         )
         .blocks(StageId::Supply)
         .step(),
-        hand("Press the emergency stop.", &["press stop"]),
+        manual("Press the emergency stop.", &["press stop"]),
         meter(
             "stop-pressed",
             "emergency stop in the 12 V line, pressed",

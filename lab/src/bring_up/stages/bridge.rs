@@ -1,8 +1,8 @@
 //! The first current, through a resistor; the serial line.
 
-use super::super::check::{Hand, Reading, Routine, Stage, StageId, Value};
+use super::super::check::{ManualStep, Reading, Routine, Stage, StageId, Value};
 use super::super::unit::Unit::{Ampere, Piece, Ratio, Volt};
-use super::{hand, meter, read, routine};
+use super::{manual, meter, read, routine};
 
 /// The resistor in place of the tile, ohm.
 const LOAD_OHM: f64 = 1.5;
@@ -11,10 +11,10 @@ pub const LOAD: Stage = Stage {
     id: StageId::Load,
     name: "load",
     title: "First current: 1.5 Ω 50 W in place of the tile",
-    needs: Hand { say: "USB plugged in, then 12 V with a limit of 0.5 A, emergency stop released, load cell \
+    needs: ManualStep { say: "USB plugged in, then 12 V with a limit of 0.5 A, emergency stop released, load cell \
                  connected, 10 kΩ in place of each thermistor, nothing at the tile terminals.", lines: super::needs::ON },
     steps: &[
-        hand(
+        manual(
             "Press the emergency stop. Connect 1.5 Ω 50 W to the tile terminals P and N, and an oscilloscope across it (two \
              probes, difference; single shot, 50 ms/div). Set the current limit to 3 A. Release the emergency stop.",
             &["press stop", "fit load 1.5", "release stop"],
@@ -40,7 +40,7 @@ pub const LOAD: Stage = Stage {
             "load-ripple",
             "ripple across the load in the pulse",
             "scope load-ripple",
-            "AC coupling, 96 kHz, RMS, in the flat part of the pulse",
+            "AC coupling, 97 kHz, RMS, in the flat part of the pulse",
         )
             .range(0.0, 0.2, Volt)
             .basis("bench `edges`: 0.42 A peak to peak at half duty, 0.15 A RMS; capacitors down to 5 \
@@ -53,7 +53,7 @@ pub const LOAD: Stage = Stage {
             "mirror-ripple",
             "ripple at the current input, PC2 (CN7-35)",
             "scope mirror-ripple",
-            "AC coupling, 96 kHz, RMS, in the flat part of the pulse",
+            "AC coupling, 97 kHz, RMS, in the flat part of the pulse",
         )
             .range(0.0, 0.03, Volt)
             .basis("bench `current`: 0.0002 A by the phase of sampling; 0.03 A, 10 mV, are allowed; \
@@ -109,7 +109,7 @@ pub const LINE: Stage = Stage {
     id: StageId::Line,
     name: "line",
     title: "Losses of the serial line",
-    needs: Hand {
+    needs: ManualStep {
         say: "USB plugged in, then 12 V with a limit of 0.2 A, emergency stop pressed.",
         lines: &["press stop", "fit usb", "fit supply"],
     },

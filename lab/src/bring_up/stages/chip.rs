@@ -1,14 +1,14 @@
 //! The microcontroller: option bytes, clock, watchdogs, and its pins in reset.
 
-use super::super::check::{Hand, Reading, Routine, Stage, StageId, Step, Value};
+use super::super::check::{ManualStep, Reading, Routine, Stage, StageId, Step, Value};
 use super::super::unit::Unit::Volt;
-use super::{hand, meter, read, routine};
+use super::{manual, meter, read, routine};
 
 pub const CHIP: Stage = Stage {
     id: StageId::Chip,
     name: "chip",
     title: "Microcontroller: firmware, option bytes, clock, watchdogs, locks",
-    needs: Hand {
+    needs: ManualStep {
         say: "USB plugged in, then 12 V with a limit of 0.2 A, emergency stop pressed.",
         lines: &["press stop", "fit usb", "fit supply"],
     },
@@ -85,12 +85,12 @@ pub const RESET: Stage = Stage {
     id: StageId::Reset,
     name: "reset",
     title: "Pins of the bridge while the microcontroller is in reset",
-    needs: Hand {
+    needs: ManualStep {
         say: "USB plugged in, then 12 V with a limit of 0.2 A, emergency stop pressed.",
         lines: &["press stop", "fit usb", "fit supply"],
     },
     steps: &[
-        hand(
+        manual(
             "Hold the Nucleo's reset button (B2) during the next readings.",
             &["press reset"],
         ),
@@ -125,7 +125,7 @@ pub const RESET: Stage = Stage {
             "volt boot0",
             "BOOT0, CN7-7, is not low: its pull-down (4.7 kΩ), or VDD beside it, CN7-5",
         ),
-        hand("Release the reset button.", &["release reset"]),
+        manual("Release the reset button.", &["release reset"]),
         routine(Routine::Wait(1000)),
     ],
 };

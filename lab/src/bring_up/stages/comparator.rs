@@ -2,10 +2,10 @@
 
 use thermal_client::client::SelfTestReport;
 
-use super::super::check::{Hand, Reading, Routine, Stage, StageId, Step, Value};
+use super::super::check::{ManualStep, Reading, Routine, Stage, StageId, Step, Value};
 use super::super::unit::Unit::{Millisecond, Ohm, Ratio, Volt};
 use super::supply::line_word;
-use super::{hand, meter, read, routine};
+use super::{manual, meter, read, routine};
 
 /// nFAULT after the test line has risen, ms.
 const fn cut(
@@ -68,7 +68,7 @@ pub const LATCH: Stage = Stage {
     id: StageId::Latch,
     name: "latch",
     title: "Latch, switch and sensed supply, by the self-test; nothing at the tile terminals",
-    needs: Hand {
+    needs: ManualStep {
         say: "USB plugged in, then 12 V with a limit of 0.5 A, emergency stop released, load cell \
                  connected, 10 kΩ in place of each thermistor, nothing at the tile terminals.",
         lines: super::needs::ON,
@@ -77,6 +77,21 @@ pub const LATCH: Stage = Stage {
         // The first self-test after power-on finds the supply off, so its first test says nothing about the switch.
         routine(Routine::SelfTest),
         routine(Routine::SelfTest),
+        read(
+            "side-line",
+            "line that selects the side of the comparator's tests, read back",
+            Reading::SelfTest(|report| report.side.map(|side| Value::Word(side.name().into()))),
+        )
+        .words(&["ok"])
+        .basis("comparator.cir: PB2 alone drives it, against 3.3 kΩ")
+        .low(
+            "PB2 (CN10-22), the line that selects the side of the comparator's test, stays at this \
+                 level whatever the microcontroller drives, so one side would be tested twice and \
+                 the other never: PB2 is shorted (to ground if it is low, to 3.3 V if it is high), \
+                 or its output in the microcontroller is destroyed",
+        )
+        .blocks(StageId::Edges)
+        .step(),
         cut(
             "hot-cut",
             "comparator's test at its hot side until nFAULT falls",
@@ -168,7 +183,7 @@ pub const LATCH: Stage = Stage {
         )
         .blocks(StageId::Edges)
         .step(),
-        hand(
+        manual(
             "Hold the Nucleo's reset button (B2), and wait until the meter stands still.",
             &["press reset"],
         ),
@@ -187,7 +202,7 @@ pub const LATCH: Stage = Stage {
         )
         .blocks(StageId::Load)
         .step(),
-        hand("Release the reset button.", &["release reset"]),
+        manual("Release the reset button.", &["release reset"]),
         routine(Routine::Wait(1500)),
     ],
 };
@@ -202,10 +217,10 @@ pub const EDGES: Stage = Stage {
     name: "edges",
     title: "Comparator: each edge, with a variable resistor in place of the second display \
                  thermistor",
-    needs: Hand { say: "USB plugged in, then 12 V with a limit of 0.5 A, emergency stop released, load cell \
+    needs: ManualStep { say: "USB plugged in, then 12 V with a limit of 0.5 A, emergency stop released, load cell \
                  connected, 10 kΩ in place of each thermistor, nothing at the tile terminals.", lines: super::needs::ON },
     steps: &[
-        hand(
+        manual(
             "The second display thermistor's input is now turned up and down: use a resistance decade, or a 25 kΩ trimmer of \
              ten turns. Begin with 10 kΩ.",
             &["fit resistor check 10000"],
@@ -232,10 +247,10 @@ pub const EDGES: Stage = Stage {
                  pull-up R1 (10 kΩ) of the second display's divider wrong")
             .blocks(StageId::Load)
             .step(),
-        hand("Connect 10 kΩ again.", &["fit resistor check 10000"]),
+        manual("Connect 10 kΩ again.", &["fit resistor check 10000"]),
         routine(Routine::Wait(300)),
         routine(Routine::SelfTest),
-        hand("Short the second display thermistor's input.", &["fit resistor check 0"]),
+        manual("Short the second display thermistor's input.", &["fit resistor check 0"]),
         routine(Routine::Wait(50)),
         read(
             "check-short",
@@ -248,10 +263,10 @@ pub const EDGES: Stage = Stage {
                  block comparator")
             .blocks(StageId::Load)
             .step(),
-        hand("Connect 10 kΩ again.", &["fit resistor check 10000"]),
+        manual("Connect 10 kΩ again.", &["fit resistor check 10000"]),
         routine(Routine::Wait(300)),
         routine(Routine::SelfTest),
-        hand("Open the second display thermistor's input.", &["remove resistor check"]),
+        manual("Open the second display thermistor's input.", &["remove resistor check"]),
         routine(Routine::Wait(50)),
         read(
             "check-open",
@@ -264,7 +279,7 @@ pub const EDGES: Stage = Stage {
                  block comparator")
             .blocks(StageId::Load)
             .step(),
-        hand("Connect 10 kΩ again.", &["fit resistor check 10000"]),
+        manual("Connect 10 kΩ again.", &["fit resistor check 10000"]),
         routine(Routine::Wait(300)),
     ],
 };

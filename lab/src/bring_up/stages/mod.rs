@@ -12,7 +12,7 @@ mod sensors;
 mod supply;
 mod tile;
 
-use super::check::{Check, Expected, Hand, Reading, Routine, Stage, StageId, Step};
+use super::check::{Check, Expected, ManualStep, Reading, Routine, Stage, StageId, Step};
 use super::unit::Unit;
 
 pub use sensors::KNOWN_OHM;
@@ -35,8 +35,8 @@ pub const STAGES: [Stage; 13] = [
 ];
 
 /// Something to do by hand, as text and as lines to the surroundings.
-const fn hand(say: &'static str, lines: &'static [&'static str]) -> Step {
-    Step::Hand(Hand { say, lines })
+const fn manual(say: &'static str, lines: &'static [&'static str]) -> Step {
+    Step::Manual(ManualStep { say, lines })
 }
 
 /// What the program does with the device.

@@ -1,8 +1,8 @@
 //! Sensor inputs with known resistors in place of the thermistors; force sensor.
 
-use super::super::check::{Hand, Reading, Routine, Stage, StageId, Value};
+use super::super::check::{ManualStep, Reading, Routine, Stage, StageId, Value};
 use super::super::unit::Unit::{Count, CountPerNewton};
-use super::{hand, read, routine};
+use super::{manual, read, routine};
 
 /// The known resistors, ohm, in the order of the converter's channels: all different, so that swapped wires show.
 pub const KNOWN_OHM: [f64; 5] = [8200.0, 10e3, 12e3, 15e3, 18e3];
@@ -14,12 +14,12 @@ pub const STAGE: Stage = Stage {
     id: StageId::Sensors,
     name: "sensors",
     title: "Sensor inputs: known resistors in place of the thermistors, load cell with a weight",
-    needs: Hand {
+    needs: ManualStep {
         say: "USB plugged in, then 12 V with a limit of 0.2 A, emergency stop pressed.",
         lines: &["press stop", "fit usb", "fit supply"],
     },
     steps: &[
-        hand(
+        manual(
             "Connect resistors of 1 % or better in place of the thermistors: display 8.2 kΩ, second display 10 kΩ, sink 12 kΩ, \
              skin 15 kΩ, room 18 kΩ.",
             &[
@@ -32,7 +32,7 @@ pub const STAGE: Stage = Stage {
         ),
         routine(Routine::Wait(100)),
         routine(Routine::KnownResistors),
-        hand(
+        manual(
             "Connect the load cell, plate mounted, nothing on it. Connect 10 kΩ in place of each \
                  of the five thermistors.",
             &[
@@ -58,7 +58,7 @@ pub const STAGE: Stage = Stage {
                  wires P and N of the load cell under preload, R3 (97.6 kΩ) or R4 (10 kΩ) of block \
                  force")
             .step(),
-        hand(
+        manual(
             "Put a weight of 200 g (± 1 g) onto the middle of the plate.",
             &["fit weight 1.96133"],
         ),
@@ -90,7 +90,7 @@ pub const STAGE: Stage = Stage {
                  the load cell is not one of 10 N with 1 mV/V or 20 N with 2 mV/V")
             .blocks(StageId::Tile)
             .step(),
-        hand("Take the weight away.", &["remove weight"]),
+        manual("Take the weight away.", &["remove weight"]),
         routine(Routine::Wait(500)),
     ],
 };

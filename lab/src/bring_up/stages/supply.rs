@@ -1,22 +1,24 @@
 //! Rails, emergency stop and bridge supply.
 
-use super::super::check::{Hand, Reading, Routine, Stage, StageId, Value};
+use super::super::check::{ManualStep, Reading, Routine, Stage, StageId, Value};
 use super::super::unit::Unit::{Ampere, Ratio, Volt};
-use super::{hand, meter, read, routine};
+use super::{manual, meter, read, routine};
 
 const TO_GROUND: &str = "volt meter from the point to analog ground (CN7-20)";
 const ON_POWER_BOARD: &str = "volt meter from the point to the power board's star point";
+const LADDER: &str =
+    "the comparator's ladder R1, R2, R3 (3.4, 3.7, 3.01 kΩ) has a wrong resistor: measure each";
 
 pub const RAILS: Stage = Stage {
     id: StageId::Rails,
     name: "rails",
     title: "5 V and 3.3 V, from 12 V with a current limit, emergency stop pressed",
-    needs: Hand {
+    needs: ManualStep {
         say: "Everything off and unplugged, emergency stop pressed.",
         lines: &["press stop"],
     },
     steps: &[
-        hand(
+        manual(
             "The emergency stop stays pressed. Plug in the Nucleo's USB through the isolator (the probe gives the clock). Set a \
              laboratory supply to 12.0 V with a limit of 0.2 A, connect it to the power board, and switch it on.",
             &["press stop", "fit usb", "fit supply"],
@@ -65,8 +67,7 @@ pub const RAILS: Stage = Stage {
         )
             .range(2.08, 2.33, Volt)
             .basis("0.669 of 3.3 V, which may be 3.2 to 3.4 V; judged as a ratio below")
-            .finding("the comparator's ladder R1, R2, R3 (3.4, 3.7, 3.01 kΩ) has a wrong resistor: \
-                 measure each")
+            .finding(LADDER)
             .blocks(StageId::Latch)
             .step(),
         meter(
@@ -77,8 +78,7 @@ pub const RAILS: Stage = Stage {
         )
             .range(0.95, 1.07, Volt)
             .basis("0.306 of 3.3 V, which may be 3.2 to 3.4 V; judged as a ratio below")
-            .finding("the comparator's ladder R1, R2, R3 (3.4, 3.7, 3.01 kΩ) has a wrong resistor: \
-                 measure each")
+            .finding(LADDER)
             .blocks(StageId::Latch)
             .step(),
         read(
@@ -129,7 +129,7 @@ pub const SUPPLY: Stage = Stage {
     id: StageId::Supply,
     name: "supply",
     title: "Emergency stop, its sense, and the bridge supply before the first self-test",
-    needs: Hand { say: "USB plugged in, then 12 V with a limit of 0.5 A, emergency stop pressed, load cell \
+    needs: ManualStep { say: "USB plugged in, then 12 V with a limit of 0.5 A, emergency stop pressed, load cell \
                  connected, 10 kΩ in place of each thermistor, nothing at the tile terminals.", lines: super::needs::COLD },
     steps: &[
         read(
@@ -143,7 +143,7 @@ pub const SUPPLY: Stage = Stage {
                  kΩ) of block supply, PC13 (CN7-23), SB17 open?")
             .blocks(StageId::Load)
             .step(),
-        hand("Set the current limit to 0.5 A. Release the emergency stop.", &["release stop"]),
+        manual("Set the current limit to 0.5 A. Release the emergency stop.", &["release stop"]),
         routine(Routine::Wait(500)),
         read(
             "stop-sense-released",

@@ -2,9 +2,9 @@
 
 use thermal_client::client::SelfTestReport;
 
-use super::super::check::{Hand, Reading, Routine, Stage, StageId, Step, Value};
+use super::super::check::{ManualStep, Reading, Routine, Stage, StageId, Step, Value};
 use super::super::unit::Unit::{Ampere, Celsius, Kelvin, Millisecond, Ratio, Volt};
-use super::{hand, read, routine};
+use super::{manual, read, routine};
 
 /// Current of a pulse of the self-test.
 const fn pulse(
@@ -81,13 +81,13 @@ pub const TILE: Stage = Stage {
     id: StageId::Tile,
     name: "tile",
     title: "Tile, sink and thermistors; no finger",
-    needs: Hand {
+    needs: ManualStep {
         say: "USB plugged in, then 12 V, emergency stop pressed, load cell connected, 10 kΩ in \
                  place of each thermistor.",
         lines: super::needs::COLD,
     },
     steps: &[
-        hand(
+        manual(
             "Press the emergency stop. Remove the load; connect the tile (P to its plus), on the sink with thermal paste, fan \
              on. Connect the five thermistors in place of the resistors: two in the display's plate, one on the sink, one for \
              the skin and one for the room in the air. Replace the laboratory supply by the 12 V supply of the device. Keep \
@@ -184,7 +184,7 @@ pub const COMMISSIONING: Stage = Stage {
     id: StageId::Commissioning,
     name: "commissioning",
     title: "Commissioning: calibration of the thermistors, identification of the tile",
-    needs: Hand {
+    needs: ManualStep {
         say: "USB plugged in, then 12 V, emergency stop released, load cell, tile and thermistors \
                  connected.",
         lines: super::needs::TILE,
@@ -252,10 +252,10 @@ pub const RUN: Stage = Stage {
     id: StageId::Run,
     name: "run",
     title: "Warm and cold without a finger; emergency stop while driving",
-    needs: Hand { say: "USB plugged in, then 12 V, emergency stop released, load cell, tile and thermistors \
+    needs: ManualStep { say: "USB plugged in, then 12 V, emergency stop released, load cell, tile and thermistors \
                  connected.", lines: super::needs::TILE },
     steps: &[
-        hand(
+        manual(
             "Put all thermistors back into their places: skin and room in the air. Let the sink come to the temperature of the \
              room.",
             &["fit thermistors"],
@@ -275,7 +275,7 @@ pub const RUN: Stage = Stage {
             .basis("coolant up to 16 K above the room; 0.15 K/W, twice that at most")
             .high("the sink gets hot: fan, thermal paste, air flow")
             .step(),
-        hand("Press the emergency stop now, while the display is driven.", &["press stop"]),
+        manual("Press the emergency stop now, while the display is driven.", &["press stop"]),
         routine(Routine::StopWhileDriving),
         read(
             "stop-driving",
@@ -304,7 +304,7 @@ pub const RUN: Stage = Stage {
              everything off",
         )
         .step(),
-        hand("Release the emergency stop.", &["release stop"]),
+        manual("Release the emergency stop.", &["release stop"]),
         read(
             "seen-hottest",
             "hottest reading of the display in this stage",

@@ -181,6 +181,22 @@ fn the_identified_gain_is_that_of_large_currents() {
 }
 
 #[test]
+fn a_zero_error_of_the_mirror_does_not_shift_the_gain() {
+    let gain_k_s_a = |mirror: fn(f64) -> f64| {
+        let mut plant = Plant::new(TILE);
+        plant.mirror = mirror;
+        plant.identify(UNTOUCHED).expect("a tile").gain_k_s_a
+    };
+    let sound = gain_k_s_a(f64::abs);
+    for off in [
+        gain_k_s_a(|a| (a.abs() - 0.05).max(0.0)),
+        gain_k_s_a(|a| a.abs() + 0.05),
+    ] {
+        assert!((off / sound - 1.0).abs() < 2.5e-4, "{off}, {sound}");
+    }
+}
+
+#[test]
 fn each_reason_to_abort_is_reported() {
     assert_eq!(
         Plant::new(TILE).identify(0),

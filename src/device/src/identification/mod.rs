@@ -10,8 +10,8 @@
 //! with the change of the reading `y`, its first and second integral `Y1` and `Y2`, the integrals `U1` and `U2` of the
 //! current's change, and `V2` of its square. Integration averages noise, and nothing is differentiated. `a` and `b`
 //! absorb the error of the baseline reading and a drift. `zero`, with the second integral `D2` of the change of the
-//! current's direction, is what the current mirror shows when no current flows: up to 0.05 A, which is a large part of
-//! a small pulse. Each tick adds to the [`NormalEquationAccumulator`] in integers; the task that serves the host solves them.
+//! current's direction, delayed by the dead time of a nominal plate, is what the current mirror shows when no current
+//! flows: up to 0.05 A, which is a large part of a small pulse. Each tick adds to the [`NormalEquationAccumulator`] in integers; the task that serves the host solves them.
 //!
 //! Two effects would bias lag and leak if they were neglected. The module's legs take up heat later than the plate, so
 //! a part of the current acts late; and Joule's heat reaches the plate late, through the legs. Each effect is modelled

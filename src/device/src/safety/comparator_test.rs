@@ -10,14 +10,15 @@
 //!
 //! A test connects the comparator's input to a level outside of its window, so a dead side, a wrong ladder and a dead
 //! latch show on the fault line, and a shorted switch shows on the supply behind it, which a bleeder discharges. All
-//! fingers share the line that selects the side. Tests begin in ticks whose numbers are multiples of 64, so hot tests
+//! fingers share the line that selects the side. It is read back, because one that is stuck would let the tests of both
+//! sides pass on one side. The line of a test needs no reading back: stuck low it lets no test begin, stuck high none end. Tests begin in ticks whose numbers are multiples of 64, so hot tests
 //! are in the first 20 of 64 ticks and cold ones in ticks 40 to 59: two fingers never need different sides.
 
 use super::Fault;
 use super::limits::{SUPPLY_CUT_MAX, SUPPLY_MAX, SUPPLY_MIN};
-use super::self_test_report::SelfTestReport;
+use super::self_test_report::{SelfTestReport, SideLine};
 use crate::drive::ComparatorTest;
-use crate::sense::SupplyVoltage;
+use crate::sense::{Samples, SupplyVoltage};
 
 /// Length of each of the four phases, ticks of 1 ms: hot on, hot off, cold on, cold off.
 const PHASE_TICKS: u16 = 20;
@@ -41,13 +42,14 @@ pub const fn may_begin_in(station_tick: u32) -> bool {
 /// them, and returns the test that must be applied until the next tick.
 ///
 /// # Errors
-/// [`Fault::Comparator`]: from 10 ms after a change on, the fault line does not show it. [`Fault::SupplySwitch`]: the
+/// [`Fault::Comparator`]: the line that selects the side does not have its level in a test; or, from 10 ms after a change
+/// on, the fault line does not show it. [`Fault::SupplySwitch`]: the
 /// supply is above 6 V at the end of a test. [`Fault::Supply`]: it is outside of 10.8 to 13.2 V at the end of the pause
 /// after a test.
 pub fn run_tick(
     report: &mut SelfTestReport,
     tick: u16,
-    bridge_fault: bool,
+    samples: &Samples,
     supply: SupplyVoltage,
 ) -> Result<ComparatorTest, Fault> {
     let is_hot = tick < 2 * PHASE_TICKS;
@@ -58,13 +60,24 @@ pub fn run_tick(
     };
     let is_on = (tick / PHASE_TICKS).is_multiple_of(2);
     let elapsed = tick % PHASE_TICKS;
-    let responded = bridge_fault == is_on;
+    let responded = samples.bridge_fault == is_on;
     let delay = if is_on {
         &mut side.cut_ms
     } else {
         &mut side.release_ms
     };
     // The readings of the first tick are those before the change.
+    if is_on && elapsed > 0 {
+        if samples.comparator_side_differs {
+            report.side_line = Some(if is_hot {
+                SideLine::StuckHigh
+            } else {
+                SideLine::StuckLow
+            });
+            return Err(Fault::Comparator);
+        }
+        report.side_line = Some(SideLine::Follows);
+    }
     if elapsed > 0 && responded && delay.is_none() {
         *delay = Some(elapsed as u8);
     }

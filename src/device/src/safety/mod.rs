@@ -64,7 +64,7 @@ pub use detectors::{FaultDetectors, PreviousDemandAndResidual};
 pub use fault::{Fault, ThermistorId};
 pub use fault_latch::FaultLatch;
 pub use self_test::{SelfTest, SelfTestStep};
-pub use self_test_report::{ComparatorSideReport, SelfTestReport, SelfTestResult};
+pub use self_test_report::{ComparatorSideReport, SelfTestReport, SelfTestResult, SideLine};
 pub use setpoint::Setpoint;
 pub use thermal_dose::ThermalDose;
 pub use tick_rate::TickRateMonitor;

@@ -25,6 +25,7 @@ use super::comparator_test::{self, COMPARATOR_TEST_TICKS};
 use super::self_test_report::SelfTestReport;
 use super::validate_readings::ValidReadings;
 use crate::drive::{ComparatorTest, Current};
+use crate::sense::Samples;
 
 /// Length of each half of the self-test's baseline, in ticks of 1 ms. In the baseline the bridge is off; the straight
 /// line through the mean readings of its two halves predicts the temperature that the display would have without the
@@ -120,8 +121,8 @@ impl SelfTest {
     }
 
     /// Runs one tick of the self-test with `readings`, and returns what the bridge must do in this tick; `report` gets
-    /// what it measures. `station_tick` is the number of the station's tick, `bridge_fault` is true if the bridge's fault
-    /// line is pulled; `touched` is true if the force shows a finger, or one that may be landing.
+    /// what it measures. `station_tick` is the number of the station's tick, `samples` has the levels of the comparator's
+    /// lines; `touched` is true if the force shows a finger, or one that may be landing.
     ///
     /// # Errors
     /// [`Fault::Comparator`], [`Fault::SupplySwitch`], [`Fault::Supply`]: a test of the comparator has failed.
@@ -134,7 +135,7 @@ impl SelfTest {
         report: &mut SelfTestReport,
         station_tick: u32,
         readings: &ValidReadings,
-        bridge_fault: bool,
+        samples: &Samples,
         touched: bool,
     ) -> Result<SelfTestStep, Fault> {
         const BRIDGE_OFF_WITHOUT_COMPARATOR_TEST: SelfTestStep =
@@ -162,7 +163,7 @@ impl SelfTest {
         self.tick += 1;
         let display = [readings.display, readings.check].map(|reading| reading.to_bits().into());
         if tick < COMPARATOR_TEST_TICKS {
-            let test = comparator_test::run_tick(report, tick, bridge_fault, readings.supply)?;
+            let test = comparator_test::run_tick(report, tick, samples, readings.supply)?;
             return Ok(SelfTestStep::Off(test));
         }
         if tick < BASELINE_END_TICK {

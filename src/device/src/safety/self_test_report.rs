@@ -9,6 +9,8 @@ use crate::sense::SupplyVoltage;
 /// What the last self-test has measured, whether it has passed or not; `None` for what it has not reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelfTestReport {
+    /// Line that selects the side of the comparator's tests.
+    pub side_line: Option<SideLine>,
     /// Test of the comparator's hot side.
     pub hot: ComparatorSideReport,
     /// Test of the comparator's cold side.
@@ -34,6 +36,29 @@ pub struct ComparatorSideReport {
     pub cut_supply: Option<SupplyVoltage>,
     /// Time from the end of the test until the fault line was released, ms, rounded up.
     pub release_ms: Option<u8>,
+}
+
+/// What the tests of the comparator have shown of the line that selects their side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SideLine {
+    /// It has had the levels of the tests so far.
+    Follows,
+    /// It is low in a test of the cold side.
+    StuckLow,
+    /// It is high in a test of the hot side.
+    StuckHigh,
+}
+
+impl SideLine {
+    /// Its word in lines to the host.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Follows => "ok",
+            Self::StuckLow => "low",
+            Self::StuckHigh => "high",
+        }
+    }
 }
 
 /// Result of the last self-test.

@@ -72,6 +72,9 @@ pub struct Samples {
     pub bridge_fault: bool,
     /// Whether the emergency stop is pressed, which also disconnects the bridge's supply. One for all fingers.
     pub emergency_stop: bool,
+    /// Whether the line that selects the side of the comparators' tests does not have the level that the board drives.
+    /// One for all fingers.
+    pub comparator_side_differs: bool,
     /// Number of thermistors, 0 to 5, whose 16 conversions differ by two codes or more, which shows that the converter
     /// has noise. 0 if it was not [needed](crate::Device::finger_needs_scatter).
     pub scattering_thermistors: u8,
@@ -84,6 +87,8 @@ pub struct DigitalInputs {
     pub bridge_fault: bool,
     /// Whether the emergency stop is pressed.
     pub emergency_stop: bool,
+    /// Whether the line that selects the side of the comparators' tests does not have the level that the board drives.
+    pub comparator_side_differs: bool,
 }
 
 impl Samples {
@@ -132,6 +137,7 @@ impl Samples {
         let DigitalInputs {
             bridge_fault,
             emergency_stop,
+            comparator_side_differs,
         } = inputs;
         Self {
             display,
@@ -144,6 +150,7 @@ impl Samples {
             supply,
             bridge_fault,
             emergency_stop,
+            comparator_side_differs,
             scattering_thermistors: match needs_scatter {
                 true => scattering_thermistors(scans),
                 false => 0,

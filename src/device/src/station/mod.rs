@@ -177,12 +177,8 @@ impl Station {
             Ok(valid) => {
                 let estimate = self.detect_touch_and_update_estimates(samples, &valid);
                 let reference = self.reference_for_present_state(&estimate);
-                let demand = self.choose_bridge_demand(
-                    &valid,
-                    readings.bridge_fault,
-                    &estimate,
-                    reference.as_ref(),
-                );
+                let demand =
+                    self.choose_bridge_demand(&valid, samples, &estimate, reference.as_ref());
                 (demand, reference)
             }
             Err(fault) => {
@@ -336,7 +332,7 @@ impl Station {
     fn choose_bridge_demand(
         &mut self,
         valid: &ValidReadings,
-        bridge_fault: bool,
+        samples: &Samples,
         estimate: &PlateEstimateBeforeReading,
         reference: Option<&Reference>,
     ) -> Result<BridgeDemand, Fault> {
@@ -348,7 +344,7 @@ impl Station {
             let touched = self.contact.is_force_nonzero_debounced() || self.contact.touching();
             let report = &mut self.self_test_report;
             return Ok(
-                match test.step(report, self.tick, valid, bridge_fault, touched)? {
+                match test.step(report, self.tick, valid, samples, touched)? {
                     SelfTestStep::Off(comparator_test) => BridgeDemand::Off(comparator_test),
                     SelfTestStep::Drive(current) => {
                         self.controller.track_current(current);

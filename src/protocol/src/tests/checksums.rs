@@ -111,6 +111,37 @@ fn a_line_with_a_wrong_checksum_is_not_executed() {
 }
 
 #[test]
+fn the_refusal_of_a_damaged_line_has_the_address_that_has_arrived() {
+    let mut line = Line::<5>::new();
+    for (sent, answer) in [
+        (
+            "@2 law*00",
+            "@2 err checksum 00 is wrong, the line has 28; send the line again",
+        ),
+        (
+            "@2 law*4",
+            "@2 err checksum '4' is not 2 hexadecimal digits",
+        ),
+        // Damaged addresses: of a finger that the device does not have, and none.
+        (
+            "@7 law*28",
+            "err checksum 28 is wrong, the line has 2D; send the line again",
+        ),
+        (
+            "R2 law*28",
+            "err checksum 28 is wrong, the line has 3A; send the line again",
+        ),
+        (
+            "law*28",
+            "err checksum 28 is wrong, the line has 7A; send the line again",
+        ),
+    ] {
+        assert_eq!(line.send(sent), answer);
+    }
+    assert_eq!(line.send("@2 law*28"), "@2 ok law=model");
+}
+
+#[test]
 fn checksums_are_switched_for_the_whole_device_by_on_and_off() {
     let mut line = Line::<5>::new();
     for (sent, answer) in [

@@ -62,6 +62,9 @@ named_enum! {
         LatchStuckSet = "latch-stuck-set",
         /// The comparator's latch is never set: the same as `comparator-dead`.
         LatchStuckClear = "latch-stuck-clear",
+        /// The line that selects the side of the comparator's tests is stuck, low below 0.5 and high from there on: one side
+        /// is tested twice and the other never. Latent; the next self-test reads the line back. One line for all fingers.
+        SideStuck = "side-stuck",
         /// Both thresholds of the comparator are too high by the value. Latent; its tests show what is more than 3 K too high
         /// or 5 K too low.
         LadderShift = "ladder-shift",
@@ -135,6 +138,7 @@ impl FaultKind {
             Self::ModuleWeak => required("1", 0.0, 1.0),
             Self::ForceOffset => required("N", -10.0, 10.0),
             Self::MirrorStuck => required("A", 0.0, 10.0),
+            Self::SideStuck => required("level", 0.0, 1.0),
             Self::LadderShift => required("K", -30.0, 30.0),
             Self::SupplyLow => required("V", 4.5, 12.0),
             Self::SupplyHigh => required("V", 12.0, 38.0),

@@ -6,21 +6,24 @@ use thermal_sim::commissioning::{FrequencyResponse, settings_for_device};
 
 use super::{ROOM_C, device};
 
-/// What the mirror shows too much or too little of any current, to the ends of its class.
+/// What the mirror shows too much or too little of any current, to the ends of its class. The gain of one tuning scatters by
+/// 0.03 % with the converter's noise, as much as is looked for; hence the mean of several converters.
 #[test]
 fn the_mirrors_zero_is_not_taken_for_the_tiles_answer() {
-    let gain_k_s_a = |zero_a: f64| -> f64 {
+    let gain_k_s_a = |zero_a: f64, seed: u64| -> f64 {
         let mut params = Params::nominal();
         params.sensors.mirror.offset_a = zero_a;
-        let settings = settings_for_device(&params, ROOM_C, 1).expect("a commissioned device");
+        let settings = settings_for_device(&params, ROOM_C, seed).expect("a commissioned device");
         let tile = settings
             .iter()
             .find_map(|line| line.strip_prefix("set tile "));
         let gain = tile.and_then(|values| values.split(' ').next());
         gain.and_then(|gain| gain.parse().ok()).expect("a gain")
     };
-    let sound = gain_k_s_a(0.0);
-    let off = [-0.05, 0.05].map(|zero_a| (gain_k_s_a(zero_a) / sound - 1.0).abs());
+    const SEEDS: std::ops::RangeInclusive<u64> = 1..=8;
+    let mean = |zero_a: f64| SEEDS.map(|seed| gain_k_s_a(zero_a, seed)).sum::<f64>();
+    let sound = mean(0.0);
+    let off = [-0.05, 0.05].map(|zero_a| (mean(zero_a) / sound - 1.0).abs());
     assert_figure("tuning.mirror_gain", 100.0 * off[0].max(off[1]));
 }
 

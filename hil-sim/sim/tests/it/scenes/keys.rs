@@ -293,6 +293,7 @@ fn the_chip_is_that_of_a_prepared_board_unless_the_scene_says_otherwise() {
         slow_flash: true,
         flash: FlashTiming::Unaccelerated,
         strict: true,
+        ..ChipState::default()
     };
     assert_eq!(scene(&format!("{HEAD}{keys}")).chip, expected);
 }

@@ -21,7 +21,7 @@ const MM2_PER_M2: f64 = 1e6;
 
 /// A command whose answer is `ok` alone.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Order {
+pub enum PlainCommand {
     /// Choose the object's material by its name.
     Material(String),
     /// Choose the object's material by its properties.
@@ -95,7 +95,7 @@ pub const fn thermistor_word(thermistor: ThermistorId) -> &'static str {
     THERMISTOR_WORDS[thermistor as usize]
 }
 
-impl fmt::Display for Order {
+impl fmt::Display for PlainCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Material(name) => write!(f, "material {name}"),
@@ -158,7 +158,7 @@ impl fmt::Display for Order {
     }
 }
 
-impl Command for Order {
+impl Command for PlainCommand {
     type Reply = ();
 
     fn read_reply(&self, reply: &Fields<'_>) -> Option<()> {
@@ -168,12 +168,18 @@ impl Command for Order {
 
 /// The commands that upload an object: begin, one row for each relaxation, and commit.
 #[must_use]
-pub fn upload(object: &Impedance<'_>) -> Vec<Order> {
+pub fn upload(object: &Impedance<'_>) -> Vec<PlainCommand> {
     let relaxations = object.relaxations;
-    let mut orders = vec![Order::UploadBegin(relaxations.len(), object.direct_m2k_w)];
+    let mut commands = vec![PlainCommand::UploadBegin(
+        relaxations.len(),
+        object.direct_m2k_w,
+    )];
     let rows = relaxations.iter().enumerate();
-    orders.extend(rows.map(|(index, row)| Order::UploadRow(index, *row)));
-    let sent: String = orders.iter().map(|order| format!("{order}\n")).collect();
-    orders.push(Order::UploadCommit(CRC_32.checksum(sent.as_bytes())));
-    orders
+    commands.extend(rows.map(|(index, row)| PlainCommand::UploadRow(index, *row)));
+    let sent: String = commands
+        .iter()
+        .map(|command| format!("{command}\n"))
+        .collect();
+    commands.push(PlainCommand::UploadCommit(CRC_32.checksum(sent.as_bytes())));
+    commands
 }

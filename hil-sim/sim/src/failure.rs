@@ -1,0 +1,42 @@
+//! How the commands end that run a simulated device.
+
+use std::process::ExitCode;
+
+/// Why a command failed, and the exit status that says so.
+#[derive(Debug)]
+pub struct Failure {
+    /// What went wrong.
+    pub error: anyhow::Error,
+    /// 1 for a run that failed or a device that does not do it, 2 for bad input.
+    pub status: u8,
+}
+
+impl Failure {
+    /// Something that the user gave is wrong.
+    pub fn input(error: impl Into<anyhow::Error>) -> Self {
+        Self {
+            error: error.into(),
+            status: 2,
+        }
+    }
+
+    /// Everything given is right, but it did not work.
+    pub fn run(error: impl Into<anyhow::Error>) -> Self {
+        Self {
+            error: error.into(),
+            status: 1,
+        }
+    }
+
+    /// The exit code of a command with this name that ended so. Prints why it failed, if it did, on standard error.
+    #[must_use]
+    pub fn exit_code(command: &str, ended: Result<(), Self>) -> ExitCode {
+        match ended {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(Self { error, status }) => {
+                eprintln!("{command}: {error:#}");
+                ExitCode::from(status)
+            }
+        }
+    }
+}
