@@ -85,6 +85,8 @@ mod tests {
     #[test]
     fn a_low_fault_line_stops_the_pwm_without_the_program() {
         let mut board = set_up();
+        let pull = pins().pupdr().read().pupdr6();
+        assert!(pull.is_pull_down(), "a broken wire is a fault");
         pull_fault_line(true);
         board.control_loop.stages[0].poll_fault_line_low();
         drive(&mut board, Drive::On(Duty::saturating(I1F15::lit("0.5"))));
