@@ -75,6 +75,7 @@ impl ToyDisplay {
         let inputs = DigitalInputs {
             bridge_fault: self.comparator_test != ComparatorTest::None,
             emergency_stop: false,
+            comparator_side_differs: false,
         };
         let scans = self.scans();
         let ((outputs, telemetry), cost) = cycles::measure(|| {
