@@ -58,7 +58,7 @@ mod app {
     // address as a constant, which saves 200 instructions a tick.
     #[init(local = [
         memory: StaticMemory = StaticMemory::new(),
-        stations: [MaybeUninit<Station>; FINGERS] = [const { MaybeUninit::uninit() }; FINGERS]
+        stations: MaybeUninit<[Station; FINGERS]> = MaybeUninit::uninit()
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let board = Board::set_up(cx.core.SYST, cx.device, cx.local.memory, cx.local.stations);

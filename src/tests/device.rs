@@ -1,14 +1,11 @@
 //! Commands to five fingers, each of which is controlled by its own samples.
 
-use core::mem::MaybeUninit;
-use std::boxed::Box;
 use std::format;
 use std::string::{String, ToString};
 
 use crate::device::drive::{ComparatorTest, Drive};
-use crate::device::safety::{Fault, TripCause};
 use crate::device::sense::{SCANS_PER_TICK, Samples};
-use crate::device::{Device, DeviceInPlace, FingerIndex};
+use crate::device::{Device, FingerIndex};
 use crate::protocol::{CommandHandler, wrap_as_telemetry_line};
 use crate::settings::Settings;
 
@@ -212,15 +209,4 @@ fn lines_of_a_single_finger_have_no_address() {
     )
     .to_string();
     assert!(line.contains(" armed "), "{line}");
-}
-
-#[test]
-fn stations_in_static_places_are_those_of_a_device_in_one_piece() {
-    for cause in [None, Some(TripCause::without_readings(Fault::TickLost))] {
-        let settings = Settings::default();
-        let places = Box::leak(Box::new([const { MaybeUninit::uninit() }; FIVE]));
-        let in_place = DeviceInPlace::new_in_place(places, cause, &settings);
-        let in_one_piece = Device::<FIVE>::new_optionally_tripped(cause, &settings);
-        assert_eq!(format!("{in_place:?}"), format!("{in_one_piece:?}"));
-    }
 }

@@ -164,11 +164,11 @@ fn reset_and_trip_cause_at_start(rcc: &pac::RCC) -> (ResetCause, Option<TripCaus
 /// were saved in RAM before the reset. All fingers are tripped by `cause` if there is one, and by
 /// [`Fault::SettingsCorrupt`] if the settings cannot be read.
 fn create_and_restore_device(
-    places: &'static mut [MaybeUninit<Station>; FINGERS],
+    places: &'static mut MaybeUninit<[Station; FINGERS]>,
     cause: Option<TripCause>,
     storage: &SaveAndLoadResult,
 ) -> DeviceInPlace<FINGERS> {
-    let mut device = DeviceInPlace::new_in_place(places, cause, &Settings::default());
+    let mut device = DeviceInPlace::from_stations(create_stations(places, cause));
     match &storage.settings {
         Ok(Some(settings)) => device.restore_settings(settings),
         Ok(None) => {}
@@ -178,6 +178,28 @@ fn create_and_restore_device(
         device.restore_finger_thermal_dose(finger, saved_dose::saved_dose_or_zero(finger));
     }
     device
+}
+
+/// Creates the stations in `places`, one after the other: an array of them on the stack would need more of it than
+/// everything that runs later.
+///
+/// The device gets one reference to the whole array, not an array of references. The latter was once all that a resource of
+/// RTIC held, in memory that the start leaves as it is (`.uninit`). As the program stored it once only, LLVM 21 made the
+/// stored value the initial value, which nothing puts there, and left out the store: a loop over the fingers read an address
+/// that had never been written.
+#[inline(never)]
+fn create_stations(
+    places: &'static mut MaybeUninit<[Station; FINGERS]>,
+    cause: Option<TripCause>,
+) -> &'static mut [Station; FINGERS] {
+    let station = Station::new_optionally_tripped(cause, &Settings::default());
+    let first = places.as_mut_ptr().cast::<Station>();
+    for finger in 0..FINGERS {
+        // SAFETY: the place is one of the array's, which nothing else refers to.
+        unsafe { first.add(finger).write(station.clone()) };
+    }
+    // SAFETY: all places were written.
+    unsafe { places.assume_init_mut() }
 }
 
 /// Creates the command handler in `place`, with the settings from the flash. A function of its own,
@@ -227,7 +249,7 @@ impl Board {
         systick: SYST,
         peripherals: pac::Peripherals,
         memory: &'static mut StaticMemory,
-        stations: &'static mut [MaybeUninit<Station>; FINGERS],
+        stations: &'static mut MaybeUninit<[Station; FINGERS]>,
     ) -> Self {
         debug_freeze::clear_freeze_bits(&peripherals.DBGMCU);
         let (reset, cause) = reset_and_trip_cause_at_start(&peripherals.RCC);

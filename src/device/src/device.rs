@@ -2,7 +2,6 @@
 
 use core::array;
 use core::borrow::BorrowMut;
-use core::mem::MaybeUninit;
 
 use crate::command::{Command, Refused, Reply, WithSourceFinger};
 use crate::drive::BoardOutputs;
@@ -15,15 +14,15 @@ use thermal_settings::{Settings, StoredSettings};
 /// The whole device without its hardware: one [`Station`] for each of its `FINGERS` fingers. The stations share no
 /// state, so a fault that one station detects leaves the other fingers running.
 ///
-/// `S` is a station or a reference to one that is stored elsewhere ([`DeviceInPlace`]).
+/// `S` is the stations themselves, or a reference to stations that are stored elsewhere ([`DeviceInPlace`]).
 #[derive(Clone, Debug)]
-pub struct Device<const FINGERS: usize, S = Station> {
-    stations: [S; FINGERS],
+pub struct Device<const FINGERS: usize, S = [Station; FINGERS]> {
+    stations: S,
 }
 
 /// A device whose stations are stored in static memory, as on the board. A station has 5 KB, so five of them together
 /// would need more stack, for the time in which they are created, than everything that runs later.
-pub type DeviceInPlace<const FINGERS: usize> = Device<FINGERS, &'static mut Station>;
+pub type DeviceInPlace<const FINGERS: usize> = Device<FINGERS, &'static mut [Station; FINGERS]>;
 
 impl<const FINGERS: usize> Device<FINGERS> {
     /// A device whose stations are all off and not tripped, with the same settings for every finger.
@@ -45,40 +44,27 @@ impl<const FINGERS: usize> Device<FINGERS> {
     }
 }
 
-impl<const FINGERS: usize> DeviceInPlace<FINGERS> {
-    /// A device as [`Device::new_optionally_tripped`] creates it, whose stations are created in `places` one after the
-    /// other.
+impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> {
+    /// A device of stations that exist.
     #[must_use]
-    #[inline(never)]
-    pub fn new_in_place(
-        places: &'static mut [MaybeUninit<Station>; FINGERS],
-        cause: Option<TripCause>,
-        settings: &Settings,
-    ) -> Self {
-        let station = Station::new_optionally_tripped(cause, settings);
-        Self {
-            stations: places.each_mut().map(|place| place.write(station.clone())),
-        }
+    pub const fn from_stations(stations: S) -> Self {
+        Self { stations }
     }
-}
 
-impl<const FINGERS: usize, S: BorrowMut<Station>> Device<FINGERS, S> {
     fn station(&self, finger: FingerIndex<FINGERS>) -> &Station {
-        self.stations[finger.index()].borrow()
+        &self.stations.borrow()[finger.index()]
     }
 
     fn station_mut(&mut self, finger: FingerIndex<FINGERS>) -> &mut Station {
-        self.stations[finger.index()].borrow_mut()
+        &mut self.stations.borrow_mut()[finger.index()]
     }
 
     /// Applies to each finger's station its own thermistor calibration and tile parameters from flash. Converts them
     /// from `f64`, so it is called at the start only, before the first tick.
     #[inline(never)]
     pub fn restore_settings(&mut self, stored: &[StoredSettings; FINGERS]) {
-        for (station, stored) in self.stations.iter_mut().zip(stored) {
-            station
-                .borrow_mut()
-                .apply_settings(&stored.to_settings_with_factory_defaults());
+        for (station, stored) in self.stations.borrow_mut().iter_mut().zip(stored) {
+            station.apply_settings(&stored.to_settings_with_factory_defaults());
         }
     }
 
@@ -98,7 +84,7 @@ impl<const FINGERS: usize, S: BorrowMut<Station>> Device<FINGERS, S> {
     /// Whether a finger's next samples must say [how many thermistors scatter](Samples::scattering_thermistors).
     #[must_use]
     pub fn finger_needs_scatter(&self, finger: FingerIndex<FINGERS>) -> bool {
-        self.stations[finger.index()].borrow().needs_scatter()
+        self.station(finger).needs_scatter()
     }
 
     /// Runs one control tick of a finger's station with the samples of the last millisecond. Returns what the board
@@ -111,9 +97,9 @@ impl<const FINGERS: usize, S: BorrowMut<Station>> Device<FINGERS, S> {
     /// overrun stack. On a station that a different fault has already tripped, that fault stays latched; this one is
     /// stored, unless one is stored already, and trips the station when `clear` has cleared the latched one.
     pub fn trip_all(&mut self, fault: Fault) {
-        self.stations
-            .iter_mut()
-            .for_each(|station| station.borrow_mut().trip_or_store_external_fault(fault));
+        for station in self.stations.borrow_mut() {
+            station.trip_or_store_external_fault(fault);
+        }
     }
 
     /// Whether this finger's station is tripped, so that its bridge stays off until the host sends `clear`.
@@ -126,7 +112,7 @@ impl<const FINGERS: usize, S: BorrowMut<Station>> Device<FINGERS, S> {
     /// stores this cause through a reset.
     #[must_use]
     pub fn earliest_trip_cause(&self) -> Option<&TripCause> {
-        let stations = self.stations.iter().map(S::borrow);
+        let stations = self.stations.borrow().iter();
         let tripped = stations.filter(|station| station.is_tripped());
         tripped
             .min_by_key(|station| station.fault_latch().last_trip_tick_or_zero())?
@@ -137,9 +123,9 @@ impl<const FINGERS: usize, S: BorrowMut<Station>> Device<FINGERS, S> {
     /// Restarts, for all fingers, the 2 s of silence of the host after which a station trips if its telemetry is on and
     /// its display follows a set-point. To be called for each line from the host.
     pub fn note_host_activity(&mut self) {
-        self.stations
-            .iter_mut()
-            .for_each(|station| station.borrow_mut().note_host_activity());
+        for station in self.stations.borrow_mut() {
+            station.note_host_activity();
+        }
     }
 
     /// Telemetry of a finger's last tick, with the index of the finger (none on a device with one finger). `None` if

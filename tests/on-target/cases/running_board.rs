@@ -24,7 +24,7 @@ pub fn set_up() -> Board {
     let core = cortex_m::Peripherals::take().expect("once in a test");
     let peripherals = pac::Peripherals::take().expect("once in a test");
     let memory = cortex_m::singleton!(: StaticMemory = StaticMemory::new());
-    let stations = cortex_m::singleton!(: [MaybeUninit<Station>; FINGERS] = [const { MaybeUninit::uninit() }; FINGERS]);
+    let stations = cortex_m::singleton!(: MaybeUninit<[Station; FINGERS]> = MaybeUninit::uninit());
     let (memory, stations) = memory.zip(stations).expect("once in a test");
     let board = Board::set_up(core.SYST, peripherals, memory, stations);
     cycles::start();

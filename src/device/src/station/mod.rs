@@ -138,7 +138,8 @@ impl Station {
     }
 
     /// A station as [`Station::new`] makes it, tripped by `cause` if there is one.
-    pub(crate) fn new_optionally_tripped(cause: Option<TripCause>, settings: &Settings) -> Self {
+    #[must_use]
+    pub fn new_optionally_tripped(cause: Option<TripCause>, settings: &Settings) -> Self {
         let mut station = Self::new(settings);
         if let Some(cause) = cause {
             station.trip(cause);
