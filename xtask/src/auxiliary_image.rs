@@ -1,7 +1,10 @@
-//! Images that are not the firmware: that of the emulator's own tests, and that of the benchmark.
-use anyhow::Result;
+//! Images that are not the firmware: those of the emulator's own tests, and that of the benchmark.
+use std::fs;
+use std::path::Path;
 
-use crate::process::workspace;
+use anyhow::{Context, Result};
+
+use crate::process::{Invocation, workspace};
 use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 
 /// `cargo xtask probe`: builds the image for the tests of the emulated microcontroller and prints its path.
@@ -14,6 +17,57 @@ pub fn probe(permission: Permission) -> Result<()> {
     build(permission, "target/probe", &package, "release/probe")
 }
 
+/// Package of the programs of `cargo xtask foreign`.
+pub const FOREIGN: &str = "hil-sim/emulator/foreign/Cargo.toml";
+
+/// `cargo xtask foreign`: builds programs that others wrote, and programs of ours on others' drivers, and prints their folder.
+pub fn foreign(permission: Permission) -> Result<()> {
+    fetch_foreign()?;
+    copy_examples()?;
+    let package = ["--release", "--manifest-path", FOREIGN];
+    build(permission, "target/foreign", &package, "release")
+}
+
+/// Downloads the sources of all dependencies of [`FOREIGN`].
+pub fn fetch_foreign() -> Result<()> {
+    Invocation::cargo(["fetch", "--locked", "--manifest-path", FOREIGN]).run_to_stderr()
+}
+
+/// Copies the examples of the published crate stm32f4xx-hal to where [`FOREIGN`] names them; cargo builds no examples of a
+/// dependency.
+fn copy_examples() -> Result<()> {
+    let query = ["metadata", "--format-version=1", "--offline", "--locked"];
+    let metadata = Invocation::cargo(query).args(["--manifest-path", FOREIGN]);
+    let metadata = metadata
+        .answer()
+        .with_context(|| format!("`{metadata}` failed"))?;
+    let manifest = metadata
+        .split("\"manifest_path\":\"")
+        .filter_map(|rest| rest.split('"').next())
+        .find(|path| path.contains("stm32f4xx-hal-0"))
+        .context("cargo metadata lists no stm32f4xx-hal")?;
+    let from = Path::new(manifest).with_file_name("examples");
+    let to = workspace().join("target/foreign-sources/stm32f4xx-hal/examples");
+    fs::create_dir_all(&to).with_context(|| to.display().to_string())?;
+    for file in fs::read_dir(&from).with_context(|| from.display().to_string())? {
+        let file = file?.path();
+        let (Some(name), Some("rs")) =
+            (file.file_name(), file.extension().and_then(|e| e.to_str()))
+        else {
+            continue;
+        };
+        let source = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+        // The examples are for boards with a crystal of 25 MHz, a NUCLEO's clock has 8 MHz.
+        let source = source.replace("hse(25.MHz())", "hse(8.MHz())");
+        let copy = to.join(name);
+        // A new time of modification would be a reason for cargo to compile it again.
+        if fs::read_to_string(&copy).ok().as_ref() != Some(&source) {
+            fs::write(&copy, source).with_context(|| copy.display().to_string())?;
+        }
+    }
+    Ok(())
+}
+
 /// `cargo xtask bench-image`: builds the image that the benchmark runs and prints its path. The profile is that of the flashed
 /// image, so that the model is compiled as it is there.
 pub fn benchmark(permission: Permission) -> Result<()> {
@@ -22,7 +76,7 @@ pub fn benchmark(permission: Permission) -> Result<()> {
     build(permission, "target/bench-image", &package, "firmware/image")
 }
 
-/// Builds an image in a target folder and prints the path of its ELF file, `elf` below the folder of the target. The compiler
+/// Builds an image in a target folder and prints a path, that of its ELF file or folder `elf` below the folder of the target. The compiler
 /// flags replace those of the workspace, which link the firmware's log; the memory layout is the same.
 fn build(permission: Permission, folder: &str, package: &[&str], elf: &str) -> Result<()> {
     let toolchain = setup::prepare(Needs::default(), permission)?;

@@ -158,6 +158,8 @@ enum Task {
     BenchImage(SetUp),
     /// Build the image for the emulator's own tests and print its path; called by those tests
     Probe(SetUp),
+    /// Build programs of others for the emulator's own tests and print their folder; called by those tests
+    Foreign(SetUp),
 }
 
 #[derive(Args, Clone, Copy)]
@@ -228,6 +230,7 @@ fn main() -> ExitCode {
         Task::Docs { check } => docs::run(check),
         Task::BenchImage(set_up) => auxiliary_image::benchmark(set_up.permission()),
         Task::Probe(set_up) => auxiliary_image::probe(set_up.permission()),
+        Task::Foreign(set_up) => auxiliary_image::foreign(set_up.permission()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

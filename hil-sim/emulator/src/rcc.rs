@@ -183,6 +183,8 @@ impl Rcc {
                     _ => self.lpenr[bus],
                 }
             }
+            // backup domain, and clocks of peripherals that are not modelled: as at power-up
+            0x70 | 0x94 => 0,
             0x74 => self.csr | ready(LSI) << 1,
             0x8c => self.dckcfgr,
             _ => return Err(Refusal::Offset),
@@ -228,6 +230,8 @@ impl Rcc {
                 only(value ^ registers[bus], allowed[bus], "reserved bits")?;
                 registers[bus] = value;
             }
+            0x70 => only(value, 0, "oscillator and clock of the RTC")?,
+            0x94 => only(value, 0, "clocks of peripherals without a model")?,
             0x74 => {
                 if value & 1 != 0 && self.csr & 1 == 0 {
                     self.ready_at[LSI] = self.after(now, LSI_START_US);

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 
 use super::licences;
+use crate::auxiliary_image;
 use crate::process::{Invocation, workspace};
 use crate::setup::TARGET;
 
@@ -83,7 +84,10 @@ pub fn check_dependencies(members: &[Member]) -> Result<()> {
             member.is_native(),
         )?;
     }
-    check_package("--package hil-sim --no-default-features", true)
+    check_package("--package hil-sim --no-default-features", true)?;
+    auxiliary_image::fetch_foreign()?;
+    let foreign = auxiliary_image::FOREIGN;
+    check_package(&format!("--manifest-path {foreign} --workspace"), true)
 }
 
 /// Checks the dependencies of the package that these options of cargo name, for this computer and for the microcontroller.

@@ -107,6 +107,7 @@ fn whole(
         image("image for one finger", "xtask firmware"),
         image("image for five fingers", "xtask firmware --fingers 5"),
         image("test image of the emulator", "xtask probe"),
+        image("programs of others for the emulator", "xtask foreign"),
         image("image of the benchmark", "xtask bench-image"),
         only_if(
             firmware_lints,

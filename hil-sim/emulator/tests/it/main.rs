@@ -5,6 +5,7 @@ mod core;
 mod devices;
 mod faults;
 mod files;
+mod foreign;
 mod probe;
 mod published_cycles;
 

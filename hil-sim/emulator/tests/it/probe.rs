@@ -8,26 +8,26 @@ use stm32_emulator::{Firmware, LegState, Machine, Reset, Wiring};
 static FIRMWARE: LazyLock<Firmware> =
     LazyLock::new(|| Firmware::from_file(&PROBE).expect("the probe is an image"));
 
-static PROBE: LazyLock<PathBuf> = LazyLock::new(build);
+static PROBE: LazyLock<PathBuf> = LazyLock::new(|| build("probe"));
 
 /// Another program of the probe.
 pub fn program(name: &str) -> Firmware {
     Firmware::from_file(&PROBE.with_file_name(name)).expect("the program is an image")
 }
 
-/// Builds the images in `probe/` for the microcontroller; cargo decides what is stale.
-fn build() -> PathBuf {
+/// Builds images for the microcontroller by a command of `cargo xtask`, which prints a path; cargo decides what is stale.
+pub fn build(command: &str) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .ancestors()
         .nth(2)
         .expect("hil-sim/emulator lies in the repository");
     let built = Command::new("cargo")
-        .args(["xtask", "probe"])
+        .args(["xtask", command])
         .current_dir(root)
         .stderr(Stdio::inherit())
         .output()
         .expect("cargo runs");
-    assert!(built.status.success(), "the probe builds");
+    assert!(built.status.success(), "cargo xtask {command}");
     PathBuf::from(String::from_utf8_lossy(&built.stdout).trim())
 }
 
@@ -38,6 +38,8 @@ pub struct Bench {
     pub case: u8,
     /// Level of PA6, the break input.
     pub break_pin: Option<bool>,
+    /// Level of PA0.
+    pub button: Option<bool>,
     /// Bytes received from the image, with their times.
     pub sent: Vec<(u8, u64)>,
     /// Rate of the last byte.
@@ -58,6 +60,7 @@ impl Wiring for Bench {
 
     fn pin(&self, port: u8, bit: u8) -> Option<bool> {
         match (port, bit) {
+            (0, 0) => self.button,
             (0, 6) => self.break_pin,
             (2, 0..8) => Some(self.case >> bit & 1 != 0),
             _ => None,
