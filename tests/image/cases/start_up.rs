@@ -1,6 +1,7 @@
 //! Faults that the release image reports after a reset, and starts that fail.
 
 use image_tests::{Bare, START, image};
+use object::{Object, ObjectSymbol};
 use stm32_emulator::Firmware;
 use system_tests::flash::erased;
 use thermal_sim::processor::{CoreRegister, ResetCause};
@@ -91,4 +92,37 @@ fn a_start_that_fails_before_the_watchdogs_run_is_repeated() {
         [ResetCause::PowerOn, ResetCause::IndependentWatchdog]
     );
     assert_eq!(cause(&mut device), "hard-fault");
+}
+
+/// The resources of RTIC's tasks lie in `.uninit`, which no start-up code initialises. If a compiler takes the only value that the
+/// program stores in one for its initial value, it leaves out the store, and reads find what the memory held at power-up.
+#[test]
+fn every_resource_of_the_tasks_is_written_at_the_start() {
+    for fingers in [1, 5] {
+        let path = stm32_emulator::build(fingers).expect("the image builds");
+        let elf = std::fs::read(&path).expect("the file that was built");
+        let elf = object::File::parse(&*elf).expect("an ELF file");
+        let resources: Vec<_> = (elf.symbols())
+            .filter(|symbol| symbol.name().is_ok_and(|name| name.contains("_resource_")))
+            .filter(|symbol| symbol.size() > 0)
+            .collect();
+        assert!(resources.len() > 4, "{} resources", resources.len());
+        let firmware = Firmware::from_file(&path).expect("an image for this chip");
+        let mut device = Bare::switched_on(&firmware, &erased());
+        let contents = |device: &Bare| -> Vec<_> {
+            (resources.iter())
+                .map(|symbol| {
+                    let bytes = device
+                        .0
+                        .memory(symbol.address() as u32, symbol.size() as usize);
+                    bytes.expect("in the RAM")
+                })
+                .collect()
+        };
+        let at_power_up = contents(&device);
+        device.run(2 * START);
+        for ((symbol, before), after) in resources.iter().zip(at_power_up).zip(contents(&device)) {
+            assert_ne!(before, after, "{fingers}: {:?}", symbol.name());
+        }
+    }
 }
