@@ -30,11 +30,13 @@ impl Frame {
         self.place != UNKNOWN
     }
 
-    /// Whether it belongs to the language's own library.
+    /// Whether it belongs to the language's own library: its crates and the methods of integers.
     pub fn is_core(&self) -> bool {
-        ["core::", "alloc::"]
-            .iter()
-            .any(|library| self.function.starts_with(library))
+        let head = self.function.split("::").next().unwrap_or_default();
+        let width = head.trim_start_matches(['i', 'u']);
+        let is_integer = head.len() == width.len() + 1
+            && (width == "size" || width.bytes().all(|digit| digit.is_ascii_digit()));
+        is_integer || matches!(head, "core" | "alloc")
     }
 
     /// Whether it belongs to this project.

@@ -73,7 +73,7 @@ fn the_checks_find_what_the_image_is_known_to_have() {
         (HOST, "libm::"),
         (HOST, "core::fmt::"),
         (HOST, "heapless::"),
-        (HOST, "calibration_fit::fit_calibration"),
+        (HOST, "CommissioningSession::add_point_and_refit"),
         (TICK, "Station::valid_readings_or_fault"),
     ];
     let inlined: Vec<String> = known

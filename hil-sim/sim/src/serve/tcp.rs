@@ -93,8 +93,19 @@ impl TcpLine {
         self.listener.local_addr()
     }
 
+    /// Receives what the client has sent, and notices that it has closed its writing side.
+    fn receive(&mut self) {
+        if let Some(client) = self.client.as_mut().filter(|client| client.ended.is_none())
+            && !self.incoming.receive(&mut client.stream)
+        {
+            client.ended = Some(Instant::now());
+        }
+    }
+
     fn accept(&mut self, mut stream: TcpStream, peer: SocketAddr) -> std::io::Result<()> {
         stream.set_nonblocking(true)?;
+        // The client may have gone since it was last looked at, and the same program have come again.
+        self.receive();
         if let Some(first) = self.client.as_ref().filter(|client| client.ended.is_none()) {
             let line = format!(
                 "err busy: the client {} is connected, and there is one at a time\n",
@@ -119,13 +130,10 @@ impl TcpLine {
 
 impl ClientLine for TcpLine {
     fn poll(&mut self) -> Option<u64> {
-        // First, so that a client that comes right after another one has gone is accepted.
         if let Some(client) = &mut self.client {
             client.outgoing.flush(&mut client.stream);
-            if client.ended.is_none() && !self.incoming.receive(&mut client.stream) {
-                client.ended = Some(Instant::now());
-            }
         }
+        self.receive();
         self.client
             .take_if(|client| (client.ended).is_some_and(|at| at.elapsed() > LAST_ANSWERS));
         loop {
