@@ -17,7 +17,6 @@ use core::array;
 use contact_model::fixed_point::{Celsius, Force, to_fixed};
 
 use crate::drive::Current;
-use calibration_tables::ThermistorCorrection;
 use force_sensor::ForceChannel;
 use thermal_settings::Settings;
 use thermistor::ThermistorTable;
@@ -243,13 +242,13 @@ impl Readings {
     };
 }
 
-/// Number of slow thermistors, 2: skin and room. Their temperatures change by less than 1 mK in two ticks of 1 ms. To
-/// save time, each tick converts the sum of only one of them to °C, in turn, after one tick has converted both. Every
-/// tick checks the wires of both.
-const ALTERNATELY_CONVERTED_THERMISTOR_COUNT: usize = 2;
+/// Number of thermistors that take turns, 4: all but the display's first one, which the control law needs in every tick.
+/// To save time, each tick converts the sum of only one of them to °C, so that their temperatures are at most 3 ms old;
+/// the fastest of them moves by 0.1 K in this time. Every tick checks the wires of all.
+const THERMISTORS_CONVERTED_IN_TURN: usize = THERMISTOR_COUNT - 1;
 
 /// Converts one finger's [`Samples`] of each tick to [`Readings`] with the finger's calibration. Stores the zero of the
-/// force sensor, which it tracks while no finger touches, and the last temperatures of skin and room.
+/// force sensor, which it tracks while no finger touches, and the last temperatures of the thermistors that take turns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SampleConverter {
     thermistor: ThermistorTable,
@@ -257,14 +256,12 @@ pub struct SampleConverter {
     force: ForceChannel,
     /// Current of the Peltier module, A, per unit of the current mirror's sum of 16 conversions; nominally 1/6400 A.
     current_per_unit: Current,
-    /// Last converted temperatures of skin and room, °C, in this order. Stored because each tick converts only one of
-    /// the two, to save computing time; the other one keeps its last value, and its reading is this value while its
-    /// wire is intact. `None` until both thermistors were connected in the same tick; until then each tick converts
-    /// both.
-    slow_temperatures: Option<[Celsius; ALTERNATELY_CONVERTED_THERMISTOR_COUNT]>,
-    /// Selects the slow thermistor that the next tick converts to °C: the skin's if this number is even, the room's if
-    /// it is odd. Not used while `slow_temperatures` is `None`, because each tick then converts both.
-    next_slow: usize,
+    /// Last converted temperatures, °C, of second display, sink, skin and room, in this order. `None` until all four
+    /// thermistors were connected in the same tick, also after one of them was open or shorted, and after a change of the
+    /// calibration; until then each tick converts all of them.
+    last_temperatures: Option<[Celsius; THERMISTORS_CONVERTED_IN_TURN]>,
+    /// Number of the thermistor in `last_temperatures` that the next tick converts to °C.
+    next_in_turn: usize,
 }
 
 impl SampleConverter {
@@ -278,8 +275,8 @@ impl SampleConverter {
             calibration: CalibrationTables::new(settings),
             force: ForceChannel::new(&settings.force),
             current_per_unit: to_fixed(per_unit),
-            slow_temperatures: None,
-            next_slow: 0,
+            last_temperatures: None,
+            next_in_turn: 0,
         }
     }
 
@@ -301,47 +298,21 @@ impl SampleConverter {
     /// changed.
     pub fn replace_calibration_tables(&mut self, calibration: &CalibrationTables) {
         self.calibration = *calibration;
+        self.last_temperatures = None;
     }
 
-    /// Converts the samples of one tick to °C, N and A. To save computing time, each tick converts only one of skin and
-    /// room, in turn, and gives the last temperature of the other one, because both change slowly; until one tick has
-    /// found both thermistors connected, each tick converts both. A thermistor's reading is `Err` in every tick in
-    /// which its own wire is open or shorted.
+    /// Converts the samples of one tick to °C, N and A. To save computing time, each tick converts only the display's first
+    /// thermistor and one of the others, in turn, and gives the last temperatures of the other three. A thermistor's reading
+    /// is `Err` in every tick in which its own wire is open or shorted. Until one tick has found all four connected, each
+    /// tick converts all of them.
     #[must_use]
     pub fn convert_samples(&mut self, samples: &Samples) -> Readings {
-        let CalibrationTables {
-            converter,
-            thermistors: [display, display_check, sink, slow_corrections @ ..],
-        } = &self.calibration;
-        let thermistor = &self.thermistor;
-        let temperature = |sum, correction: &ThermistorCorrection| {
-            let uncorrected = thermistor.temperature_of_sum(sum, converter.correct_sum(sum))?;
-            Ok(correction.corrected_temperature(uncorrected))
-        };
-        let slow_sums = [samples.skin, samples.room];
-        let slow = if let Some(last) = &mut self.slow_temperatures {
-            let converted = self.next_slow % ALTERNATELY_CONVERTED_THERMISTOR_COUNT;
-            self.next_slow = converted + 1;
-            if let Ok(now) = temperature(slow_sums[converted], &slow_corrections[converted]) {
-                last[converted] = now;
-            }
-            let [skin, room] = *last;
-            [
-                thermistor::check_wiring(samples.skin).map(|()| skin),
-                thermistor::check_wiring(samples.room).map(|()| room),
-            ]
-        } else {
-            let all = array::from_fn(|i| temperature(slow_sums[i], &slow_corrections[i]));
-            if let [Ok(skin), Ok(room)] = all {
-                self.slow_temperatures = Some([skin, room]);
-            }
-            all
-        };
-        let [skin, room] = slow;
+        let [display_sum, others @ ..] = samples.thermistor_sums();
+        let [display_check, sink, skin, room] = self.temperatures_in_turn(others);
         Readings {
-            display: temperature(samples.display, display),
-            display_check: temperature(samples.display_check, display_check),
-            sink: temperature(samples.sink, sink),
+            display: self.temperature(display_sum, 0),
+            display_check,
+            sink,
             skin,
             room,
             force: self.force.force_of_sum(samples.force),
@@ -353,5 +324,50 @@ impl SampleConverter {
             bridge_fault: samples.bridge_fault,
             emergency_stop: samples.emergency_stop,
         }
+    }
+
+    /// Temperatures of all thermistors but the display's first, of which one is converted in this tick.
+    fn temperatures_in_turn(
+        &mut self,
+        sums: [u16; THERMISTORS_CONVERTED_IN_TURN],
+    ) -> [Result<Celsius, ThermistorFault>; THERMISTORS_CONVERTED_IN_TURN] {
+        let turn = self.next_in_turn % THERMISTORS_CONVERTED_IN_TURN;
+        self.next_in_turn = turn + 1;
+        let are_connected = sums.iter().all(|sum| thermistor::check_wiring(*sum).is_ok());
+        if are_connected
+            && let Ok(now) = self.temperature(sums[turn], turn + 1)
+            && let Some(last) = &mut self.last_temperatures
+        {
+            last[turn] = now;
+            return last.map(Ok);
+        }
+        self.temperatures_of_all(sums)
+    }
+
+    /// Converts the sums of all thermistors but the display's first.
+    #[cold]
+    #[inline(never)]
+    fn temperatures_of_all(
+        &mut self,
+        sums: [u16; THERMISTORS_CONVERTED_IN_TURN],
+    ) -> [Result<Celsius, ThermistorFault>; THERMISTORS_CONVERTED_IN_TURN] {
+        let all = array::from_fn(|i| self.temperature(sums[i], i + 1));
+        self.last_temperatures = match all {
+            [Ok(display_check), Ok(sink), Ok(skin), Ok(room)] => {
+                Some([display_check, sink, skin, room])
+            }
+            _ => None,
+        };
+        all
+    }
+
+    /// Temperature, °C, of the thermistor with this number, by its sum.
+    fn temperature(&self, sum: u16, thermistor: usize) -> Result<Celsius, ThermistorFault> {
+        let CalibrationTables {
+            converter,
+            thermistors,
+        } = &self.calibration;
+        let uncorrected = (self.thermistor).temperature_of_sum(sum, converter.correct_sum(sum))?;
+        Ok(thermistors[thermistor % THERMISTOR_COUNT].corrected_temperature(uncorrected))
     }
 }
