@@ -118,10 +118,8 @@ impl Samples {
     ) -> Self {
         let mut sums = channel_sums(scans);
         let [.., last] = scans;
-        for (sum, &code) in sums.iter_mut().zip(last).take(THERMISTOR_COUNT) {
-            if thermistor::is_open_or_short_code(code) {
-                *sum = code.saturating_mul(SCANS_PER_TICK as u16);
-            }
+        if !are_all_codes_of_connected_thermistors(last) {
+            replace_sums_of_open_or_shorted_wires(&mut sums, last);
         }
         let [
             display,
@@ -154,6 +152,35 @@ impl Samples {
                 true => scattering_thermistors(scans),
                 false => 0,
             },
+        }
+    }
+}
+
+/// Whether no code of a scan is that of an open or shorted thermistor; false also if another channel has such a code.
+/// Compares two codes at once: bit 15 of half a word shows whether the sum of a code and a constant has passed 2^15. As codes
+/// are below 4096, nothing carries into the other half.
+fn are_all_codes_of_connected_thermistors(scan: &Scan) -> bool {
+    const TOP_BITS: u32 = 0x8000_8000;
+    let in_both_halves = |number: u16| u32::from(number) * 0x1_0001;
+    let from_smallest = in_both_halves((1 << 15) - thermistor::SMALLEST_CONNECTED_CODE);
+    let above_largest = in_both_halves((1 << 15) - 1 - thermistor::LARGEST_CONNECTED_CODE);
+    let words: [u32; ADC_CHANNELS_PER_FINGER / 2] = bytemuck::cast(*scan);
+    let (mut connected, mut beyond_12_bits) = (TOP_BITS, 0);
+    for word in words.into_iter().take(THERMISTOR_COUNT.div_ceil(2)) {
+        connected &= word.wrapping_add(from_smallest) & !word.wrapping_add(above_largest);
+        beyond_12_bits |= word & in_both_halves(0xf000);
+    }
+    connected == TOP_BITS && beyond_12_bits == 0
+}
+
+/// Replaces the sum of each thermistor whose last conversion is that of an open or shorted wire by 16 times that
+/// conversion.
+#[cold]
+#[inline(never)]
+fn replace_sums_of_open_or_shorted_wires(sums: &mut [u16; ADC_CHANNELS_PER_FINGER], last: &Scan) {
+    for (sum, &code) in sums.iter_mut().zip(last).take(THERMISTOR_COUNT) {
+        if thermistor::is_open_or_short_code(code) {
+            *sum = code.saturating_mul(SCANS_PER_TICK as u16);
         }
     }
 }
