@@ -116,6 +116,11 @@ impl Samples {
         inputs: DigitalInputs,
         needs_scatter: bool,
     ) -> Self {
+        // Before the sums, which are then moved as words.
+        let scattering_thermistors = match needs_scatter {
+            true => scattering_thermistors(scans),
+            false => 0,
+        };
         let mut sums = channel_sums(scans);
         let [.., last] = scans;
         if !are_all_codes_of_connected_thermistors(last) {
@@ -148,10 +153,7 @@ impl Samples {
             bridge_fault,
             emergency_stop,
             comparator_side_differs,
-            scattering_thermistors: match needs_scatter {
-                true => scattering_thermistors(scans),
-                false => 0,
-            },
+            scattering_thermistors,
         }
     }
 }
