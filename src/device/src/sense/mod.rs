@@ -362,7 +362,9 @@ impl SampleConverter {
     ) -> [Result<Celsius, ThermistorFault>; THERMISTORS_CONVERTED_IN_TURN] {
         let turn = self.next_in_turn % THERMISTORS_CONVERTED_IN_TURN;
         self.next_in_turn = turn + 1;
-        let are_connected = sums.iter().all(|sum| thermistor::check_wiring(*sum).is_ok());
+        let are_connected = sums
+            .iter()
+            .all(|sum| thermistor::check_wiring(*sum).is_ok());
         if are_connected
             && let Ok(now) = self.temperature(sums[turn], turn + 1)
             && let Some(last) = &mut self.last_temperatures
