@@ -41,7 +41,7 @@ const SUPPLY_TRIP_NET_TICKS: u8 = 10;
 /// station by [`Fault::HostSilent`].
 const HOST_SILENT_TICKS: u16 = 2000;
 
-/// Ticks of 1 ms from one evaluation of a detector that counts over 10 ms or more to the next. These detectors are two
+/// Ticks of 1 ms from one evaluation of a detector that counts over 30 ms or more to the next. These detectors are two
 /// groups that take turns, which halves their time in each tick; their counts stand for ticks.
 pub(super) const EVALUATION_INTERVAL_TICKS: u8 = 2;
 
@@ -134,17 +134,17 @@ impl FaultDetectors {
             .count_tick_and_evaluate_if_due(|| display.into_iter().flatten().max())
     }
 
-    /// Runs the detectors that compare several ticks and need valid readings, once per tick: that of jumps, and one of two
-    /// groups of others in turn. `readings` are those of this tick, `previous` is what the tick before demanded of the bridge; `streams` is true while telemetry is sent
-    /// to the host.
+    /// Runs the detectors that compare several ticks and need valid readings, once per tick: those of jumps and of the
+    /// supply, and one of two groups of others in turn. `readings` are those of this tick, `previous` is what the tick
+    /// before demanded of the bridge; `streams` is true while telemetry is sent to the host.
     ///
     /// # Errors
     /// The first fault in this order: a jump of the first or second display reading or of the sink's (0.5 K in 4 ms),
     /// [`Fault::DisplaysApart`] (3 K for 40 ms), [`Fault::CurrentHigh`] or [`Fault::CurrentLow`] (1 A plus a quarter of
     /// the demanded current for 30 ms), [`Fault::Polarity`] or [`Fault::Runaway`] (2.5 K against the current),
-    /// [`Fault::UnlikeModel`] (large residual for 30 ms), [`Fault::RoomAboveSkin`] (8 K for 40 ms), [`Fault::Supply`]
-    /// (outside of 10.8 to 13.2 V for 10 ms), [`Fault::HostSilent`] (2 s). A fault of the group that is not evaluated in this
-    /// tick is the one it found in the tick before.
+    /// [`Fault::UnlikeModel`] (large residual for 30 ms), [`Fault::RoomAboveSkin`] (8 K for 40 ms), [`Fault::HostSilent`]
+    /// (2 s), [`Fault::Supply`] (outside of 10.8 to 13.2 V for 10 ms). Of the group that is not evaluated in this tick
+    /// the fault is that of the tick before. A group counts even when another detector has a fault.
     pub fn run_detectors_of_valid_readings(
         &mut self,
         readings: &ValidReadings,
@@ -153,15 +153,19 @@ impl FaultDetectors {
     ) -> Result<(), Fault> {
         let [mut first, mut second] = self.found;
         if self.second_group_is_due {
-            second =
-                (self.check_direction_model_and_surroundings(readings, previous, streams)).err();
+            second = (self.check_direction_model_room_and_host(readings, previous, streams)).err();
         } else {
             first = (self.check_second_display_and_current(readings, previous)).err();
         }
         self.found = [first, second];
         self.second_group_is_due = !self.second_group_is_due;
+        let supply_is_wrong = self.supply.count_tick(
+            previous.supply_should_be_on && !(SUPPLY_MIN..=SUPPLY_MAX).contains(&readings.supply),
+            SUPPLY_TRIP_NET_TICKS,
+        );
         self.jump.check_jumps(readings)?;
-        first.or(second).map_or(Ok(()), Err)
+        first.or(second).map_or(Ok(()), Err)?;
+        err_if(supply_is_wrong, Fault::Supply)
     }
 
     /// The first group: the second display thermistor against the first one, the measured current against the demand.
@@ -181,8 +185,8 @@ impl FaultDetectors {
         current
     }
 
-    /// The second group: direction of the display, residual of its model, room, supply and host.
-    fn check_direction_model_and_surroundings(
+    /// The second group: direction of the display, residual of its model, room and host.
+    fn check_direction_model_room_and_host(
         &mut self,
         readings: &ValidReadings,
         previous: &PreviousDemandAndResidual,
@@ -194,10 +198,6 @@ impl FaultDetectors {
         let room_above_skin = self.room_above_skin.count_tick(
             readings.room.saturating_sub(readings.skin) > ROOM_ABOVE_SKIN_MAX,
             ROOM_ABOVE_SKIN_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS,
-        );
-        let supply_is_wrong = self.supply.count_tick(
-            previous.supply_should_be_on && !(SUPPLY_MIN..=SUPPLY_MAX).contains(&readings.supply),
-            SUPPLY_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS,
         );
         let follows_setpoint = previous.setpoint.is_some();
         let unlike_model = self.residual.count_tick(
@@ -215,7 +215,6 @@ impl FaultDetectors {
         wrong_way?;
         err_if(unlike_model, Fault::UnlikeModel)?;
         err_if(room_above_skin, Fault::RoomAboveSkin)?;
-        err_if(supply_is_wrong, Fault::Supply)?;
         err_if(host_silent, Fault::HostSilent)
     }
 

@@ -272,9 +272,16 @@ impl Readings {
 }
 
 /// Number of thermistors that take turns, 4: all but the display's first one, which the control law needs in every tick.
-/// To save time, each tick converts the sum of only one of them to °C, so that their temperatures are at most 3 ms old;
-/// the fastest of them moves by 0.1 K in this time. Every tick checks the wires of all.
+/// To save time, each tick converts the sum of only one of them to °C, so that their temperatures are at most 3 ms old.
+/// Every tick checks the wires of all.
 const THERMISTORS_CONVERTED_IN_TURN: usize = THERMISTOR_COUNT - 1;
+/// Number of thermistors, 2, whose temperature has a limit at which the station trips: second display and sink. They are the
+/// first of those that take turns.
+const THERMISTORS_WITH_LIMIT: usize = 2;
+/// Change of the sum of 16 conversions of a thermistor with a limit since its last conversion to °C, from which on it is
+/// converted out of turn, so that it trips in the tick in which it passes its limit by more than this: 4 codes, 0.1 K. The
+/// noise of a sum is 3 to 5, and the fastest display moves by this much in 4 ms.
+const CHANGE_CONVERTED_AT_ONCE: u16 = 4 * SCANS_PER_TICK as u16;
 
 /// Converts one finger's [`Samples`] of each tick to [`Readings`] with the finger's calibration. Stores the zero of the
 /// force sensor, which it tracks while no finger touches, and the last temperatures of the thermistors that take turns.
@@ -289,6 +296,8 @@ pub struct SampleConverter {
     /// thermistors were connected in the same tick, also after one of them was open or shorted, and after a change of the
     /// calibration; until then each tick converts all of them.
     last_temperatures: Option<[Celsius; THERMISTORS_CONVERTED_IN_TURN]>,
+    /// Sums that were last converted, of the thermistors with a limit.
+    last_sums: [u16; THERMISTORS_WITH_LIMIT],
     /// Number of the thermistor in `last_temperatures` that the next tick converts to °C.
     next_in_turn: usize,
 }
@@ -305,6 +314,7 @@ impl SampleConverter {
             force: ForceChannel::new(&settings.force),
             current_per_unit: to_fixed(per_unit),
             last_temperatures: None,
+            last_sums: [0; THERMISTORS_WITH_LIMIT],
             next_in_turn: 0,
         }
     }
@@ -332,8 +342,8 @@ impl SampleConverter {
 
     /// Converts the samples of one tick to °C, N and A. To save computing time, each tick converts only the display's first
     /// thermistor and one of the others, in turn, and gives the last temperatures of the other three. A thermistor's reading
-    /// is `Err` in every tick in which its own wire is open or shorted. Until one tick has found all four connected, each
-    /// tick converts all of them.
+    /// is `Err` in every tick in which its own wire is open or shorted. All four are converted until one tick has found all
+    /// of them connected, and when second display or sink have changed by 0.1 K since they were converted.
     #[must_use]
     pub fn convert_samples(&mut self, samples: &Samples) -> Readings {
         let [display_sum, others @ ..] = samples.thermistor_sums();
@@ -365,11 +375,19 @@ impl SampleConverter {
         let are_connected = sums
             .iter()
             .all(|sum| thermistor::check_wiring(*sum).is_ok());
+        let have_moved = (sums.iter().zip(&self.last_sums)).any(|(now, last)| {
+            let change = now.wrapping_sub(*last);
+            change.wrapping_add(CHANGE_CONVERTED_AT_ONCE) > 2 * CHANGE_CONVERTED_AT_ONCE
+        });
         if are_connected
+            && !have_moved
             && let Ok(now) = self.temperature(sums[turn], turn + 1)
             && let Some(last) = &mut self.last_temperatures
         {
             last[turn] = now;
+            if let Some(last_sum) = self.last_sums.get_mut(turn) {
+                *last_sum = sums[turn];
+            }
             return last.map(Ok);
         }
         self.temperatures_of_all(sums)
@@ -389,6 +407,8 @@ impl SampleConverter {
             }
             _ => None,
         };
+        let [display_check, sink, ..] = sums;
+        self.last_sums = [display_check, sink];
         all
     }
 
