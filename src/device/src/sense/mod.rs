@@ -281,7 +281,7 @@ const THERMISTORS_WITH_LIMIT: usize = 2;
 /// Change of the sum of 16 conversions of a thermistor with a limit since its last conversion to °C, from which on it is
 /// converted out of turn, so that it trips in the tick in which it passes its limit by more than this: 4 codes, 0.1 K. The
 /// noise of a sum is 3 to 5, and the fastest display moves by this much in 4 ms.
-const CHANGE_CONVERTED_AT_ONCE: u16 = 4 * SCANS_PER_TICK as u16;
+const CHANGE_CONVERTED_AT_ONCE: u32 = 4 * SCANS_PER_TICK as u32;
 
 /// Converts one finger's [`Samples`] of each tick to [`Readings`] with the finger's calibration. Stores the zero of the
 /// force sensor, which it tracks while no finger touches, and the last temperatures of the thermistors that take turns.
@@ -296,8 +296,8 @@ pub struct SampleConverter {
     /// thermistors were connected in the same tick, also after one of them was open or shorted, and after a change of the
     /// calibration; until then each tick converts all of them.
     last_temperatures: Option<[Celsius; THERMISTORS_CONVERTED_IN_TURN]>,
-    /// Sums that were last converted, of the thermistors with a limit.
-    last_sums: [u16; THERMISTORS_WITH_LIMIT],
+    /// The sums from which `last_temperatures` were converted.
+    last_sums: [u32; THERMISTORS_CONVERTED_IN_TURN],
     /// Number of the thermistor in `last_temperatures` that the next tick converts to °C.
     next_in_turn: usize,
 }
@@ -314,7 +314,7 @@ impl SampleConverter {
             force: ForceChannel::new(&settings.force),
             current_per_unit: to_fixed(per_unit),
             last_temperatures: None,
-            last_sums: [0; THERMISTORS_WITH_LIMIT],
+            last_sums: [0; THERMISTORS_CONVERTED_IN_TURN],
             next_in_turn: 0,
         }
     }
@@ -375,9 +375,13 @@ impl SampleConverter {
         let are_connected = sums
             .iter()
             .all(|sum| thermistor::check_wiring(*sum).is_ok());
-        let have_moved = (sums.iter().zip(&self.last_sums)).any(|(now, last)| {
-            let change = now.wrapping_sub(*last);
-            change.wrapping_add(CHANGE_CONVERTED_AT_ONCE) > 2 * CHANGE_CONVERTED_AT_ONCE
+        let mut with_limit = sums
+            .iter()
+            .zip(&self.last_sums)
+            .take(THERMISTORS_WITH_LIMIT);
+        let have_moved = with_limit.any(|(now, last)| {
+            (u32::from(*now) + CHANGE_CONVERTED_AT_ONCE).wrapping_sub(*last)
+                > 2 * CHANGE_CONVERTED_AT_ONCE
         });
         if are_connected
             && !have_moved
@@ -385,9 +389,7 @@ impl SampleConverter {
             && let Some(last) = &mut self.last_temperatures
         {
             last[turn] = now;
-            if let Some(last_sum) = self.last_sums.get_mut(turn) {
-                *last_sum = sums[turn];
-            }
+            self.last_sums[turn] = sums[turn].into();
             return last.map(Ok);
         }
         self.temperatures_of_all(sums)
@@ -407,8 +409,7 @@ impl SampleConverter {
             }
             _ => None,
         };
-        let [display_check, sink, ..] = sums;
-        self.last_sums = [display_check, sink];
+        self.last_sums = sums.map(u32::from);
         all
     }
 
