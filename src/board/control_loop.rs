@@ -63,7 +63,9 @@ impl ControlLoop {
         };
         let needs_scatter = device.finger_needs_scatter(finger);
         let samples = Samples::from_scans(scans, inputs, needs_scatter);
-        if host_is_active.swap(false, Ordering::Relaxed) {
+        // A line that comes between load and store counts in this tick, as the one before it.
+        if host_is_active.load(Ordering::Relaxed) {
+            host_is_active.store(false, Ordering::Relaxed);
             device.note_host_activity();
         }
         if stack_is_overrun() {

@@ -10,7 +10,8 @@ static UPTIME_MS: AtomicU32 = AtomicU32::new(0);
 defmt::timestamp!("{=u32:ms}", UPTIME_MS.load(Ordering::Relaxed));
 
 /// Advances the time stamp of the log by one millisecond; called in every control tick of the first
-/// finger.
+/// finger, and from nowhere else.
 pub fn advance_uptime_by_1_ms() {
-    UPTIME_MS.fetch_add(1, Ordering::Relaxed);
+    let now = UPTIME_MS.load(Ordering::Relaxed);
+    UPTIME_MS.store(now.wrapping_add(1), Ordering::Relaxed);
 }

@@ -2,6 +2,7 @@
 
 use super::Fault;
 use super::debounce::UpDownDebounceCounter;
+use super::detectors::EVALUATION_INTERVAL_TICKS;
 use crate::drive::Current;
 
 /// Part of the tolerated difference between measured and demanded current that does not depend on the demand, A. At
@@ -25,7 +26,7 @@ pub struct CurrentMismatchDetector(UpDownDebounceCounter);
 
 impl CurrentMismatchDetector {
     /// Compares the magnitude of `measured`, A, the current of this tick, with that of `demanded`, A (positive cools,
-    /// zero if the bridge was off), the current that the tick before demanded of the bridge. To be called once in every
+    /// zero if the bridge was off), the current that the tick before demanded of the bridge. To be called in every second
     /// tick with valid readings.
     ///
     /// # Errors
@@ -39,7 +40,10 @@ impl CurrentMismatchDetector {
             CONSTANT_CURRENT_TOLERANCE.saturating_add(demanded >> PROPORTIONAL_TOLERANCE_SHIFT);
         let high = measured > demanded.saturating_add(tolerance);
         let low = measured < demanded.saturating_sub(tolerance);
-        if !self.0.count_tick(high || low, MISMATCH_TRIP_NET_TICKS) {
+        if !self.0.count_tick(
+            high || low,
+            MISMATCH_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS,
+        ) {
             Ok(())
         } else if high {
             Err(Fault::CurrentHigh)

@@ -1,6 +1,6 @@
 //! A debounce counter.
 
-/// Counter that rises by one in each tick of 1 ms in which a condition holds, and falls by one in each other tick. It
+/// Counter that rises by one in each evaluated tick in which a condition holds, and falls by one in each other one. It
 /// stays between zero and the limit given to [`Self::count_tick`]. Unlike a counter that restarts at zero, it also
 /// reaches the limit if the condition comes and goes but holds in more than half of the ticks. At the limit, one tick
 /// without the condition ends the detection.
@@ -8,7 +8,7 @@
 pub struct UpDownDebounceCounter(i32);
 
 impl UpDownDebounceCounter {
-    /// Counts one tick of 1 ms: up by one, to `ticks` at most, if `condition` holds; else down by one, to zero at
+    /// Counts one evaluated tick: up by one, to `ticks` at most, if `condition` holds; else down by one, to zero at
     /// least. Returns whether the count is now `ticks`.
     pub fn count_tick(&mut self, condition: bool, ticks: u8) -> bool {
         let ticks = i32::from(ticks);

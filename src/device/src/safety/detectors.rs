@@ -41,6 +41,10 @@ const SUPPLY_TRIP_NET_TICKS: u8 = 10;
 /// station by [`Fault::HostSilent`].
 const HOST_SILENT_TICKS: u16 = 2000;
 
+/// Ticks of 1 ms from one evaluation of a detector that counts over 30 ms or more to the next. These detectors are two
+/// groups that take turns, which halves their time in each tick; their counts stand for ticks.
+pub(super) const EVALUATION_INTERVAL_TICKS: u8 = 2;
+
 /// What one tick demanded of the bridge, and whether the residual of the display's model was too large in that tick.
 /// The fault detectors compare the next tick's readings with these values, because those readings are the first that
 /// respond to that current.
@@ -76,6 +80,9 @@ pub struct FaultDetectors {
     supply: UpDownDebounceCounter,
     dose: ThermalDose,
     host_silent_ticks: u16,
+    second_group_is_due: bool,
+    /// What either group of detectors found when it was last evaluated.
+    found: [Option<Fault>; EVALUATION_INTERVAL_TICKS as usize],
 }
 
 impl FaultDetectors {
@@ -127,17 +134,59 @@ impl FaultDetectors {
             .count_tick_and_evaluate_if_due(|| display.into_iter().flatten().max())
     }
 
-    /// Runs all detectors that compare several ticks and need valid readings, once per tick. `readings` are those of
-    /// this tick, `previous` is what the tick before demanded of the bridge; `streams` is true while telemetry is sent
-    /// to the host.
+    /// Runs the detectors that compare several ticks and need valid readings, once per tick: those of jumps and of the
+    /// supply, and one of two groups of others in turn. `readings` are those of this tick, `previous` is what the tick
+    /// before demanded of the bridge; `streams` is true while telemetry is sent to the host.
     ///
     /// # Errors
     /// The first fault in this order: a jump of the first or second display reading or of the sink's (0.5 K in 4 ms),
     /// [`Fault::DisplaysApart`] (3 K for 40 ms), [`Fault::CurrentHigh`] or [`Fault::CurrentLow`] (1 A plus a quarter of
     /// the demanded current for 30 ms), [`Fault::Polarity`] or [`Fault::Runaway`] (2.5 K against the current),
-    /// [`Fault::UnlikeModel`] (large residual for 30 ms), [`Fault::RoomAboveSkin`] (8 K for 40 ms), [`Fault::Supply`]
-    /// (outside of 10.8 to 13.2 V for 10 ms), [`Fault::HostSilent`] (2 s). All these detectors count the tick, even when an earlier one has a fault.
+    /// [`Fault::UnlikeModel`] (large residual for 30 ms), [`Fault::RoomAboveSkin`] (8 K for 40 ms), [`Fault::HostSilent`]
+    /// (2 s), [`Fault::Supply`] (outside of 10.8 to 13.2 V for 10 ms). Of the group that is not evaluated in this tick
+    /// the fault is that of the tick before. A group counts even when another detector has a fault.
     pub fn run_detectors_of_valid_readings(
+        &mut self,
+        readings: &ValidReadings,
+        previous: &PreviousDemandAndResidual,
+        streams: bool,
+    ) -> Result<(), Fault> {
+        let [mut first, mut second] = self.found;
+        if self.second_group_is_due {
+            second = (self.check_direction_model_room_and_host(readings, previous, streams)).err();
+        } else {
+            first = (self.check_second_display_and_current(readings, previous)).err();
+        }
+        self.found = [first, second];
+        self.second_group_is_due = !self.second_group_is_due;
+        let supply_is_wrong = self.supply.count_tick(
+            previous.supply_should_be_on && !(SUPPLY_MIN..=SUPPLY_MAX).contains(&readings.supply),
+            SUPPLY_TRIP_NET_TICKS,
+        );
+        self.jump.check_jumps(readings)?;
+        first.or(second).map_or(Ok(()), Err)?;
+        err_if(supply_is_wrong, Fault::Supply)
+    }
+
+    /// The first group: the second display thermistor against the first one, the measured current against the demand.
+    fn check_second_display_and_current(
+        &mut self,
+        readings: &ValidReadings,
+        previous: &PreviousDemandAndResidual,
+    ) -> Result<(), Fault> {
+        let difference = readings.display.saturating_sub(readings.check);
+        let displays_differ = self.display_difference.count_tick(
+            !(-DISPLAY_THERMISTOR_DIFFERENCE_MAX..=DISPLAY_THERMISTOR_DIFFERENCE_MAX)
+                .contains(&difference),
+            DISPLAY_DIFFERENCE_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS,
+        );
+        let current = (self.current_mismatch).check_current(previous.demanded, readings.current);
+        err_if(displays_differ, Fault::DisplaysApart)?;
+        current
+    }
+
+    /// The second group: direction of the display, residual of its model, room and host.
+    fn check_direction_model_room_and_host(
         &mut self,
         readings: &ValidReadings,
         previous: &PreviousDemandAndResidual,
@@ -146,41 +195,26 @@ impl FaultDetectors {
         let above_setpoint = previous.setpoint.map_or(Celsius::ZERO, |setpoint| {
             readings.display.saturating_sub(setpoint.celsius())
         });
-        let difference = readings.display.saturating_sub(readings.check);
-        let displays_differ = self.display_difference.count_tick(
-            !(-DISPLAY_THERMISTOR_DIFFERENCE_MAX..=DISPLAY_THERMISTOR_DIFFERENCE_MAX)
-                .contains(&difference),
-            DISPLAY_DIFFERENCE_TRIP_NET_TICKS,
-        );
         let room_above_skin = self.room_above_skin.count_tick(
             readings.room.saturating_sub(readings.skin) > ROOM_ABOVE_SKIN_MAX,
-            ROOM_ABOVE_SKIN_TRIP_NET_TICKS,
-        );
-        let supply_is_wrong = self.supply.count_tick(
-            previous.supply_should_be_on && !(SUPPLY_MIN..=SUPPLY_MAX).contains(&readings.supply),
-            SUPPLY_TRIP_NET_TICKS,
+            ROOM_ABOVE_SKIN_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS,
         );
         let follows_setpoint = previous.setpoint.is_some();
         let unlike_model = self.residual.count_tick(
             follows_setpoint && previous.residual_is_large,
-            UNLIKE_MODEL_TRIP_NET_TICKS,
+            UNLIKE_MODEL_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS,
         );
         self.host_silent_ticks = if streams && follows_setpoint {
-            self.host_silent_ticks.saturating_add(1)
+            (self.host_silent_ticks).saturating_add(EVALUATION_INTERVAL_TICKS.into())
         } else {
             0
         };
         let host_silent = self.host_silent_ticks >= HOST_SILENT_TICKS;
-        let current = (self.current_mismatch).check_current(previous.demanded, readings.current);
         let wrong_way =
             (self.wrong_way).check_direction(previous.demanded, readings.display, above_setpoint);
-        self.jump.check_jumps(readings)?;
-        err_if(displays_differ, Fault::DisplaysApart)?;
-        current?;
         wrong_way?;
         err_if(unlike_model, Fault::UnlikeModel)?;
         err_if(room_above_skin, Fault::RoomAboveSkin)?;
-        err_if(supply_is_wrong, Fault::Supply)?;
         err_if(host_silent, Fault::HostSilent)
     }
 

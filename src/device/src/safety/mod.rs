@@ -4,7 +4,8 @@
 //! fault, both of its legs are high-impedance; only that is called "off". Off is safe only while the sink is cool
 //! enough, because heat flows back from the sink to the display; so the sink has the lowest upper limit of all.
 //!
-//! **Detection.** Every detector sees every tick in every state, so that a fault that was present before `arm` refuses
+//! **Detection.** Every detector looks at every tick in every state, or, if it counts over 30 ms or more, at every second
+//! one, so that a fault that was present before `arm` refuses
 //! it, and one that is still present after a trip refuses `clear`. Faults that one tick does not show have detectors
 //! that count ticks; these need valid readings, except for frozen signals and the thermal dose. Only the bridge's fault
 //! line and its supply are ignored while the bridge is off and untested, or tripped: the comparator pulls the line, too,

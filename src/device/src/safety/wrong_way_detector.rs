@@ -9,6 +9,7 @@
 use contact_model::fixed_point::Celsius;
 
 use super::Fault;
+use super::detectors::EVALUATION_INTERVAL_TICKS;
 use crate::drive::Current;
 
 /// Change of the display's reading against the current, K, at which the station trips by [`Fault::Polarity`] or
@@ -18,10 +19,10 @@ const TRIP_TEMPERATURE_REVERSAL: Celsius = Celsius::lit("2.5");
 /// Magnitude of the mean demanded current, A, from which on the direction of the reading is checked. Below it, the sign
 /// of the mean may differ from that of the current that flows, so the check starts again later.
 const DIRECTION_CHECK_CURRENT_MIN: Current = Current::lit("1");
-/// Time constant of the filter of the demanded current, as a power of two of ticks of 1 ms: 8 gives 0.26 s. The filter
+/// Time constant of the filter of the demanded current, as a power of two of evaluations, 2 ms apart: 7 gives 0.26 s. The filter
 /// is needed because the thermistor's lag (up to 0.5 s) lets the reading move in the old direction after the current
 /// has changed sign.
-const CURRENT_FILTER_SHIFT: u32 = 8;
+const CURRENT_FILTER_SHIFT: u32 = 7;
 /// Ticks of 1 ms since the best reading (the lowest while cooling, the highest while warming). If the reading has moved
 /// back by [`TRIP_TEMPERATURE_REVERSAL`] after this time or later, the fault is [`Fault::Runaway`]; if earlier,
 /// [`Fault::Polarity`].
@@ -42,7 +43,7 @@ pub struct WrongWayDetector {
 }
 
 impl WrongWayDetector {
-    /// Checks in one tick whether the display moves against the mean current. `demanded` is the current of the tick
+    /// Checks, in every second tick, whether the display moves against the mean current. `demanded` is the current of the tick
     /// before, A, positive cools and zero if the bridge was off; `display` is the reading of the display's first
     /// thermistor, °C; `above_setpoint` is that reading minus the set-point, K, or zero if no set-point is followed, in
     /// which case the check starts again later.
@@ -73,7 +74,8 @@ impl WrongWayDetector {
         }
         match self.best {
             Some(best) if display >= best => {
-                self.ticks_since_best = self.ticks_since_best.saturating_add(1);
+                self.ticks_since_best =
+                    (self.ticks_since_best).saturating_add(EVALUATION_INTERVAL_TICKS.into());
                 if display.saturating_sub(best) < TRIP_TEMPERATURE_REVERSAL {
                     Ok(())
                 } else if self.ticks_since_best < RUNAWAY_TICKS_SINCE_BEST_MIN {

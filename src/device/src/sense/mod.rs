@@ -17,7 +17,6 @@ use core::array;
 use contact_model::fixed_point::{Celsius, Force, to_fixed};
 
 use crate::drive::Current;
-use calibration_tables::ThermistorCorrection;
 use force_sensor::ForceChannel;
 use thermal_settings::Settings;
 use thermistor::ThermistorTable;
@@ -117,12 +116,15 @@ impl Samples {
         inputs: DigitalInputs,
         needs_scatter: bool,
     ) -> Self {
+        // Before the sums, which are then moved as words.
+        let scattering_thermistors = match needs_scatter {
+            true => scattering_thermistors(scans),
+            false => 0,
+        };
         let mut sums = channel_sums(scans);
         let [.., last] = scans;
-        for (sum, &code) in sums.iter_mut().zip(last).take(THERMISTOR_COUNT) {
-            if thermistor::is_open_or_short_code(code) {
-                *sum = code.saturating_mul(SCANS_PER_TICK as u16);
-            }
+        if !are_all_codes_of_connected_thermistors(last) {
+            replace_sums_of_open_or_shorted_wires(&mut sums, last);
         }
         let [
             display,
@@ -151,10 +153,36 @@ impl Samples {
             bridge_fault,
             emergency_stop,
             comparator_side_differs,
-            scattering_thermistors: match needs_scatter {
-                true => scattering_thermistors(scans),
-                false => 0,
-            },
+            scattering_thermistors,
+        }
+    }
+}
+
+/// Whether no code of a scan is that of an open or shorted thermistor; false also if another channel has such a code.
+/// Compares two codes at once: bit 15 of half a word shows whether the sum of a code and a constant has passed 2^15. As codes
+/// are below 4096, nothing carries into the other half.
+fn are_all_codes_of_connected_thermistors(scan: &Scan) -> bool {
+    const TOP_BITS: u32 = 0x8000_8000;
+    let in_both_halves = |number: u16| u32::from(number) * 0x1_0001;
+    let from_smallest = in_both_halves((1 << 15) - thermistor::SMALLEST_CONNECTED_CODE);
+    let above_largest = in_both_halves((1 << 15) - 1 - thermistor::LARGEST_CONNECTED_CODE);
+    let words: [u32; ADC_CHANNELS_PER_FINGER / 2] = bytemuck::cast(*scan);
+    let (mut connected, mut beyond_12_bits) = (TOP_BITS, 0);
+    for word in words.into_iter().take(THERMISTOR_COUNT.div_ceil(2)) {
+        connected &= word.wrapping_add(from_smallest) & !word.wrapping_add(above_largest);
+        beyond_12_bits |= word & in_both_halves(0xf000);
+    }
+    connected == TOP_BITS && beyond_12_bits == 0
+}
+
+/// Replaces the sum of each thermistor whose last conversion is that of an open or shorted wire by 16 times that
+/// conversion.
+#[cold]
+#[inline(never)]
+fn replace_sums_of_open_or_shorted_wires(sums: &mut [u16; ADC_CHANNELS_PER_FINGER], last: &Scan) {
+    for (sum, &code) in sums.iter_mut().zip(last).take(THERMISTOR_COUNT) {
+        if thermistor::is_open_or_short_code(code) {
+            *sum = code.saturating_mul(SCANS_PER_TICK as u16);
         }
     }
 }
@@ -243,13 +271,20 @@ impl Readings {
     };
 }
 
-/// Number of slow thermistors, 2: skin and room. Their temperatures change by less than 1 mK in two ticks of 1 ms. To
-/// save time, each tick converts the sum of only one of them to °C, in turn, after one tick has converted both. Every
-/// tick checks the wires of both.
-const ALTERNATELY_CONVERTED_THERMISTOR_COUNT: usize = 2;
+/// Number of thermistors that take turns, 4: all but the display's first one, which the control law needs in every tick.
+/// To save time, each tick converts the sum of only one of them to °C, so that their temperatures are at most 3 ms old.
+/// Every tick checks the wires of all.
+const THERMISTORS_CONVERTED_IN_TURN: usize = THERMISTOR_COUNT - 1;
+/// Number of thermistors, 2, whose temperature has a limit at which the station trips: second display and sink. They are the
+/// first of those that take turns.
+const THERMISTORS_WITH_LIMIT: usize = 2;
+/// Change of the sum of 16 conversions of a thermistor with a limit since its last conversion to °C, from which on it is
+/// converted out of turn, so that it trips in the tick in which it passes its limit by more than this: 4 codes, 0.1 K. The
+/// noise of a sum is 3 to 5, and the fastest display moves by this much in 4 ms.
+const CHANGE_CONVERTED_AT_ONCE: u32 = 4 * SCANS_PER_TICK as u32;
 
 /// Converts one finger's [`Samples`] of each tick to [`Readings`] with the finger's calibration. Stores the zero of the
-/// force sensor, which it tracks while no finger touches, and the last temperatures of skin and room.
+/// force sensor, which it tracks while no finger touches, and the last temperatures of the thermistors that take turns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SampleConverter {
     thermistor: ThermistorTable,
@@ -257,14 +292,14 @@ pub struct SampleConverter {
     force: ForceChannel,
     /// Current of the Peltier module, A, per unit of the current mirror's sum of 16 conversions; nominally 1/6400 A.
     current_per_unit: Current,
-    /// Last converted temperatures of skin and room, °C, in this order. Stored because each tick converts only one of
-    /// the two, to save computing time; the other one keeps its last value, and its reading is this value while its
-    /// wire is intact. `None` until both thermistors were connected in the same tick; until then each tick converts
-    /// both.
-    slow_temperatures: Option<[Celsius; ALTERNATELY_CONVERTED_THERMISTOR_COUNT]>,
-    /// Selects the slow thermistor that the next tick converts to °C: the skin's if this number is even, the room's if
-    /// it is odd. Not used while `slow_temperatures` is `None`, because each tick then converts both.
-    next_slow: usize,
+    /// Last converted temperatures, °C, of second display, sink, skin and room, in this order. `None` until all four
+    /// thermistors were connected in the same tick, also after one of them was open or shorted, and after a change of the
+    /// calibration; until then each tick converts all of them.
+    last_temperatures: Option<[Celsius; THERMISTORS_CONVERTED_IN_TURN]>,
+    /// The sums from which `last_temperatures` were converted.
+    last_sums: [u32; THERMISTORS_CONVERTED_IN_TURN],
+    /// Number of the thermistor in `last_temperatures` that the next tick converts to °C.
+    next_in_turn: usize,
 }
 
 impl SampleConverter {
@@ -278,8 +313,9 @@ impl SampleConverter {
             calibration: CalibrationTables::new(settings),
             force: ForceChannel::new(&settings.force),
             current_per_unit: to_fixed(per_unit),
-            slow_temperatures: None,
-            next_slow: 0,
+            last_temperatures: None,
+            last_sums: [0; THERMISTORS_CONVERTED_IN_TURN],
+            next_in_turn: 0,
         }
     }
 
@@ -301,47 +337,21 @@ impl SampleConverter {
     /// changed.
     pub fn replace_calibration_tables(&mut self, calibration: &CalibrationTables) {
         self.calibration = *calibration;
+        self.last_temperatures = None;
     }
 
-    /// Converts the samples of one tick to °C, N and A. To save computing time, each tick converts only one of skin and
-    /// room, in turn, and gives the last temperature of the other one, because both change slowly; until one tick has
-    /// found both thermistors connected, each tick converts both. A thermistor's reading is `Err` in every tick in
-    /// which its own wire is open or shorted.
+    /// Converts the samples of one tick to °C, N and A. To save computing time, each tick converts only the display's first
+    /// thermistor and one of the others, in turn, and gives the last temperatures of the other three. A thermistor's reading
+    /// is `Err` in every tick in which its own wire is open or shorted. All four are converted until one tick has found all
+    /// of them connected, and when second display or sink have changed by 0.1 K since they were converted.
     #[must_use]
     pub fn convert_samples(&mut self, samples: &Samples) -> Readings {
-        let CalibrationTables {
-            converter,
-            thermistors: [display, display_check, sink, slow_corrections @ ..],
-        } = &self.calibration;
-        let thermistor = &self.thermistor;
-        let temperature = |sum, correction: &ThermistorCorrection| {
-            let uncorrected = thermistor.temperature_of_sum(sum, converter.correct_sum(sum))?;
-            Ok(correction.corrected_temperature(uncorrected))
-        };
-        let slow_sums = [samples.skin, samples.room];
-        let slow = if let Some(last) = &mut self.slow_temperatures {
-            let converted = self.next_slow % ALTERNATELY_CONVERTED_THERMISTOR_COUNT;
-            self.next_slow = converted + 1;
-            if let Ok(now) = temperature(slow_sums[converted], &slow_corrections[converted]) {
-                last[converted] = now;
-            }
-            let [skin, room] = *last;
-            [
-                thermistor::check_wiring(samples.skin).map(|()| skin),
-                thermistor::check_wiring(samples.room).map(|()| room),
-            ]
-        } else {
-            let all = array::from_fn(|i| temperature(slow_sums[i], &slow_corrections[i]));
-            if let [Ok(skin), Ok(room)] = all {
-                self.slow_temperatures = Some([skin, room]);
-            }
-            all
-        };
-        let [skin, room] = slow;
+        let [display_sum, others @ ..] = samples.thermistor_sums();
+        let [display_check, sink, skin, room] = self.temperatures_in_turn(others);
         Readings {
-            display: temperature(samples.display, display),
-            display_check: temperature(samples.display_check, display_check),
-            sink: temperature(samples.sink, sink),
+            display: self.temperature(display_sum, 0),
+            display_check,
+            sink,
             skin,
             room,
             force: self.force.force_of_sum(samples.force),
@@ -353,5 +363,63 @@ impl SampleConverter {
             bridge_fault: samples.bridge_fault,
             emergency_stop: samples.emergency_stop,
         }
+    }
+
+    /// Temperatures of all thermistors but the display's first, of which one is converted in this tick.
+    fn temperatures_in_turn(
+        &mut self,
+        sums: [u16; THERMISTORS_CONVERTED_IN_TURN],
+    ) -> [Result<Celsius, ThermistorFault>; THERMISTORS_CONVERTED_IN_TURN] {
+        let turn = self.next_in_turn % THERMISTORS_CONVERTED_IN_TURN;
+        self.next_in_turn = turn + 1;
+        let are_connected = sums
+            .iter()
+            .all(|sum| thermistor::check_wiring(*sum).is_ok());
+        let mut with_limit = sums
+            .iter()
+            .zip(&self.last_sums)
+            .take(THERMISTORS_WITH_LIMIT);
+        let have_moved = with_limit.any(|(now, last)| {
+            (u32::from(*now) + CHANGE_CONVERTED_AT_ONCE).wrapping_sub(*last)
+                > 2 * CHANGE_CONVERTED_AT_ONCE
+        });
+        if are_connected
+            && !have_moved
+            && let Ok(now) = self.temperature(sums[turn], turn + 1)
+            && let Some(last) = &mut self.last_temperatures
+        {
+            last[turn] = now;
+            self.last_sums[turn] = sums[turn].into();
+            return last.map(Ok);
+        }
+        self.temperatures_of_all(sums)
+    }
+
+    /// Converts the sums of all thermistors but the display's first.
+    #[cold]
+    #[inline(never)]
+    fn temperatures_of_all(
+        &mut self,
+        sums: [u16; THERMISTORS_CONVERTED_IN_TURN],
+    ) -> [Result<Celsius, ThermistorFault>; THERMISTORS_CONVERTED_IN_TURN] {
+        let all = array::from_fn(|i| self.temperature(sums[i], i + 1));
+        self.last_temperatures = match all {
+            [Ok(display_check), Ok(sink), Ok(skin), Ok(room)] => {
+                Some([display_check, sink, skin, room])
+            }
+            _ => None,
+        };
+        self.last_sums = sums.map(u32::from);
+        all
+    }
+
+    /// Temperature, °C, of the thermistor with this number, by its sum.
+    fn temperature(&self, sum: u16, thermistor: usize) -> Result<Celsius, ThermistorFault> {
+        let CalibrationTables {
+            converter,
+            thermistors,
+        } = &self.calibration;
+        let uncorrected = (self.thermistor).temperature_of_sum(sum, converter.correct_sum(sum))?;
+        Ok(thermistors[thermistor % THERMISTOR_COUNT].corrected_temperature(uncorrected))
     }
 }

@@ -13,9 +13,14 @@ const SHORT_BELOW_SUM: u16 = 40 * 16;
 /// counts as open. A 10 kΩ thermistor with a beta of 3950 K and a 10 kΩ pull-up gives 4060 counts at -53 °C.
 const OPEN_ABOVE_SUM: u16 = 4060 * 16;
 
+/// Smallest 12-bit code of one conversion of a connected thermistor.
+pub(super) const SMALLEST_CONNECTED_CODE: u16 = SHORT_BELOW_SUM / 16;
+/// Largest 12-bit code of one conversion of a connected thermistor.
+pub(super) const LARGEST_CONNECTED_CODE: u16 = OPEN_ABOVE_SUM / 16;
+
 /// Whether the 12-bit code of one conversion is that of a shorted thermistor (below 40) or of an open one (above 4060).
 pub(super) const fn is_open_or_short_code(code: u16) -> bool {
-    code.wrapping_sub(SHORT_BELOW_SUM / 16) > (OPEN_ABOVE_SUM - SHORT_BELOW_SUM) / 16
+    code.wrapping_sub(SMALLEST_CONNECTED_CODE) > LARGEST_CONNECTED_CODE - SMALLEST_CONNECTED_CODE
 }
 
 /// Checks that a thermistor's sum of 16 conversions is that of a connected thermistor: 40 to 4060 counts a conversion.

@@ -172,8 +172,8 @@ impl Station {
     #[inline(never)]
     pub fn step(&mut self, samples: &Samples) -> BoardOutputs {
         self.tick = self.tick.wrapping_add(1);
-        let readings = self.convert_samples_and_add_calibration_means(samples);
-        let valid = self.valid_readings_or_fault(samples, &readings);
+        self.convert_samples_and_add_calibration_means(samples);
+        let valid = self.valid_readings_or_fault(samples);
         let (demand, reference) = match valid {
             Ok(valid) => {
                 let estimate = self.detect_touch_and_update_estimates(samples, &valid);
@@ -187,25 +187,24 @@ impl Station {
                 (Err(fault), None)
             }
         };
-        let demand = self.trip_on_fault(demand, &readings);
+        let demand = self.trip_on_fault(demand);
         let (outputs, demanded) = self.apply_demand(demand);
         // Field by field, which saves 150 cycles of copying the whole.
         self.last.samples = *samples;
-        self.last.readings = readings;
         self.last.reference = reference;
         self.last.demanded = demanded;
         outputs
     }
 
-    /// Converts the tick's samples to °C, N and A. Unless an object is presented, also adds the thermistors' samples to
+    /// Converts the tick's samples to °C, N and A, as the last readings. Unless an object is presented, also adds the thermistors' samples to
     /// the half-second means from which calibrations are computed.
     #[inline(never)]
-    fn convert_samples_and_add_calibration_means(&mut self, samples: &Samples) -> Readings {
+    fn convert_samples_and_add_calibration_means(&mut self, samples: &Samples) {
         // Calibrations are refused while an object is presented.
         if !self.state.is_presenting_object() {
             self.averages.add_tick(&samples.thermistor_sums());
         }
-        self.sensors.convert_samples(samples)
+        self.last.readings = self.sensors.convert_samples(samples);
     }
 
     /// Checks the tick by all fault detectors, and returns its readings as valid if none has found a fault.
@@ -214,11 +213,8 @@ impl Station {
     /// The first fault in this order: sensor faults and limits that a single tick shows, bridge fault line, detectors
     /// that count over several ticks, thermal dose, frozen samples.
     #[inline(never)]
-    fn valid_readings_or_fault(
-        &mut self,
-        samples: &Samples,
-        readings: &Readings,
-    ) -> Result<ValidReadings, Fault> {
+    fn valid_readings_or_fault(&mut self, samples: &Samples) -> Result<ValidReadings, Fault> {
+        let readings = &self.last.readings;
         // What the tick before demanded of the bridge; this tick's readings respond to it.
         let previous = PreviousDemandAndResidual {
             demanded: self.last.demanded,
@@ -243,7 +239,7 @@ impl Station {
             }
         };
         let valid = valid?;
-        self.bridge_line_fault_unless_expected(readings)?;
+        self.bridge_line_fault_unless_expected(&self.last.readings)?;
         over_ticks?;
         dose?;
         frozen?;
@@ -396,11 +392,7 @@ impl Station {
     /// and, unless the station is already tripped, trips it, with the tick's readings in the trip's cause. In both
     /// cases the fault latch stores which fault is present now, if any, because `clear` is refused while a fault is
     /// present.
-    fn trip_on_fault(
-        &mut self,
-        demand: Result<BridgeDemand, Fault>,
-        readings: &Readings,
-    ) -> BridgeDemand {
+    fn trip_on_fault(&mut self, demand: Result<BridgeDemand, Fault>) -> BridgeDemand {
         self.latch
             .set_present_to_detected_else_external(demand.err());
         demand.unwrap_or_else(|fault| {
@@ -408,7 +400,7 @@ impl Station {
             self.trip(TripCause::new(
                 fault,
                 self.tick,
-                readings,
+                &self.last.readings,
                 previously_demanded,
             ));
             BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST
