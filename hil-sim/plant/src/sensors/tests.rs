@@ -215,7 +215,11 @@ fn a_scan_has_the_codes_of_its_channels_one_by_one() {
             by_channel.step(1e-3, &moved);
             for scan in 0..SCANS_PER_STEP + 2 {
                 let expected = Channel::ALL.map(|channel| by_channel.convert(channel));
-                assert_eq!(by_scan.convert_scan(), expected, "scan {scan}, {single} before");
+                assert_eq!(
+                    by_scan.convert_scan(),
+                    expected,
+                    "scan {scan}, {single} before"
+                );
             }
         }
     }
