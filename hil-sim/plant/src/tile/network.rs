@@ -277,9 +277,9 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
         let columns = &self.columns;
         // Conductance of the columns into each plate, less what returns through them.
         let mut block = self.upper.left;
-        for z in 0..Z {
+        for (z, row) in block.iter_mut().enumerate() {
             let link = self.axial[above][z];
-            block[z][z] += link - link * columns.from_above[FIRST][z];
+            row[z] += link - link * columns.from_above[FIRST][z];
         }
         self.add_level(&mut block, above);
         let inverse = invert(block);
@@ -386,23 +386,21 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
         }
         for i in 0..above {
             x[i] = product(&self.inverse[i], &x[i]);
-            for z in 0..Z {
-                x[i + 1][z] += axial[i][z] * x[i][z];
-            }
+            let carry = times(&axial[i], &x[i]);
+            add(&mut x[i + 1], &carry);
         }
         x[above] = product(&self.inverse[above], &x[above]);
-        for z in 0..Z {
-            x[below][z] += columns.across[z] * x[above][z];
-        }
+        let carry = times(&columns.across, &x[above]);
+        add(&mut x[below], &carry);
         x[below] = product(&self.inverse[below], &x[below]);
         let carry: f64 = (0..Z).map(|z| axial[below][z] * x[below][z]).sum();
         let sink = (sink + carry) * self.sink.inverse;
         // Back from the sink to the surface.
         self.add_share(&mut x[below], below, &axial[below].map(|link| link * sink));
-        let next = std::array::from_fn(|z| columns.across[z] * x[below][z]);
+        let next = times(&columns.across, &x[below]);
         self.add_share(&mut x[above], above, &next);
         for i in (0..above).rev() {
-            let next = std::array::from_fn(|z| axial[i][z] * x[i + 1][z]);
+            let next = times(&axial[i], &x[i + 1]);
             self.add_share(&mut x[i], i, &next);
         }
         for z in 0..Z {
@@ -410,27 +408,21 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
             x[LAST][z] += axial[LAST][z] * x[below][z];
         }
         for i in FIRST..LAST {
-            for z in 0..Z {
-                x[i + 1][z] += columns.down[i][z] * x[i][z];
-            }
+            let carry = times(&columns.down[i], &x[i]);
+            add(&mut x[i + 1], &carry);
         }
-        for z in 0..Z {
-            x[LAST][z] *= columns.inverse[LAST][z];
-        }
+        x[LAST] = times(&x[LAST], &columns.inverse[LAST]);
         for i in (FIRST..LAST).rev() {
-            for z in 0..Z {
-                x[i][z] = x[i][z] * columns.inverse[i][z] + columns.down[i][z] * x[i + 1][z];
-            }
+            let from_next = times(&columns.down[i], &x[i + 1]);
+            x[i] = times(&x[i], &columns.inverse[i]);
+            add(&mut x[i], &from_next);
         }
         sink
     }
 
     /// Adds the increments that a power into the nodes of a level causes.
     fn add_share(&self, x: &mut PerZone<Z>, level: usize, power: &PerZone<Z>) {
-        let share = product(&self.inverse[level], power);
-        for z in 0..Z {
-            x[z] += share[z];
-        }
+        add(x, &product(&self.inverse[level], power));
     }
 }
 
@@ -443,6 +435,18 @@ fn eliminated<const Z: usize>(inverse: &[PerZone<Z>; Z], link: &PerZone<Z>) -> [
             if y == z { through + link[z] } else { through }
         })
     })
+}
+
+/// Product zone by zone.
+fn times<const Z: usize>(a: &PerZone<Z>, b: &PerZone<Z>) -> PerZone<Z> {
+    std::array::from_fn(|z| a[z] * b[z])
+}
+
+/// Adds to each zone.
+fn add<const Z: usize>(x: &mut PerZone<Z>, share: &PerZone<Z>) {
+    for (x, share) in x.iter_mut().zip(share) {
+        *x += share;
+    }
 }
 
 fn product<const Z: usize>(matrix: &[PerZone<Z>; Z], vector: &PerZone<Z>) -> PerZone<Z> {
