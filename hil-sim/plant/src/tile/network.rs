@@ -379,10 +379,12 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
         let (axial, columns) = (&self.axial, &self.columns);
         // What the columns give to the plates, and the plates downwards.
         for i in FIRST..=LAST {
-            for z in 0..Z {
-                x[above][z] += columns.from_above[i][z] * x[i][z];
-                x[below][z] += columns.from_below[i][z] * x[i][z];
-            }
+            let (up, down) = (
+                times(&columns.from_above[i], &x[i]),
+                times(&columns.from_below[i], &x[i]),
+            );
+            add(&mut x[above], &up);
+            add(&mut x[below], &down);
         }
         for i in 0..above {
             x[i] = product(&self.inverse[i], &x[i]);
