@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: run time against error of the contact model, of alternatives to it, and of the simulated plant.
+//! `cargo xtask bench`: run time against error of the contact model, of alternatives to it, of the simulated plant, and of both engines.
 use anyhow::Result;
 use clap::ValueEnum;
 
@@ -12,6 +12,8 @@ pub enum Job {
     Model,
     /// The simulated plant on this host
     Plant,
+    /// A whole scene on the native engine and on the image, times real time
+    Engines,
 }
 
 /// `cargo xtask bench`
@@ -19,6 +21,7 @@ pub fn run(permission: Permission, job: Job, options: report::Options) -> Result
     let job = match job {
         Job::Model => "model",
         Job::Plant => "plant",
+        Job::Engines => "engines",
     };
     report::run(permission, ("model-bench", job), options, Vec::new())
 }

@@ -69,7 +69,7 @@ enum Task {
         #[arg(long)]
         print_path: bool,
     },
-    /// Print and plot run time against error of the contact model and alternatives, or of the simulated plant; writes to
+    /// Print and plot run time against error of the contact model and alternatives, or of the simulated plant or of both engines; writes to
     /// target/bench unless --out names a folder
     Bench {
         #[command(flatten)]

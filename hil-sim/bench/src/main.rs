@@ -1,5 +1,5 @@
 //! The benchmark: run time against error of `erfcx` and of the whole model, on this host and on the emulated
-//! microcontroller; and of the simulated plant, on this host. Results on standard output, progress on standard error.
+//! microcontroller; of the simulated plant, and of whole runs on both engines, on this host. Results on standard output, progress on standard error.
 
 mod host;
 
@@ -16,9 +16,11 @@ enum Job {
     Model,
     /// The simulated plant, on this host
     Plant,
+    /// A whole scene on the native engine and on the image
+    Engines,
 }
 
-/// Run time against error of the contact model and its peers, or of the simulated plant.
+/// Run time against error of the contact model and its peers, or of the simulated plant, or of both engines.
 #[derive(Parser)]
 #[command(name = "model-bench", max_term_width = 100)]
 struct Arguments {
@@ -45,7 +47,7 @@ struct Results {
     json: String,
     tables: String,
     /// Names and contents of files.
-    files: [(&'static str, String); 2],
+    files: Vec<(&'static str, String)>,
 }
 
 fn model(arguments: &Arguments, progress: impl Fn(&str)) -> anyhow::Result<Results> {
@@ -57,7 +59,7 @@ fn model(arguments: &Arguments, progress: impl Fn(&str)) -> anyhow::Result<Resul
     Ok(Results {
         json: serde_json::to_string_pretty(&figures)?,
         tables: host::tables(&figures),
-        files: [
+        files: vec![
             ("benchmark.md", host::page(&figures)),
             ("benchmark.svg", host::draw(&figures)?),
         ],
@@ -69,10 +71,19 @@ fn plant(arguments: &Arguments, progress: impl Fn(&str)) -> anyhow::Result<Resul
     Ok(Results {
         json: serde_json::to_string_pretty(&figures)?,
         tables: host::plant::tables(&figures),
-        files: [
+        files: vec![
             ("plant-benchmark.md", host::plant::page(&figures)),
             ("plant-benchmark.svg", host::plant::draw(&figures)?),
         ],
+    })
+}
+
+fn engines(arguments: &Arguments, progress: impl Fn(&str)) -> anyhow::Result<Results> {
+    let figures = host::engines::measure(arguments.rounds.into(), progress)?;
+    Ok(Results {
+        json: serde_json::to_string_pretty(&figures)?,
+        tables: host::engines::table(&figures),
+        files: Vec::new(),
     })
 }
 
@@ -84,6 +95,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let results = match arguments.job {
         Job::Model => model(arguments, progress)?,
         Job::Plant => plant(arguments, progress)?,
+        Job::Engines => engines(arguments, progress)?,
     };
     if arguments.json {
         println!("{}", results.json);

@@ -27,7 +27,7 @@ use contact_model::material::Surface;
 pub use defects::Defects;
 use energy::Energy;
 use finger::Vessels;
-use sensors::{BONDED, Channel, SensorInputs, SensorReadings, Sensors};
+use sensors::{BONDED, CHANNELS, Channel, SensorInputs, SensorReadings, Sensors};
 use slab::{DepthProbe, Grading, Slab, steady_state};
 use supply::Supply;
 pub use thermal::Finger;
@@ -338,6 +338,11 @@ impl Plant {
     /// Converts one channel: the signal moves from its value at the start of the last step to that at its end.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         self.sensors.convert(channel)
+    }
+
+    /// Converts all channels in scan order; the codes are those of [`convert`](Self::convert).
+    pub fn convert_scan(&mut self) -> [u16; CHANNELS] {
+        self.sensors.convert_scan()
     }
 
     /// Whether driver or comparator pull nFAULT low.

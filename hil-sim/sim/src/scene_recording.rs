@@ -85,12 +85,13 @@ impl<'a> SceneRecording<'a> {
     /// `set_up_from_ms` after its start.
     pub fn new(scene: &'a Scene, settings: &[String], stream_ms: u32, set_up_from_ms: u64) -> Self {
         let zero_ms = scene.settle_ms();
+        let scene_ms = (scene.duration_s * 1e3).round() as u64;
         Self {
             scene,
             host: Host::new(scene, settings, stream_ms, set_up_from_ms),
             zero_ms,
-            end_ms: zero_ms + (scene.duration_s * 1e3).round() as u64,
-            trace: Trace::default(),
+            end_ms: zero_ms + scene_ms,
+            trace: Trace::with_capacity(scene_ms as usize + 1),
             answers: Vec::new(),
             sent: Vec::new(),
             energy_j: (0.0, 0.0),

@@ -84,6 +84,15 @@ pub struct Trace {
 }
 
 impl Trace {
+    /// An empty trace with room for so many rows.
+    #[must_use]
+    pub fn with_capacity(rows: usize) -> Self {
+        Self {
+            rows: Vec::with_capacity(rows),
+            ..Self::default()
+        }
+    }
+
     /// Appends a row; `tick` is the number of the device's last tick before it.
     pub fn push(&mut self, tick: u64, mut row: TraceRow) {
         if let Some(index) = self

@@ -228,4 +228,15 @@ impl World {
         }
         self.codes[index]
     }
+
+    /// Converts all channels in scan order; the codes are those of [`convert`](Self::convert).
+    pub fn convert_scan(&mut self) -> [u16; Channel::ALL.len()] {
+        let codes = self.plant.convert_scan();
+        for ((last, code), frozen) in self.codes.iter_mut().zip(codes).zip(self.defects.frozen) {
+            if !frozen {
+                *last = code;
+            }
+        }
+        self.codes
+    }
 }

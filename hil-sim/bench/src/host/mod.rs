@@ -1,6 +1,7 @@
 //! The host's part: runs all measurements, on the host and in the emulator, and reports them.
 mod accuracy;
 mod emulated;
+pub mod engines;
 mod figures;
 mod image;
 pub mod plant;

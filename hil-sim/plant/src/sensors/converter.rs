@@ -142,6 +142,22 @@ impl Converter {
         nearest(level.clamp(0.0, CODES - 1.0)) as u16
     }
 
+    /// Converts several levels in order, with the codes that as many calls of [`convert`](Self::convert) have. The levels are
+    /// independent of each other, so the compiler computes them side by side.
+    pub fn convert_all<const N: usize>(&mut self, level_counts: &[f64; N]) -> [u16; N] {
+        if self.next == BATCH {
+            self.draw_noise();
+        }
+        let Some(noise) = self.noise[self.next..].first_chunk::<N>() else {
+            return level_counts.map(|level| self.convert(level));
+        };
+        self.next += N;
+        let levels: [f64; N] =
+            std::array::from_fn(|i| (level_counts[i] + noise[i]).clamp(0.0, CODES - 1.0));
+        let codes = levels.map(|level| level + self.profile.at(level));
+        codes.map(|level| nearest(level.clamp(0.0, CODES - 1.0)) as u16)
+    }
+
     #[inline(never)]
     fn draw_noise(&mut self) {
         let mut random = self.random.clone();

@@ -267,6 +267,22 @@ impl Sensors {
         self.converter.convert(level)
     }
 
+    /// Converts all channels in scan order, with the codes of one call of [`convert`](Self::convert) for each.
+    pub fn convert_scan(&mut self) -> [u16; CHANNELS] {
+        for i in 0..CHANNELS {
+            if self.remaining[i] > 0 {
+                self.remaining[i] -= 1;
+                self.level[i] += self.increment[i];
+            }
+        }
+        let mut levels = self.level;
+        if self.ripple_is_seen() {
+            let current = Channel::Current as usize;
+            levels[current] = self.rippled_level(self.remaining[current]);
+        }
+        self.converter.convert_all(&levels)
+    }
+
     /// Whether the ripple of the current measurement is more than a hundredth of a count.
     fn ripple_is_seen(&self) -> bool {
         let counts = self.params.mirror.counts_per_a * self.mirror_ripple.half_a;

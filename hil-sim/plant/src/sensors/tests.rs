@@ -187,3 +187,40 @@ fn conversions_of_a_tick_interpolate_linearly_over_the_step() {
     }
     assert_eq!(sensors.convert(Channel::Force), 1010, "and stay there");
 }
+
+#[test]
+fn a_scan_has_the_codes_of_its_channels_one_by_one() {
+    let moved = SensorInputs {
+        display_c: 20.0,
+        force_n: 2.0,
+        mirror_a: 1.5,
+        mirror_ripple: InductorRipple {
+            half_a: 0.4,
+            width: 0.3,
+        },
+        supply_counts: 3464.0,
+        ..NOMINAL_INPUTS
+    };
+    // A single conversion before the scans moves them across the batches of noise.
+    for single in [0, 1] {
+        let mut by_scan = Sensors::new(SensorParams::NOMINAL, &NOMINAL_INPUTS, 7);
+        let mut by_channel = by_scan.clone();
+        for sensors in [&mut by_scan, &mut by_channel] {
+            for _ in 0..single {
+                sensors.convert(Channel::Display);
+            }
+        }
+        for _ in 0..3 {
+            by_scan.step(1e-3, &moved);
+            by_channel.step(1e-3, &moved);
+            for scan in 0..SCANS_PER_STEP + 2 {
+                let expected = Channel::ALL.map(|channel| by_channel.convert(channel));
+                assert_eq!(
+                    by_scan.convert_scan(),
+                    expected,
+                    "scan {scan}, {single} before"
+                );
+            }
+        }
+    }
+}

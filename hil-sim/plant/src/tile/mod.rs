@@ -56,7 +56,7 @@ pub struct Tile {
     params: TileParams,
     zones: Zones,
     legs: LegProperties,
-    network: ThermalNetwork<LEVELS, ZONES>,
+    network: ThermalNetwork<LEVELS, ZONES, COLD_TAB, HOT_TAB>,
     room_c: f64,
     defect: ModuleDefect,
     current: Current,

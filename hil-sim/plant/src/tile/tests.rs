@@ -194,7 +194,8 @@ fn three_zones_approximate_the_heat_spreading_of_a_plate() {
     // From a back cooled by the legs only to one that prevents spreading.
     let mut off_percent = Vec::new();
     for back_w_m2k in [100.0, 316.0, 1000.0] {
-        let mut network = ThermalNetwork::<1, ZONES>::new(0.0);
+        // The plate alone: column, lower plate and sink have no conductance to it.
+        let mut network = ThermalNetwork::<3, ZONES, 1, 1>::new(0.0);
         for z in 0..ZONES {
             network.lateral[0][z] = sheet_w_k * zones.shape[z];
             network.feedback[0][z] = -back_w_m2k * zones.area_m2[z];

@@ -14,7 +14,6 @@ use thermal_device::{
 };
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::comparator::ComparatorTest as PlantTest;
-use thermal_plant::sensors::Channel;
 use thermal_protocol::{
     CommandHandler, Error, LineReader, OutgoingLine, Reply, wrap_as_telemetry_line,
 };
@@ -110,7 +109,7 @@ impl Finger {
     /// Converts all channels and discards the codes.
     fn discard_scans(&mut self, scans: usize) {
         for _ in 0..scans {
-            let _unsettled = Channel::ALL.map(|channel| self.world.convert(channel));
+            let _unsettled = self.world.convert_scan();
         }
     }
 
@@ -123,7 +122,7 @@ impl Finger {
 
     fn scan(&mut self, count: usize) {
         for scan in &mut self.scans[self.filled..self.filled + count] {
-            *scan = Channel::ALL.map(|channel| self.world.convert(channel));
+            *scan = self.world.convert_scan();
         }
         self.filled += count;
     }

@@ -8,7 +8,6 @@ use thermal_display::device::{Device, FingerIndex};
 use thermal_display::protocol::CommandHandler;
 use thermal_display::settings::Settings;
 use thermal_plant::Plant;
-use thermal_plant::sensors::Channel;
 
 use super::finger::{Finger, LINES, READY_MS, force_n};
 
@@ -71,5 +70,5 @@ impl Replay {
 
 /// All conversions of one tick.
 pub fn scans(plant: &mut Plant) -> [Scan; SCANS_PER_TICK] {
-    std::array::from_fn(|_| Channel::ALL.map(|channel| plant.convert(channel)))
+    std::array::from_fn(|_| plant.convert_scan())
 }
