@@ -7,14 +7,23 @@ use anyhow::{Context, Result};
 use crate::process::{Invocation, workspace};
 use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 
+/// Package of the images of `cargo xtask probe`, and their target folder.
+const PROBE: &str = "hil-sim/emulator/probe/Cargo.toml";
+const PROBE_FOLDER: &str = "target/probe";
+
 /// `cargo xtask probe`: builds the image for the tests of the emulated microcontroller and prints its path.
 pub fn probe(permission: Permission) -> Result<()> {
-    let package = [
-        "--release",
-        "--manifest-path",
-        "hil-sim/emulator/probe/Cargo.toml",
-    ];
-    build(permission, "target/probe", &package, "release/probe")
+    let package = ["--release", "--manifest-path", PROBE];
+    build(permission, PROBE_FOLDER, &package, "release/probe")
+}
+
+/// Lints the image of [`probe`].
+pub fn clippy_of_probe(toolchain: &Toolchain) -> Invocation {
+    toolchain
+        .cargo("clippy")
+        .args(["--release", "--locked", "--target", TARGET])
+        .args(["--target-dir", &folder_of(toolchain, PROBE_FOLDER)])
+        .args(["--manifest-path", PROBE, "--", "-Dwarnings"])
 }
 
 /// Package of the programs of `cargo xtask foreign`.
@@ -76,14 +85,19 @@ pub fn benchmark(permission: Permission) -> Result<()> {
     build(permission, "target/bench-image", &package, "firmware/image")
 }
 
+/// Target folder of a toolchain: compilers that shared one would rebuild each other's artifacts.
+fn folder_of(toolchain: &Toolchain, folder: &str) -> String {
+    match toolchain {
+        Toolchain::Active => folder.to_owned(),
+        Toolchain::Distribution(_) => format!("{folder}-distribution"),
+    }
+}
+
 /// Builds an image in a target folder and prints a path, that of its ELF file or folder `elf` below the folder of the target. The compiler
 /// flags replace those of the workspace, which link the firmware's log; the memory layout is the same.
 fn build(permission: Permission, folder: &str, package: &[&str], elf: &str) -> Result<()> {
     let toolchain = setup::prepare(Needs::default(), permission)?;
-    let folder = match &toolchain {
-        Toolchain::Active => folder.to_owned(),
-        Toolchain::Distribution(_) => format!("{folder}-distribution"),
-    };
+    let folder = folder_of(&toolchain, folder);
     let layout = workspace().display();
     toolchain
         .cargo("build")

@@ -124,7 +124,7 @@ impl<W: Wiring> Chip<W> {
             wiring,
             nvic: Nvic::new(),
             ppb: Ppb::new(),
-            rcc: Rcc::powered_up(state.external_clock),
+            rcc: Rcc::powered_up(state.external_clock, state.external_clock_start_us),
             flash: Flash::new(flash, state),
             ports: std::array::from_fn(Port::new),
             exti: Exti::default(),

@@ -1,7 +1,7 @@
 //! Reset and clock control (RM0390 chapter 6):
 //! oscillators, PLL, bus prescalers, peripheral clock enables and resets, reset flags.
 use super::stop::{Answer, Refusal, only};
-use thermal_sim::processor::ResetCause;
+use thermal_sim::processor::{ChipState, ResetCause};
 
 mod clock_security;
 mod clock_tree;
@@ -81,6 +81,8 @@ pub(crate) struct Rcc {
     dckcfgr: u32,
     /// The external clock is not there.
     hse_failed: bool,
+    /// Start-up time of the external clock, us.
+    hse_start_us: u64,
     /// RCC_CIR.CSSF: the clock security system has detected the failure.
     clock_failure: bool,
     /// Cycle from which HSI, HSE, PLL and LSI are ready.
@@ -108,6 +110,7 @@ impl Rcc {
             lpenr: [0x7e67_91ff, 0xf1, 0x01, 0x36fe_c9ff, 0x0007_5f33],
             csr: reset_flags(cause) | old_flags & 0xfe00_0000,
             pwr_cr: 0xc000,
+            hse_start_us: ChipState::default().external_clock_start_us.into(),
             over_drive_at: [u64::MAX; 2],
             clocks: Clocks {
                 sysclk_hz: hsi,
@@ -121,10 +124,11 @@ impl Rcc {
         }
     }
 
-    /// The registers at power-up, with the external clock present or not.
-    pub fn powered_up(external_clock: bool) -> Self {
+    /// The registers at power-up, with the external clock present or not, and the time that it takes to start.
+    pub fn powered_up(external_clock: bool, hse_start_us: u32) -> Self {
         Self {
             hse_failed: !external_clock,
+            hse_start_us: hse_start_us.into(),
             ..Self::new(ResetCause::PowerOn, 0)
         }
     }

@@ -74,8 +74,8 @@ pub struct ComparatorDefects {
     pub ladder_shift_k: f64,
     /// The latch.
     pub latch: LatchDefect,
-    /// Level, true is high, that the line has which selects the side of a test, whatever the device drives: every test
-    /// is that of the cold side if it is high, of the hot side if it is low.
+    /// Stuck level of the line by which the device selects the side of a test; true is high. `None`: the line follows the
+    /// device. While it is stuck high every test is of the cold side, while it is stuck low every test is of the hot side.
     pub side_stuck: Option<bool>,
 }
 
@@ -130,8 +130,8 @@ impl Comparator {
         }
     }
 
-    /// Sets the test. Its end clears the latch, with a delay, if the thermistor is in the window. A line of the side that
-    /// is stuck makes it a test of its own side.
+    /// Sets the test. Its end clears the latch, with a delay, if the thermistor is in the window. If the select line of
+    /// the side is stuck, the test is of the side that its level selects, whichever side was requested.
     pub fn set_test(&mut self, test: ComparatorTest) {
         let test = match (test, self.defects.side_stuck) {
             (ComparatorTest::None, _) | (_, None) => test,

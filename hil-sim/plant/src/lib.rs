@@ -203,7 +203,7 @@ impl Plant {
         self.defects.supply.emergency_stop || self.defects.supply.stop_sense_open
     }
 
-    /// Level at which the line is stuck that selects the side of the comparator's tests, if it is.
+    /// Stuck level of the line that selects the side of the comparator's tests; `None` if the line is sound.
     #[must_use]
     pub const fn side_stuck(&self) -> Option<bool> {
         self.defects.comparator.side_stuck

@@ -51,6 +51,8 @@ pub struct ChipState {
     pub lsi_hz: u32,
     /// Whether the 8 MHz clock of the debug probe is there at power-up.
     pub external_clock: bool,
+    /// Time from switching the input of that clock on until its ready flag is set, us.
+    pub external_clock_start_us: u32,
     /// Whether programming and erasing of the flash take the longest times of the data sheet, not the typical ones.
     pub slow_flash: bool,
     /// How long the core waits for the flash.
@@ -64,6 +66,8 @@ pub struct ChipState {
 impl ChipState {
     /// Range of the internal low-speed oscillator, Hz (DS10693).
     pub const LSI_HZ: std::ops::RangeInclusive<u32> = 17_000..=47_000;
+    /// Range of the start-up time of the external clock, us: from that of a clock which runs to one that a program gives up.
+    pub const EXTERNAL_CLOCK_START_US: std::ops::RangeInclusive<u32> = 1..=1_000_000;
 }
 
 impl Default for ChipState {
@@ -73,6 +77,7 @@ impl Default for ChipState {
             brown_out_code: 0,
             lsi_hz: 32_000,
             external_clock: true,
+            external_clock_start_us: 10,
             slow_flash: false,
             flash: FlashTiming::default(),
             strict: false,

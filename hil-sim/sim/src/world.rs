@@ -154,7 +154,7 @@ impl World {
         self.plant.emergency_stop()
     }
 
-    /// Level at which the line is stuck that selects the side of the comparator's tests, if it is.
+    /// Stuck level of the line that selects the side of the comparator's tests; `None` if the line is sound.
     #[must_use]
     pub const fn side_stuck(&self) -> Option<bool> {
         self.plant.side_stuck()

@@ -57,18 +57,18 @@ fn json_has_the_verdict_and_the_findings() {
 }
 
 #[test]
-fn it_goes_on_with_the_same_microcontroller_and_image_only_and_leaves_the_record_otherwise() {
+fn from_is_refused_with_another_microcontroller_or_image_and_then_leaves_the_record_unchanged() {
     let folder = folder("bring-up-other-device");
     let record = || fs::read_to_string(folder.join("bring-up.json")).expect("a record");
     let image = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
     let other = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
-    let go_on = |arguments: &[&str]| {
+    let bring_up = |arguments: &[&str]| {
         let out = folder.to_str().expect("a path");
         // Its first finding keeps it from 12 V at the bridge.
         let board = ["--simulated", "--board", "missing-pull-down", "--out", out];
         run(&[&board[..], arguments].concat(), "")
     };
-    assert_eq!(go_on(&["--image", image]).status.code(), Some(1));
+    assert_eq!(bring_up(&["--image", image]).status.code(), Some(1));
     let first = record();
     for (arguments, part) in [
         (
@@ -81,13 +81,13 @@ fn it_goes_on_with_the_same_microcontroller_and_image_only_and_leaves_the_record
             "those of microcontroller 004600100046001400460018, ",
         ),
     ] {
-        let refused = go_on(arguments);
+        let refused = bring_up(arguments);
         let shown = text(&refused.stderr);
         assert_eq!(refused.status.code(), Some(2), "{shown}");
         assert!(shown.contains(part), "{shown}");
         assert_eq!(record(), first);
     }
-    let same = go_on(&["--from", "reset", "--image", image]);
+    let same = bring_up(&["--from", "reset", "--image", image]);
     assert_eq!(same.status.code(), Some(1));
     assert!(text(&same.stdout).contains("pull-down R3"), "{same:?}");
     let page = fs::read_to_string(folder.join("bring-up.html")).expect("a page");

@@ -7,6 +7,7 @@ use stm32_emulator::Firmware;
 use system_tests::{between, forces, host, natively, scene};
 use thermal_campaigns::fidelity::{Population, Way};
 use thermal_sim::NativeRunner;
+use thermal_sim::processor::FlashTiming;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
@@ -38,8 +39,8 @@ fn native_and_image_write_the_same_trace_over_two_contacts() {
     assert!(native.lines().all(|line| !line.contains(",,,")));
 }
 
-/// The watchdog's oscillator at both ends of its range, the longest times of the flash; an access to several words that is not
-/// aligned would be a fault.
+/// The watchdog's oscillator at both ends of its range, the longest times of the flash, its accelerator off, an external clock
+/// that starts late; an access to several words that is not aligned would be a fault.
 #[test]
 fn a_strict_chip_writes_the_same_trace() {
     let touched = scene("copper", 4.0, "", &forces(&[(1.0, 2.0), (3.0, 0.0)]));
@@ -49,6 +50,8 @@ fn a_strict_chip_writes_the_same_trace() {
         strict.chip.strict = true;
         strict.chip.slow_flash = true;
         strict.chip.lsi_hz = lsi_hz;
+        strict.chip.flash = FlashTiming::Unaccelerated;
+        strict.chip.external_clock_start_us = 19_000;
         assert_eq!(csv(&on_image(&strict), "strict"), usual, "{lsi_hz} Hz");
     }
 }

@@ -6,6 +6,7 @@ mod members;
 use anyhow::Result;
 use documented_figures::{GENERATORS_REQUIRED, python_with_mpmath};
 
+use crate::auxiliary_image;
 use crate::firmware::{self, Fingers};
 use crate::process::Invocation;
 use crate::setup::{self, Choice, Lints, Needs, Permission, Toolchain};
@@ -118,6 +119,7 @@ fn whole(
                     firmware::clippy(toolchain, Fingers::One),
                     firmware::clippy(toolchain, Fingers::Five),
                     firmware::clippy_of_tests(toolchain),
+                    auxiliary_image::clippy_of_probe(toolchain),
                 ]),
             },
         ),

@@ -1,5 +1,4 @@
 //! Failure of the external oscillator (RM0390 6.2.7, clock security system), and the reset flags.
-use super::clock_tree::HSE_START_US;
 use super::{Clocks, HSE, Rcc};
 use crate::stop::Answer;
 use thermal_sim::processor::ResetCause;
@@ -30,6 +29,7 @@ impl Rcc {
         };
         Self {
             hse_failed: self.hse_failed,
+            hse_start_us: self.hse_start_us,
             ..Self::new(cause, flags)
         }
     }
@@ -38,7 +38,7 @@ impl Rcc {
     pub fn start_hse(&mut self, now: u64) {
         if self.hse_failed {
             self.hse_failed = false;
-            self.ready_at[HSE] = self.after(now, HSE_START_US);
+            self.ready_at[HSE] = self.after(now, self.hse_start_us);
         }
     }
 

@@ -3,10 +3,9 @@
 use super::{Clocks, HSE, HSE_HZ, HSI, HSI_HZ, PLL, Rcc};
 use crate::stop::{Answer, Refusal, only};
 
-/// Start-up times in microseconds, of the order the data sheet (DS10693 section 6.3) gives as typical; the HSE is an
-/// external clock, not a crystal.
+/// Start-up times in microseconds, of the order the data sheet (DS10693 section 6.3) gives as typical; that of the
+/// external clock is the chip's.
 const HSI_START_US: u64 = 2;
-pub(super) const HSE_START_US: u64 = 10;
 const PLL_LOCK_US: u64 = 100;
 
 impl Rcc {
@@ -14,7 +13,7 @@ impl Rcc {
         let turned_on = value & !self.cr;
         for (bit, source, us) in [
             (0, HSI, HSI_START_US),
-            (16, HSE, HSE_START_US),
+            (16, HSE, self.hse_start_us),
             (24, PLL, PLL_LOCK_US),
         ] {
             if turned_on >> bit & 1 != 0 {

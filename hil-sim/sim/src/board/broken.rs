@@ -58,7 +58,7 @@ pub const BROKEN_BOARDS: &[BrokenBoard] = &[
     },
     BrokenBoard {
         name: "side-stuck",
-        what: "the microcontroller's output PB2 for the side of the comparator's test is destroyed and stays low",
+        what: "PB2, which selects the side of the comparator's test, stays low: the output of the microcontroller is destroyed",
         break_it: |board| board.defects.comparator.side_stuck = Some(false),
     },
     BrokenBoard {

@@ -6,6 +6,7 @@ use toml::Spanned;
 use super::Sensor;
 pub(super) use super::parameter_node::{NodeNumber, ParameterNode};
 use super::word::{OneOf, words};
+use crate::processor::FlashTiming;
 
 /// A number with its position in the file; whole numbers are accepted.
 pub(super) type Number = Spanned<f64>;
@@ -44,20 +45,11 @@ pub(super) struct Device {
     pub brown_out_level: Option<Spanned<u32>>,
     pub lsi_hz: Option<Spanned<u32>>,
     pub external_clock: bool,
+    pub external_clock_start_us: Option<Spanned<u32>>,
     pub slow_flash: bool,
+    #[serde(deserialize_with = "flash_timing")]
     pub flash: FlashTiming,
     pub strict: bool,
-}
-
-words! {
-    /// How long the core waits for the flash.
-    #[derive(Default)]
-    pub(super) enum FlashTiming {
-        #[default]
-        Ideal = "ideal",
-        Accelerated = "art",
-        Unaccelerated = "off",
-    }
 }
 
 words! {
@@ -77,11 +69,22 @@ impl Default for Device {
             brown_out_level: None,
             lsi_hz: None,
             external_clock: true,
+            external_clock_start_us: None,
             slow_flash: false,
             flash: FlashTiming::default(),
             strict: false,
         }
     }
+}
+
+fn flash_timing<'de, D: Deserializer<'de>>(deserializer: D) -> Result<FlashTiming, D::Error> {
+    const NAMES: [&str; FlashTiming::ALL.len()] = [
+        FlashTiming::ALL[0].name(),
+        FlashTiming::ALL[1].name(),
+        FlashTiming::ALL[2].name(),
+    ];
+    let index = deserializer.deserialize_str(OneOf(&NAMES))?;
+    Ok(FlashTiming::ALL[index])
 }
 
 words! {

@@ -18,7 +18,7 @@ use super::object::object;
 use super::plant::params;
 use super::source::{SceneError, Source};
 use super::{AssumedFinger, Draws, Force, HostLine, Scene};
-use crate::processor::{ChipState, FlashTiming};
+use crate::processor::ChipState;
 
 /// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
 const SETTLE_S: f64 = 8.0;
@@ -141,18 +141,21 @@ fn chip(source: &Source<'_>, device: &file::Device) -> Result<ChipState, SceneEr
     };
     let nominal = ChipState::default();
     let lsi_hz = (*ChipState::LSI_HZ.start(), *ChipState::LSI_HZ.end());
+    let start_us = ChipState::EXTERNAL_CLOCK_START_US;
     let level = whole("brown_out_level", &device.brown_out_level, 3, (0, 3))?;
     Ok(ChipState {
         // 00 is level 3, 11 is off.
         brown_out_code: 3 - level as u8,
         lsi_hz: whole("lsi_hz", &device.lsi_hz, nominal.lsi_hz, lsi_hz)?,
         external_clock: device.external_clock,
+        external_clock_start_us: whole(
+            "external_clock_start_us",
+            &device.external_clock_start_us,
+            nominal.external_clock_start_us,
+            (*start_us.start(), *start_us.end()),
+        )?,
         slow_flash: device.slow_flash,
-        flash: match device.flash {
-            file::FlashTiming::Ideal => FlashTiming::Ideal,
-            file::FlashTiming::Accelerated => FlashTiming::Accelerated,
-            file::FlashTiming::Unaccelerated => FlashTiming::Unaccelerated,
-        },
+        flash: device.flash,
         strict: device.strict,
         ..nominal
     })

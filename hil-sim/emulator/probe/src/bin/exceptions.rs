@@ -8,6 +8,9 @@ use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use cortex_m::asm::{dsb, isb};
 use cortex_m_rt::entry;
 
+#[path = "../sleep_on_panic.rs"]
+mod sleep_on_panic;
+
 /// Entries of the log.
 const ENTRIES: usize = 4000;
 
@@ -559,13 +562,6 @@ fn main() -> ! {
         log(read(address) & 0xf0f0_f0f0);
     }
     FINISHED.store(1, Relaxed);
-    loop {
-        cortex_m::asm::wfi();
-    }
-}
-
-#[panic_handler]
-fn panic(_: &core::panic::PanicInfo) -> ! {
     loop {
         cortex_m::asm::wfi();
     }

@@ -284,12 +284,13 @@ fn faults_of_the_processor_are_injected_at_their_times() {
 #[test]
 fn the_chip_is_that_of_a_prepared_board_unless_the_scene_says_otherwise() {
     assert_eq!(scene(HEAD).chip, ChipState::default());
-    let keys = "[device]\nbrown_out_level = 0\nlsi_hz = 17000\nexternal_clock = false\nslow_flash = true\n\
+    let keys = "[device]\nbrown_out_level = 0\nlsi_hz = 17000\nexternal_clock = false\nexternal_clock_start_us = 15000\nslow_flash = true\n\
                 flash = \"off\"\nstrict = true\n";
     let expected = ChipState {
         brown_out_code: 3,
         lsi_hz: 17_000,
         external_clock: false,
+        external_clock_start_us: 15_000,
         slow_flash: true,
         flash: FlashTiming::Unaccelerated,
         strict: true,

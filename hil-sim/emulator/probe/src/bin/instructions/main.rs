@@ -7,6 +7,9 @@ use core::arch::global_asm;
 use core::hint::black_box;
 use cortex_m_rt::entry;
 
+#[path = "../../sleep_on_panic.rs"]
+mod sleep_on_panic;
+
 /// Inputs of a form.
 const INPUTS: u32 = 400;
 /// Groups of inputs. Each has its own modes of the floating-point unit and its own check sum.
@@ -286,13 +289,6 @@ fn main() -> ! {
     }
     // SAFETY: nothing else accesses it.
     unsafe { (&raw mut FORMS_RUN).write_volatile(run as u32) };
-    loop {
-        cortex_m::asm::wfi();
-    }
-}
-
-#[panic_handler]
-fn panic(_: &core::panic::PanicInfo) -> ! {
     loop {
         cortex_m::asm::wfi();
     }
