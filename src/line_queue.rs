@@ -17,8 +17,8 @@ pub const LINE_QUEUE_CAPACITY: usize = 4;
 /// A line from the host, or the reason why the received bytes form no valid line.
 type ReceivedLineOrError = Result<Line, LineError>;
 
-/// As it lies in the queue: a line, or an error beside an empty one. Unlike a `Result`, whose tag comes before the line, this is
-/// copied by words, in a quarter of the time.
+/// What the queue stores: the line, or an empty line and the error. A `Result` has its tag before the line, which is then not
+/// aligned to words, so that copying it takes four times as long.
 struct QueuedLine {
     line: Line,
     error: Option<LineError>,
@@ -87,7 +87,9 @@ impl LineProducer<'_> {
             Ok(line) => (line, None),
             Err(error) => (Line::new(), Some(error)),
         };
-        let _ = self.lines.enqueue(QueuedLine { line, error });
+        if self.lines.enqueue(QueuedLine { line, error }).is_err() {
+            self.refused.fetch_add(1, Ordering::Release);
+        }
     }
 }
 

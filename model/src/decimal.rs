@@ -85,7 +85,7 @@ fn nearest_multiple(value: f64, decimals: usize) -> u64 {
     if shift >= 100 {
         return 0;
     }
-    let whole = (product >> shift) as u64;
+    let whole = u64::try_from(product >> shift).unwrap_or(u64::MAX);
     let above_half = (product << (128 - shift)).cmp(&(1 << 127));
     let up = above_half.is_gt() || above_half.is_eq() && whole % 2 == 1;
     whole.saturating_add(u64::from(up))
@@ -137,6 +137,18 @@ mod tests {
         assert_eq!(Rounded(1e300, 2).to_string(), "4294967295.00");
         assert_eq!(Shortest(-1e10).to_string(), "-4294967295");
         assert_eq!(Shortest(1.0 / 3.0).to_string(), "0.333333333");
+    }
+
+    /// More units than 64 bits hold saturate; what is written is the largest whole part that [`Rounded`] documents.
+    #[test]
+    fn a_number_of_more_units_than_64_bits_hold_saturates() {
+        for value in [18_446_744_074.0, 1e12, 1e300] {
+            assert_eq!(nearest_multiple(value, 9), u64::MAX, "{value}");
+        }
+        assert_eq!(
+            nearest_multiple(18_446_744_073.0, 9),
+            18_446_744_073_000_000_000
+        );
     }
 
     proptest! {

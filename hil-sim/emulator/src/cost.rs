@@ -5,7 +5,8 @@
 //! Technical Reference Manual (r0p1, sections 3.3 and 7.2): a load costs one cycle less directly after a load on whose
 //! result its address does not depend, and a cycle more directly after data processing that makes its address; the result of a floating-point operation is ready one cycle later for the next
 //! instruction; a division of the floating-point unit runs beside integer instructions. The refill of the pipeline after a
-//! taken branch is charged with the block to which it leads ([`Block::refill`]), so a conditional branch costs what it does.
+//! taken branch is charged with the block to which it leads ([`Block::refill`]), so a conditional branch that is not taken costs
+//! none.
 //! Waiting for the flash is `flash_waiting.rs`'s.
 
 use super::elf::FLASH_BASE;

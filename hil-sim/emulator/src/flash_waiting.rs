@@ -1,5 +1,6 @@
 //! Waiting of the core for the flash (RM0390 3.3.3 and 3.4.2): wait states, prefetch, and the two caches of the accelerator, as
-//! FLASH_ACR sets them. Lines have 128 bits. Data are counted for constants beside the code only, one line of them for a block.
+//! FLASH_ACR sets them. Lines have 128 bits. Of data accesses only loads of constants beside the code are modelled, at most
+//! one line for each block.
 //!
 //! The line that the core needs next in order is prefetched while it executes the line before. A line that is neither there nor
 //! in the instruction cache takes the wait states and goes to the cache; a prefetched line does not.

@@ -34,7 +34,7 @@ impl fmt::Display for ContactPairError {
                 write!(f, "R_display / R_object is {value}; it must be below 16")
             }
             Self::OutOfRange(value) => {
-                let exponent = libm::floor(libm::log2(*value)) as i32;
+                let exponent = Rounded(libm::log2(*value), 2);
                 write!(
                     f,
                     "the contact's rate is 2^{exponent}; it must be within 2^-100 to 2^100"

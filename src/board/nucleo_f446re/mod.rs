@@ -108,8 +108,8 @@ pub struct StaticMemory {
     frame_queues: serial::FullAndEmptyFrameQueues,
     line_queue: LineQueue,
     telemetry: Queue<WithSourceFinger<Telemetry>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
-    // Created in place, because moving it while sampling runs would delay the first tick. Not an `Option`, whose `None` has a bit set,
-    // so that the whole memory would be kept in flash to be copied from there at the start.
+    // Created in place, because moving it while sampling runs would delay the first tick. Not an `Option`, whose `None` is not
+    // all zeros, so that the whole memory would be kept in flash, to be copied from there at the start.
     handler: MaybeUninit<CommandHandler<FINGERS>>,
 }
 

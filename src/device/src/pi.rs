@@ -150,7 +150,7 @@ impl Pi {
         if output == wanted || (wanted > output) != (error > 0) {
             let integral = Current::limited(integral);
             let limited = integral.min(self.limit).max(-self.limit);
-            // What the shift has cut off belongs to an integral below the limit only.
+            // Keeps the fraction that the shift has dropped, except at the upper limit, which the fraction would exceed.
             self.integral = if limited == integral && limited < self.limit {
                 sum
             } else {

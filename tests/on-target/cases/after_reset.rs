@@ -49,7 +49,7 @@ pub static KEPT: Kept = Kept {
 };
 
 /// The next reset continues with `step`, and the probe does not halt at it.
-pub fn expect(step: Step) {
+pub fn continue_with(step: Step) {
     KEPT.step.store(WAITS_MAGIC | step as u32, Relaxed);
     // SAFETY: nothing else uses the register.
     unsafe {

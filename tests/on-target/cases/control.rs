@@ -18,7 +18,7 @@ mod tests {
         const JITTER_MAX: u32 = 200;
         const TICKS: u32 = 500;
         let mut board = set_up();
-        // Each tick trips the device otherwise.
+        // Otherwise every tick would trip the device by `watchdogs-frozen`.
         report::let_watchdogs_run_while_halted();
         board.trigger.start();
         let (first, _) = run_tick(&mut board).expect("valid samples");
@@ -62,7 +62,7 @@ mod tests {
         assert!(costs.max < CYCLES_PER_MS / 10);
     }
 
-    /// While a command is executed, no tick may begin: the next finger's tick of a device for five fingers has 11 us.
+    /// While a command is executed, no tick may begin: on a device for five fingers a tick may begin at most 11 us late.
     #[test]
     fn no_command_locks_the_device_for_more_than_11_us() {
         const LOCK_MAX_CYCLES: u32 = 11 * 180;

@@ -8,7 +8,7 @@ use thermal_display::settings::{
     Settings, SettingsRecord, SettingsStore, StoredSettings, Tile, encode_settings_record,
 };
 
-use crate::after_reset::{KEPT, Step, expect};
+use crate::after_reset::{KEPT, Step, continue_with};
 use crate::board::nucleo_f446re::reset_cause::ResetCause;
 use crate::board::nucleo_f446re::settings_flash::SettingsFlash;
 use crate::board::nucleo_f446re::settings_storage::save_pending_and_load;
@@ -97,7 +97,7 @@ pub fn interrupt_save() {
     watchdog.rlr().write(|w| w.rl().set(MOMENTS_MS[number]));
     while watchdog.sr().read().bits() != 0 {}
     watchdog.kr().write(|w| w.key().feed());
-    expect(Step::RecoverSettings);
+    continue_with(Step::RecoverSettings);
     let _ = save_pending_and_load(&flash());
     loop {
         cortex_m::asm::nop();

@@ -2,7 +2,7 @@
 
 use core::sync::atomic::Ordering::Relaxed;
 
-use crate::after_reset::{KEPT, Step, expect};
+use crate::after_reset::{KEPT, Step, continue_with};
 use crate::board::nucleo_f446re::reset_cause::ResetCause;
 use crate::{cycles, report};
 

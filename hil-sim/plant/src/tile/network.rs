@@ -30,7 +30,8 @@ use crate::tr_bdf2;
 pub type PerZone<const Z: usize> = [f64; Z];
 
 /// `Z` zones of `N` levels over one sink; levels `FIRST` to `LAST` have no lateral conductance, and one level is below them.
-/// The coefficients of the levels above `FIRST`, except the power into them, are set before the first step.
+/// All capacities, and all conductances of the levels with an index below `FIRST`, are set before the first step; later changes
+/// of these have no effect.
 #[derive(Clone, Debug)]
 pub struct ThermalNetwork<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize> {
     /// Heat capacities, J/K.
@@ -80,7 +81,7 @@ struct UpperPlate<const N: usize, const Z: usize> {
     extra_w_k: f64,
     feedback: [PerZone<Z>; N],
     /// Contribution to the block of the next level.
-    left: [PerZone<Z>; Z],
+    remainder: [PerZone<Z>; Z],
 }
 
 /// The node of the sink.
@@ -138,7 +139,7 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
                 step_s: f64::NAN,
                 extra_w_k: 0.0,
                 feedback: zero,
-                left: [[0.0; Z]; Z],
+                remainder: [[0.0; Z]; Z],
             },
             step_s: f64::INFINITY,
         }
@@ -276,7 +277,7 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
         let (above, below) = (Self::ABOVE, Self::BELOW);
         let columns = &self.columns;
         // Conductance of the columns into each plate, less what returns through them.
-        let mut block = self.upper.left;
+        let mut block = self.upper.remainder;
         for (z, row) in block.iter_mut().enumerate() {
             let link = self.axial[above][z];
             row[z] += link - link * columns.from_above[FIRST][z];
@@ -355,7 +356,7 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
             step_s: self.step_s,
             extra_w_k,
             feedback: self.feedback,
-            left: block,
+            remainder: block,
         };
     }
 
