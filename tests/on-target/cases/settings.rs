@@ -69,7 +69,7 @@ fn restart(number: usize, step: Step) -> ! {
         erase();
     }
     KEPT.number.store(number as u32, Relaxed);
-    expect(step);
+    continue_with(step);
     restart_to_save(&record(number))
 }
 

@@ -8,7 +8,7 @@ use crate::{cycles, report};
 
 /// Waits for the reset that `step` expects, feeding the other watchdog, and notes the cycles until then.
 fn wait_for_reset(step: Step, mut feed_other: impl FnMut()) -> ! {
-    expect(step);
+    continue_with(step);
     let fed = cycles::now();
     loop {
         feed_other();
