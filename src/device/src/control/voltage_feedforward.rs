@@ -96,7 +96,13 @@ impl VoltageFeedforward {
         } else {
             needed.saturating_add(self.dead_time_loss(needed, current))
         };
-        Duty::saturating(I1F15::saturating_from_num(voltage))
+        // By whole words, which takes half the instructions of a conversion that saturates.
+        let fraction = voltage
+            .max(-VoltagePerSupply::ONE)
+            .min(VoltagePerSupply::ONE - VoltagePerSupply::DELTA);
+        Duty::saturating(I1F15::from_bits(
+            (fraction.to_bits() >> (VoltagePerSupply::FRAC_NBITS - I1F15::FRAC_NBITS)) as i16,
+        ))
     }
 
     /// Voltage that the bridge loses in its dead times, as a fraction of the supply voltage, from zero to the largest

@@ -34,7 +34,7 @@ type ModelTemperature = I12F20;
 /// inputs in the order heat pumped out of the plate, Joule heat in the legs, heat from the finger. The surface temperature
 /// is the sum of five relaxations and of the finger's immediate effect, [`FINGER_FEEDTHROUGH_K_W`]. The gain for pumped
 /// heat is the fall of the temperature, positive if pumping cools;
-/// [`HeatInputGains::temperature_change_by_heats`] subtracts it.
+/// [`HeatInputGains::added_to`] subtracts it.
 #[derive(Clone, Copy)]
 struct RelaxationParameters {
     time_constant_s: f64,
@@ -111,7 +111,7 @@ const _: () = assert!(CONTROL_HORIZON_TICKS <= MATCH_HORIZON_TICKS as f64);
 /// Change, K/W, of the display's surface temperature, or of one relaxation's contribution to it, per watt of each heat
 /// input: heat pumped out of the plate by the Peltier effect, Joule heat in the legs, heat from the finger. Each value
 /// of this type is for heat that acts constantly for one time: one tick of 1 ms, the control horizon of 12 ms, or until
-/// the steady state. [`Self::temperature_change_by_heats`] subtracts the pumped heat, because it leaves the plate.
+/// the steady state. [`Self::added_to`] subtracts the pumped heat, because it leaves the plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct HeatInputGains<Gain> {
     pumped: Gain,
@@ -128,17 +128,21 @@ impl<Frac: LeEqU32> HeatInputGains<FixedI32<Frac>> {
         }
     }
 
-    /// Change, K, of the display's surface temperature, or of one relaxation's contribution to it, by the three heat
-    /// inputs of the plate together: pumped heat, Joule heat, and heat from the finger. Pumped heat leaves the plate,
-    /// so it is subtracted.
-    fn temperature_change_by_heats(
+    /// `temperature`, K or °C, plus the change of the display's surface temperature, or of one relaxation's contribution
+    /// to it, by the three heat inputs of the plate together: pumped heat, Joule heat, and heat from the finger. Pumped
+    /// heat leaves the plate, so its negative is added. Each product is added to the sum so far, for which the processor
+    /// has one instruction; it needs three to add a sum of products or to subtract a product.
+    fn added_to(
         &self,
+        temperature: FixedI64<<U24 as Add<Frac>>::Output>,
         inputs: &PlateInputs,
     ) -> FixedI64<<U24 as Add<Frac>>::Output>
     where
         U24: Add<Frac, Output: LeEqU64>,
     {
-        inputs.joule.wide_mul(self.joule) - inputs.pumped.wide_mul(self.pumped)
+        temperature
+            + (-inputs.pumped).wide_mul(self.pumped)
+            + inputs.joule.wide_mul(self.joule)
             + inputs.finger.wide_mul(self.finger)
     }
 }
@@ -202,12 +206,11 @@ struct FixedPointRelaxation {
     /// Contribution of this relaxation to the surface temperature in the steady state, K/W, per watt of pumped heat
     /// (whose effect is subtracted), of Joule heat, and of heat from the finger. Used only to start the model.
     steady_state_gains: HeatInputGains<I4F28>,
-    /// Fraction of the state that decays in one tick of 1 ms; in the slowest relaxation the same fraction of the sink's
-    /// temperature is added.
-    tick_decay: I0F32,
-    /// Fraction of the state that decays within [`CONTROL_HORIZON_TICKS`] (12 ms); in the slowest relaxation the same
-    /// fraction of the sink's temperature is added.
-    horizon_decay: I2F30,
+    /// Change of the state in one tick of 1 ms over the state, `e^(-1 ms / time constant) - 1`: negative, so that its
+    /// product is added. In the slowest relaxation the same fraction of the sink's temperature is subtracted.
+    tick_change: I0F32,
+    /// The same for [`CONTROL_HORIZON_TICKS`] (12 ms).
+    horizon_change: I2F30,
 }
 
 impl FixedPointRelaxation {
@@ -222,8 +225,8 @@ impl FixedPointRelaxation {
             state: I12F52::ZERO,
             tick_gains: HeatInputGains::new(gains_k_w.map(|gain| tick_decay * gain)),
             steady_state_gains: HeatInputGains::new(gains_k_w),
-            tick_decay: to_fixed(tick_decay),
-            horizon_decay: to_fixed(decay(CONTROL_HORIZON_TICKS, time_constant_s)),
+            tick_change: to_fixed(-tick_decay),
+            horizon_change: to_fixed(-decay(CONTROL_HORIZON_TICKS, time_constant_s)),
         }
     }
 
@@ -395,7 +398,7 @@ impl PlateModel {
         for relaxation in others {
             relaxation.state = relaxation
                 .steady_state_gains
-                .temperature_change_by_heats(&inputs);
+                .added_to(I12F52::ZERO, &inputs);
             remainder -= relaxation.state_temperature();
         }
         slowest.set_state_temperature(remainder);
@@ -485,14 +488,15 @@ impl PlateModel {
     pub fn additional_current_to_target(&self, target: Celsius, inputs: &PlateInputs) -> Current {
         const FIXED_POINT_ONE: I4F28 = I4F28::ONE;
         let [slowest, ..] = &self.relaxations;
-        let mut change = self.horizon_gains.temperature_change_by_heats(inputs)
-            + to_model_temperature(inputs.sink).wide_mul(slowest.horizon_decay);
+        let mut change = self.surface.wide_mul(FIXED_POINT_ONE)
+            - target.wide_mul(FIXED_POINT_ONE)
+            - to_model_temperature(inputs.sink).wide_mul(slowest.horizon_change);
+        change = self.horizon_gains.added_to(change, inputs);
         for relaxation in &self.relaxations {
-            change -= relaxation
+            change += relaxation
                 .state_temperature()
-                .wide_mul(relaxation.horizon_decay);
+                .wide_mul(relaxation.horizon_change);
         }
-        change += self.surface.wide_mul(FIXED_POINT_ONE) - target.wide_mul(FIXED_POINT_ONE);
         let excess: Celsius = saturated(change);
         saturating_product(excess, self.current_per_kelvin)
     }
@@ -503,15 +507,17 @@ impl PlateModel {
     pub fn step(&mut self, inputs: &PlateInputs) {
         let mut surface: ModelTemperature = product(inputs.finger, self.finger_feedthrough);
         let [slowest, ..] = &mut self.relaxations;
-        slowest.state += to_model_temperature(inputs.sink).wide_mul(slowest.tick_decay);
+        slowest.state -= to_model_temperature(inputs.sink).wide_mul(slowest.tick_change);
         for relaxation in &mut self.relaxations {
-            relaxation.state += relaxation.tick_gains.temperature_change_by_heats(inputs)
-                - relaxation
-                    .state_temperature()
-                    .wide_mul(relaxation.tick_decay);
+            let change = relaxation
+                .state_temperature()
+                .wide_mul(relaxation.tick_change);
+            relaxation.state = relaxation
+                .tick_gains
+                .added_to(relaxation.state + change, inputs);
             surface += relaxation.state_temperature();
         }
-        self.surface = surface.saturating_to_num();
+        self.surface = to_celsius(surface);
         self.leg_heating
             .update_by_input(product(inputs.joule, LEG_MEAN_RISE_PER_JOULE_HEAT_K_W));
         let heat_out = inputs.joule.saturating_add(inputs.pumped);
@@ -525,4 +531,12 @@ fn to_model_temperature(temperature: Celsius) -> ModelTemperature {
     ModelTemperature::from_bits(
         temperature.to_bits() >> (Celsius::FRAC_NBITS - ModelTemperature::FRAC_NBITS),
     )
+}
+
+/// Converts a temperature of the model to °C or K at the resolution of the readings; saturates. Two saturating additions
+/// are two instructions, where [`ModelTemperature::saturating_to_num`], which gives the same, takes fifteen.
+fn to_celsius(temperature: ModelTemperature) -> Celsius {
+    const { assert!(Celsius::FRAC_NBITS == ModelTemperature::FRAC_NBITS + 2) };
+    let doubled = temperature.saturating_add(temperature);
+    Celsius::from_bits(doubled.saturating_add(doubled).to_bits())
 }

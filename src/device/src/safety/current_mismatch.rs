@@ -17,6 +17,8 @@ const PROPORTIONAL_TOLERANCE_SHIFT: u32 = 2;
 /// overloaded bridge driver, which switches off and retries every 3 ms, to pull its fault line first, which trips the
 /// station by [`Fault::Bridge`].
 const MISMATCH_TRIP_NET_TICKS: u8 = 30;
+/// The same as a number of evaluations.
+const MISMATCH_TRIP_NET_EVALUATIONS: u8 = MISMATCH_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS;
 
 /// Detects a measured current that differs from the demanded one in magnitude. One counter serves both too much and too
 /// little current, because a leg of the bridge that is stuck causes one or the other, depending on the sign of the
@@ -40,10 +42,8 @@ impl CurrentMismatchDetector {
             CONSTANT_CURRENT_TOLERANCE.saturating_add(demanded >> PROPORTIONAL_TOLERANCE_SHIFT);
         let high = measured > demanded.saturating_add(tolerance);
         let low = measured < demanded.saturating_sub(tolerance);
-        if !self.0.count_tick(
-            high || low,
-            MISMATCH_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS,
-        ) {
+        let limit = MISMATCH_TRIP_NET_EVALUATIONS;
+        if !self.0.count_tick(high || low, limit) {
             Ok(())
         } else if high {
             Err(Fault::CurrentHigh)

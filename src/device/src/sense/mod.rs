@@ -423,3 +423,139 @@ impl SampleConverter {
         Ok(thermistors[thermistor % THERMISTOR_COUNT].corrected_temperature(uncorrected))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Thermistor sums near 25 °C: 10 kohm against a pull-up of 10 kohm, and force sensor and supply at rest.
+    const AT_25_C: Samples = Samples {
+        display: 32_768,
+        display_check: 32_768,
+        sink: 32_768,
+        skin: 32_768,
+        room: 32_768,
+        force: 6_560,
+        current: 0,
+        supply: 55_416,
+        bridge_fault: false,
+        emergency_stop: false,
+        comparator_side_differs: false,
+        scattering_thermistors: 0,
+    };
+
+    /// Readings of second display, sink, skin and room, °C.
+    fn taking_turns(readings: &Readings) -> [f64; THERMISTORS_CONVERTED_IN_TURN] {
+        [
+            readings.display_check,
+            readings.sink,
+            readings.skin,
+            readings.room,
+        ]
+        .map(|reading| reading.expect("connected").to_num())
+    }
+
+    /// A converter that has seen [`AT_25_C`] once and whose next turn is that of the second display.
+    fn started() -> SampleConverter {
+        let mut converter = SampleConverter::new(&Settings::default());
+        for _ in 0..THERMISTORS_CONVERTED_IN_TURN {
+            let _ = converter.convert_samples(&AT_25_C);
+        }
+        converter
+    }
+
+    /// 60 units of a sum are 0.08 K, less than makes a reading be converted out of turn.
+    #[test]
+    fn each_of_four_ticks_renews_the_next_of_second_display_sink_skin_and_room() {
+        let mut converter = started();
+        let before = taking_turns(&converter.clone().convert_samples(&AT_25_C));
+        let warmer = Samples {
+            display_check: 32_768 - 60,
+            sink: 32_768 - 60,
+            skin: 32_768 - 60,
+            room: 32_768 - 60,
+            ..AT_25_C
+        };
+        for tick in 0..2 * THERMISTORS_CONVERTED_IN_TURN {
+            let now = taking_turns(&converter.convert_samples(&warmer));
+            for (thermistor, (now, before)) in now.iter().zip(before).enumerate() {
+                let expected = if thermistor <= tick { 0.08 } else { 0.0 };
+                let change = now - before;
+                assert!(
+                    (change - expected).abs() < 0.01,
+                    "{tick}: {thermistor} by {change}"
+                );
+            }
+        }
+    }
+
+    /// 60 units of the sum are 0.082 K at 25 °C.
+    #[test]
+    fn the_first_display_thermistor_is_converted_in_every_tick() {
+        let mut converter = started();
+        let mut display = |units| {
+            let samples = Samples {
+                display: AT_25_C.display - units,
+                ..AT_25_C
+            };
+            let reading = converter.convert_samples(&samples).display;
+            reading.expect("connected").to_num::<f64>()
+        };
+        let mut before = display(0);
+        for tick in 1..20 {
+            let now = display(60 * tick);
+            assert!(
+                (now - before - 0.082).abs() < 0.003,
+                "{tick}: {before} {now}"
+            );
+            before = now;
+        }
+    }
+
+    #[test]
+    fn a_tick_after_a_calibration_renews_the_readings_of_all_thermistors() {
+        let mut converter = started();
+        let before = taking_turns(&converter.clone().convert_samples(&AT_25_C));
+        let mut settings = Settings::default();
+        for correction in &mut settings.calibration.corrections {
+            correction.offset_k += 0.5;
+        }
+        converter.replace_calibration_tables(&CalibrationTables::new(&settings));
+        let after = taking_turns(&converter.convert_samples(&AT_25_C));
+        for (before, after) in before.iter().zip(after) {
+            assert!((after - before - 0.5).abs() < 0.001, "{before} {after}");
+        }
+    }
+
+    /// 4 codes, 64 units of the sum, are 0.1 K at 25 °C. The turn is that of the room, so that it renews neither.
+    #[test]
+    fn second_display_and_sink_are_converted_at_once_when_they_have_moved_by_more_than_0_1_k() {
+        let mut converter = started();
+        for _ in 0..THERMISTORS_CONVERTED_IN_TURN - 1 {
+            let _ = converter.convert_samples(&AT_25_C);
+        }
+        let before = taking_turns(&converter.clone().convert_samples(&AT_25_C));
+        for sign in [-1i16, 1] {
+            for (units, is_converted) in [(64, false), (65, true)] {
+                let moved = 32_768u16.wrapping_add_signed(sign * units);
+                let check = Samples {
+                    display_check: moved,
+                    ..AT_25_C
+                };
+                let sink = Samples {
+                    sink: moved,
+                    ..AT_25_C
+                };
+                for (thermistor, samples) in [check, sink].iter().enumerate() {
+                    let now = taking_turns(&converter.clone().convert_samples(samples));
+                    let change = (now[thermistor] - before[thermistor]) * f64::from(-sign);
+                    let expected = if is_converted { 0.088 } else { 0.0 };
+                    assert!(
+                        (change - expected).abs() < 0.012,
+                        "{thermistor} by {units}: {change}"
+                    );
+                }
+            }
+        }
+    }
+}
