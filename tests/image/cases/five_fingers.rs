@@ -19,12 +19,12 @@ use thermal_sim::scene::Scene;
 const MILLISECOND: f64 = 180_000.0;
 
 /// The ELF file of the image of the current sources for five fingers, built once.
-fn elf() -> &'static Path {
+pub fn elf() -> &'static Path {
     static ELF: OnceLock<PathBuf> = OnceLock::new();
     ELF.get_or_init(|| stm32_emulator::build(FINGERS).expect("the image builds"))
 }
 
-fn worlds(scenes: &[Scene; FINGERS]) -> [World; FINGERS] {
+pub fn worlds(scenes: &[Scene; FINGERS]) -> [World; FINGERS] {
     scenes
         .each_ref()
         .map(|scene| World::of_five_fingers(scene).expect("a plant for the scene"))
@@ -62,7 +62,7 @@ fn five_contacts() -> [Scene; FINGERS] {
 }
 
 /// Objects of layers, which are uploaded, and one half-space between them; fingers of layers and the thesis's.
-fn five_layered_contacts() -> [Scene; FINGERS] {
+pub fn five_layered_contacts() -> [Scene; FINGERS] {
     const LAYERED: &str = "[finger]\ntissue = \"layered\"\n";
     const ON_FOAM: &str = "[[object.layer]]\nthickness_m = 0.001\nk_w_mk = 398\nrho_kg_m3 = 8954\nc_j_kgk = 384\n\
                            [[object.layer]]\nk_w_mk = 0.029\nrho_kg_m3 = 24\nc_j_kgk = 1210\n";

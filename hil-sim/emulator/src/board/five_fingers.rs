@@ -75,6 +75,13 @@ impl FiveFingerBoard {
         let cycles = self.machine.wiring().longest_switch;
         1e6 * cycles as f64 / f64::from(self.machine.clocks().hclk_hz)
     }
+
+    /// Longest time, us, for which the program has locked the control tick out since the start or the last
+    /// [`reset_cost`](FiveFingerEngine::reset_cost), what preempts it excluded.
+    pub fn longest_lock_us(&self) -> f64 {
+        let cycles = self.machine.stats().masked_max;
+        1e6 * cycles as f64 / f64::from(self.machine.clocks().hclk_hz)
+    }
 }
 
 impl FiveFingerEngine for FiveFingerBoard {
