@@ -47,10 +47,7 @@ impl Block {
     /// Whether the run loop has more to do than to count the block.
     #[inline]
     pub fn is_special(self) -> bool {
-        self.float
-            || self.sev
-            || self.writes_masks
-            || self.exclusive != Exclusive::Unchanged
+        self.float || self.sev || self.writes_masks || self.exclusive != Exclusive::Unchanged
     }
 }
 

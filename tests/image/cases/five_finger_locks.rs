@@ -1,92 +1,245 @@
-//! How long the host's commands lock out the control tick of the image for five fingers.
+//! How long the host's commands lock out the control tick of the image for five fingers, and how late it switches the
+//! multiplexers then.
 
+use std::iter;
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use documented_figures::assert_figure;
 use stm32_emulator::{Firmware, FiveFingerBoard};
 use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, run};
 use thermal_sim::processor::FlashTiming;
 
 use crate::five_fingers::{elf, five_layered_contacts, worlds};
 
-struct Session { hand: FiveFingerBoard, worst: f64 }
-impl Session {
-fn turn(&mut self) {
-    let hand = &mut self.hand;
-    for finger in 0..FINGERS {
-        hand.run_to(finger).expect("runs");
-        let legs = hand.legs(finger);
-        hand.world(finger).step(legs);
-    }
+/// Number of lines that restore the settings of a finger.
+const SETTINGS_LINES: usize = 8;
+
+/// Time in which every line is answered, ms.
+const ANSWERED_IN_MS: usize = 300;
+
+/// Lines to a finger that touches, in contact with an uploaded object. Each choice is made where it changes most: a material
+/// after an object with a body, a finger after one of another tissue.
+const IN_CONTACT: [&str; 46] = [
+    "id",
+    "board",
+    "state",
+    "cause",
+    "self-test",
+    "raw",
+    "settings",
+    "margins",
+    "law",
+    "law pi",
+    "law pi-10hz",
+    "law model",
+    "finger",
+    "finger thesis",
+    "material copper",
+    "finger mean",
+    "finger mean-on-pad",
+    "material custom 0.17 700 2000 5 0.12",
+    "object slab 3mm insulated",
+    "object half-space",
+    "object 20",
+    "object room",
+    "upload begin object 2 0.5",
+    "upload row 0 20 40",
+    "upload row 1 2 40",
+    "upload commit",
+    "material copper",
+    "object slab 2mm film 10",
+    "mode semi-infinite",
+    "mode contact",
+    "stream 20",
+    "stream 0",
+    "start",
+    "calibrate room 25",
+    "set tile 2.949416 0.058449 0.102339 0.101742 0.015895",
+    "arm",
+    "arm",
+    "hold 30",
+    "start",
+    "arm",
+    "tune",
+    "tune result",
+    "abort",
+    "calibrate skin 33",
+    "clear",
+    "arm",
+];
+
+/// Lines to a finger that has tripped, with a good bridge again.
+const TRIPPED: [&str; 8] = [
+    "state", "cause", "arm", "clear", "clear", "arm", "abort", "arm",
+];
+
+/// A device for five fingers on which the scenes of five uploads have run.
+struct Session {
+    device: FiveFingerBoard,
+    /// Longest time under the lock so far, us, and its line.
+    longest_lock: (f64, String),
 }
-fn wait(&mut self, ms: usize) { for i in 0..ms { if i % 1000 == 999 { self.hand.send(b"\n"); } self.turn(); } let mut x = vec![]; self.hand.receive(&mut x); }
-fn ask(&mut self, finger: usize, line: &str) -> String {
-        self.hand.reset_cost();
-        self.hand.send(format!("@{finger} {line}\n").as_bytes());
-        let mut out = vec![];
-        let prefix = format!("@{finger} ");
-        for n in 0..300 {
-            self.turn();
-            self.hand.receive(&mut out);
-            let text = String::from_utf8_lossy(&out).into_owned();
-            if n > 4 && text.ends_with('\n') && let Some(a) = text.lines().find(|l| l.starts_with(&(prefix.clone() + "ok")) || l.starts_with(&(prefix.clone() + "err"))) {
-                let us = self.hand.longest_lock_us();
-                self.worst = self.worst.max(us);
-                println!("{us:8.2} us  @{finger} {line:30} {}", &a[..a.len().min(70)]);
-                return a[3..].to_owned();
+
+impl Session {
+    fn after_uploads(flash: FlashTiming) -> Self {
+        let scenes = five_layered_contacts().map(|mut scene| {
+            scene.chip.flash = flash;
+            scene
+        });
+        let image = Firmware::from_file(elf()).expect("an image for this chip");
+        let mut device = FiveFingerBoard::new(&image, worlds(&scenes)).expect("the image starts");
+        run(&scenes, &mut device, |_| ()).expect("the image runs to the end");
+        let mut session = Self {
+            device,
+            longest_lock: (0.0, String::new()),
+        };
+        for finger in 0..FINGERS {
+            session.ask(finger, "stream 0");
+        }
+        session
+    }
+
+    fn advance(&mut self, finger: usize) {
+        self.device.run_to(finger).expect("the image runs");
+        let legs = self.device.legs(finger);
+        self.device.world(finger).step(legs);
+    }
+
+    fn wait_ms(&mut self, ms: usize) {
+        for _ in 0..ms {
+            (0..FINGERS).for_each(|finger| self.advance(finger));
+        }
+    }
+
+    /// Sends a line `ps` after a boundary of the first finger, and returns its answer.
+    fn ask_at(&mut self, ps: u64, finger: usize, line: &str) -> String {
+        self.device.reset_cost();
+        self.advance(0);
+        self.device.run_beyond_boundary(ps).expect("runs");
+        self.device.send(format!("@{finger} {line}\n").as_bytes());
+        (1..FINGERS).for_each(|finger| self.advance(finger));
+        let answer = self.answer_of(finger);
+        let lock_us = self.device.longest_lock_us();
+        println!("{lock_us:.2} us: {line} < {answer}");
+        if lock_us > self.longest_lock.0 {
+            self.longest_lock = (lock_us, line.to_owned());
+        }
+        answer
+    }
+
+    /// Runs the device until a finger has answered.
+    fn answer_of(&mut self, finger: usize) -> String {
+        let answers = [format!("@{finger} ok"), format!("@{finger} err")];
+        let mut received = Vec::new();
+        for _ in 0..ANSWERED_IN_MS {
+            self.wait_ms(1);
+            self.device.receive(&mut received);
+            let text = String::from_utf8_lossy(&received);
+            let mut lines = text
+                .split_inclusive('\n')
+                .filter(|line| line.ends_with('\n'));
+            if let Some(line) =
+                lines.find(|line| answers.iter().any(|answer| line.starts_with(answer)))
+            {
+                return line.trim_end().to_owned();
             }
         }
-        panic!("no answer to {line}");
-}
-}
-
-fn each(flash: FlashTiming) {
-    let scenes = five_layered_contacts().map(|mut scene| {
-        scene.chip.flash = flash;
-        scene
-    });
-    let image = Firmware::from_file(elf()).expect("an image for this chip");
-    let mut hand = FiveFingerBoard::new(&image, worlds(&scenes)).expect("the image starts");
-    run(&scenes, &mut hand, |_| ()).expect("set-up");
-    println!("{}: in scene lock {:.2} us switch {:.2}", flash.name(), hand.longest_lock_us(), hand.longest_switch_us());
-    let mut s = Session { hand, worst: 0.0 };
-    let up = ["upload begin object 2 0.5", "upload row 0 20 40", "upload row 1 2 40"];
-    let sum = |lines: &[&str]| {
-        let mut text = String::new();
-        for l in lines { text += l; text += "\n"; }
-        format!("upload commit {:08x}", crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(text.as_bytes()))
-    };
-    let commit = sum(&up);
-    let lines: Vec<&str> = vec![
-        "state", "cause", "self-test", "raw", "board", "id", "law", "law pi", "law pi-10hz", "law model", "finger", "finger thesis", "material copper",
-        "finger mean", "finger mean-on-pad", "finger mean", "material granite", "object slab 3mm insulated", "object half-space", "object 20", "object room", up[0], up[1], up[2], &commit,
-        "material copper", "object slab 2mm film 10", "mode semi-infinite", "mode contact", "stream 20", "settings", "margins",  "start", "arm", "arm", "state",
-        "hold 30", "start", "arm", "tune", "tune result", "arm", "calibrate room 25",  "abort", "arm", "abort", "clear",
-    ];
-    for line in lines { s.ask(0, line); }
-    s.hand.world(3).set_latch();
-    s.wait(5);
-    for line in ["state", "cause", "clear"] { s.ask(3, line); }
-    s.hand.world(3).connect_supply();
-    s.wait(100);
-    for line in ["state", "clear", "arm", "state", "abort", "arm", "state"] { s.ask(3, line); }
-    s.wait(2500);
-    for line in ["state", "start", "arm"] { s.ask(3, line); }
-    s.hand.world(4).set_force_and_faults(0.0, std::iter::empty());
-    s.wait(100);
-    for line in ["state", "arm"] { s.ask(4, line); }
-    let settings: Vec<String> = (1..=8).map(|n| s.ask(4, &format!("settings {n}"))).collect();
-    s.wait(1200);
-    for line in ["calibrate room 25", "calibrate display 33", "hold 25", "tune", "tune result", "calibrate display 30"] { s.ask(4, line); }
-    for n in 0..8 { s.ask(4, settings[n].trim_start_matches("ok ")); }
-    s.ask(4, "tune");
-    for n in 0..8 { s.ask(4, settings[n].trim_start_matches("ok ")); }
-    if std::env::var_os("TUNE").is_some() {
-    s.ask(4, "tune");
-    for _ in 0..60 { s.wait(1000); if s.ask(4, "tune result").starts_with("ok") { break; } }
+        panic!("finger {finger} has not answered")
     }
-    println!("{}: worst {:.2} switch {:.2}", flash.name(), s.worst, s.hand.longest_switch_us());
+
+    fn ask(&mut self, finger: usize, line: &str) -> String {
+        self.ask_at(0, finger, line)
+    }
+
+    /// Sends all commands of docs/protocol.md, in the states in which they do most. Only `save` and `forget` are missing, which
+    /// need every bridge off, and the rows of a complete identification, which takes half a minute.
+    fn ask_everything(&mut self) {
+        let mut uploaded = String::new();
+        for line in IN_CONTACT {
+            let line = match line {
+                "upload commit" => {
+                    let checksum = Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(uploaded.as_bytes());
+                    format!("{line} {checksum:08x}")
+                }
+                _ => line.to_owned(),
+            };
+            if line.starts_with("upload") {
+                uploaded += &format!("{line}\n");
+            }
+            self.ask(0, &line);
+        }
+        self.device.world(3).set_latch();
+        self.wait_ms(5);
+        TRIPPED[..3].iter().for_each(|line| drop(self.ask(3, line)));
+        self.device.world(3).connect_supply();
+        self.wait_ms(100);
+        TRIPPED[3..].iter().for_each(|line| drop(self.ask(3, line)));
+        self.device
+            .world(4)
+            .set_force_and_faults(0.0, iter::empty());
+        self.wait_ms(100);
+        self.ask(4, "arm");
+        self.wait_ms(600);
+        self.ask(4, "calibrate room 25");
+        let settings: Vec<_> = (1..=SETTINGS_LINES)
+            .map(|line| self.ask(4, &format!("settings {line}")))
+            .collect();
+        self.ask(4, "hold 30");
+        for line in settings {
+            assert!(self.ask(4, "tune").starts_with("@4 ok"));
+            let line = line.strip_prefix("@4 ok ").expect("settings");
+            assert!(self.ask(4, line).starts_with("@4 ok"));
+        }
+    }
 }
 
+/// While a command is executed, the tick of the next finger waits, which must switch the multiplexers within 11.1 us. So
+/// [`switches_in_time`] needs the longest command, which this test finds.
 #[test]
-fn locks() {
-    each(FlashTiming::Ideal);
-    each(FlashTiming::Accelerated);
+fn commands_lock_the_tick_out_briefly() {
+    for (flash, key) in [
+        (FlashTiming::Ideal, "five_fingers.lock"),
+        (FlashTiming::Accelerated, "five_fingers.lock_art"),
+        (FlashTiming::Unaccelerated, "five_fingers.lock_off"),
+    ] {
+        let mut session = Session::after_uploads(flash);
+        session.ask_everything();
+        let (us, line) = session.longest_lock;
+        assert_eq!(line, LONGEST, "the longest command");
+        assert_figure(key, us);
+    }
+}
+
+/// The command that locks longest.
+const LONGEST: &str = "tune";
+
+/// Sends the longest command at times 0.5 us apart over one turn, so that one of them begins to lock right before a finger's
+/// last scan ends.
+fn switches_in_time(flash: FlashTiming) -> f64 {
+    const STEP_PS: u64 = 500_000;
+    const TURN_PS: u64 = 200_000_000;
+    let mut session = Session::after_uploads(flash);
+    session
+        .device
+        .world(4)
+        .set_force_and_faults(0.0, iter::empty());
+    session.wait_ms(100);
+    session.ask(4, "arm");
+    for ps in (0..TURN_PS).step_by(STEP_PS as usize) {
+        assert!(session.ask_at(ps, 4, LONGEST).starts_with("@4 ok"));
+    }
+    assert!(session.ask(0, "state").contains("fault=-"));
+    session.device.longest_switch_us()
+}
+
+/// The program has the 11.1 us of one scan to switch the multiplexers after the block of a finger.
+#[test]
+fn the_multiplexers_are_switched_in_time_behind_the_longest_command() {
+    for (flash, key) in [
+        (FlashTiming::Ideal, "five_fingers.switch"),
+        (FlashTiming::Accelerated, "five_fingers.switch_art"),
+        (FlashTiming::Unaccelerated, "five_fingers.switch_off"),
+    ] {
+        assert_figure(key, switches_in_time(flash));
+    }
 }
