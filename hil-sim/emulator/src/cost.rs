@@ -39,6 +39,8 @@ pub(crate) struct Block {
     /// The block holds SEV, which sets the event register of the only core.
     pub sev: bool,
     pub exclusive: Exclusive,
+    /// The block holds an instruction that writes PRIMASK, BASEPRI or FAULTMASK; the emulation ends a block behind it.
+    pub writes_masks: bool,
     pub last: Last,
 }
 
@@ -46,7 +48,7 @@ impl Block {
     /// Whether the run loop has more to do than to count the block.
     #[inline]
     pub fn is_special(self) -> bool {
-        self.float || self.sev || self.exclusive != Exclusive::Unchanged
+        self.float || self.sev || self.writes_masks || self.exclusive != Exclusive::Unchanged
     }
 }
 
@@ -124,6 +126,7 @@ pub(crate) fn decode(address: u32, code: &[u8]) -> Block {
         conditional |= instruction.code & 0xff00 == 0xbf00 && instruction.code & 0xf != 0;
         let second = code.get(at as usize + 2..).and_then(<[u8]>::first_chunk);
         let second = second.map_or(0, |half| u16::from_le_bytes(*half));
+        block.writes_masks |= writes_masks(instruction.code, second.into());
         match exclusive_access(instruction.code, second.into()) {
             Exclusive::Unchanged => {}
             // a store that its condition skips leaves the monitor as it was
@@ -173,6 +176,12 @@ fn exclusive_access(first: u32, second: u32) -> Exclusive {
         0xf3b0 if second == 0x8f2f => Exclusive::Clear,
         _ => Exclusive::Unchanged,
     }
+}
+
+/// MSR to PRIMASK, BASEPRI, BASEPRI_MAX or FAULTMASK, and CPS (ARMv7-M B5.2.1 to B5.2.3).
+fn writes_masks(first: u32, second: u32) -> bool {
+    let msr = first & 0xfff0 == 0xf380 && second & 0xff00 == 0x8800;
+    msr && matches!(second & 0xff, 0x10..=0x13) || first & 0xffe8 == 0xb660
 }
 
 #[cfg(test)]

@@ -227,6 +227,7 @@ impl<W: Wiring + 'static> Machine<W> {
             cycles: state.cycles,
             exceptions: state.exceptions,
             sleep_share: state.chip_ref().slept as f64 / state.cycles.max(1) as f64,
+            masked_max: state.profile.masked_max(),
             interrupts: state.profile.interrupts(),
         }
     }

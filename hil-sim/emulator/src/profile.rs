@@ -36,6 +36,9 @@ pub struct Stats {
     pub exceptions: u64,
     /// Share of the cycles spent asleep, 0 to 1.
     pub sleep_share: f64,
+    /// Longest time for which PRIMASK, BASEPRI or FAULTMASK has masked exceptions that the running code does not mask by its
+    /// own priority, cycles since the last restart of the interrupts' statistics; what preempts it excluded.
+    pub masked_max: u64,
     /// Every exception that was entered at least once, by number.
     pub interrupts: Vec<InterruptStats>,
 }
@@ -65,6 +68,10 @@ pub(crate) struct Profile {
     totals: Vec<Total>,
     open: Vec<Activation>,
     charged_to: (u64, u64),
+    /// Number of open activations when the innermost of them began to mask exceptions, and its cycles then; in thread mode the
+    /// cycles since power-up.
+    masked_from: Option<(usize, u64)>,
+    masked_max: u64,
     /// The exception whose blocks are recorded, and the record.
     watched: Option<(usize, Box<ExecutionPath>)>,
     /// Its handler is running.
@@ -77,6 +84,8 @@ impl Profile {
             totals: vec![Total::default(); EXCEPTIONS],
             open: Vec::with_capacity(16),
             charged_to: (0, 0),
+            masked_from: None,
+            masked_max: 0,
             watched: None,
             watching: false,
         }
@@ -126,6 +135,26 @@ impl Profile {
         self.update_watching();
     }
 
+    /// Begins or ends the time for which the running code masks exceptions.
+    pub fn set_masked(&mut self, masked: bool, instructions: u64, cycles: u64) {
+        self.charge(instructions, cycles);
+        let now = self.open.last().map_or(cycles, |top| top.cycles);
+        match self.masked_from {
+            None if masked => self.masked_from = Some((self.open.len(), now)),
+            // A handler that preempts restores the masks at its end.
+            Some((depth, from)) if !masked && depth == self.open.len() => {
+                self.masked_from = None;
+                self.masked_max = self.masked_max.max(now.saturating_sub(from));
+            }
+            _ => {}
+        }
+    }
+
+    /// Longest time for which the running code has masked exceptions, cycles.
+    pub const fn masked_max(&self) -> u64 {
+        self.masked_max
+    }
+
     fn update_watching(&mut self) {
         let running = self.open.last().map(|open| open.exception);
         self.watching =
@@ -152,12 +181,14 @@ impl Profile {
     /// Ends every activation, at a reset.
     pub fn end_all(&mut self) {
         self.open.clear();
+        self.masked_from = None;
         self.update_watching();
     }
 
     /// Clears the statistics; running activations are counted when they end.
     pub fn restart(&mut self) {
         self.totals.fill(Total::default());
+        self.masked_max = 0;
     }
 
     pub fn interrupts(&self) -> Vec<InterruptStats> {

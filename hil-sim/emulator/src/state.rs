@@ -62,6 +62,8 @@ pub(crate) struct State<W> {
     /// The floating-point state of the preempted program is not yet on the stack, only its place (lazy stacking).
     pub float_state_pending: bool,
     pub limit: u64,
+    /// The last block may have changed PRIMASK, BASEPRI or FAULTMASK.
+    masks_written: bool,
     /// Stop the CPU before the next block.
     pub pause_requested: bool,
     pub exit: Exit,
@@ -94,6 +96,7 @@ impl<W: Wiring> State<W> {
             refill: 0,
             float_state_pending: false,
             limit: 0,
+            masks_written: false,
             pause_requested: false,
             exit: Exit::Unspecified,
             refused: None,
@@ -131,6 +134,7 @@ impl<W: Wiring> State<W> {
         let undisturbed = self.cycles < chip.next
             && self.cycles < self.limit
             && !self.pause_requested
+            && !self.masks_written
             && chip.reset.is_none()
             && !chip.nvic.may_preempt();
         if !undisturbed || u32::from(block.bytes) != bytes || block.is_special() {
@@ -268,6 +272,10 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
     let state = cpu.get_data_mut();
     let now = state.cycles;
     state.block_pc = address;
+    if std::mem::take(&mut state.masks_written) {
+        note_masking(cpu);
+    }
+    let state = cpu.get_data_mut();
     if state.chip().next <= now {
         service(cpu, now);
     }
@@ -305,6 +313,7 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
                 state.cycles += cost::FLOAT_STATE;
             }
             state.charge(address, block);
+            state.masks_written = block.writes_masks;
             return;
         }
         state.exit = Exit::FloatDenied;
@@ -314,6 +323,17 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
     if let Err(error) = cpu.emu_stop() {
         debug_assert!(false, "{error:?}");
     }
+}
+
+/// Tells the profile whether the program masks more exceptions now than the running handler does by its own priority.
+fn note_masking<W: Wiring>(cpu: &mut Cpu<'_, W>) {
+    let (primask, basepri, faultmask) = masks(cpu);
+    let state = cpu.get_data_mut();
+    let nvic = &state.chip_ref().nvic;
+    let masked =
+        nvic.execution_priority(primask, basepri, faultmask) < nvic.execution_priority(0, 0, 0);
+    let (instructions, cycles) = (state.instructions, state.cycles);
+    state.profile.set_masked(masked, instructions, cycles);
 }
 
 /// Subtracts the cost of the instructions of a block from `pc` on, which did not run.

@@ -11,7 +11,6 @@ use system_tests::{forces, host, natively, scene};
 use thermal_sim::World;
 use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, NativeFiveFingers, run};
 use thermal_sim::metrics::figures;
-use thermal_sim::processor::FlashTiming;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
@@ -19,12 +18,12 @@ use thermal_sim::scene::Scene;
 const MILLISECOND: f64 = 180_000.0;
 
 /// The ELF file of the image of the current sources for five fingers, built once.
-fn elf() -> &'static Path {
+pub fn elf() -> &'static Path {
     static ELF: OnceLock<PathBuf> = OnceLock::new();
     ELF.get_or_init(|| stm32_emulator::build(FINGERS).expect("the image builds"))
 }
 
-fn worlds(scenes: &[Scene; FINGERS]) -> [World; FINGERS] {
+pub fn worlds(scenes: &[Scene; FINGERS]) -> [World; FINGERS] {
     scenes
         .each_ref()
         .map(|scene| World::of_five_fingers(scene).expect("a plant for the scene"))
@@ -62,7 +61,7 @@ fn five_contacts() -> [Scene; FINGERS] {
 }
 
 /// Objects of layers, which are uploaded, and one half-space between them; fingers of layers and the thesis's.
-fn five_layered_contacts() -> [Scene; FINGERS] {
+pub fn five_layered_contacts() -> [Scene; FINGERS] {
     const LAYERED: &str = "[finger]\ntissue = \"layered\"\n";
     const ON_FOAM: &str = "[[object.layer]]\nthickness_m = 0.001\nk_w_mk = 398\nrho_kg_m3 = 8954\nc_j_kgk = 384\n\
                            [[object.layer]]\nk_w_mk = 0.029\nrho_kg_m3 = 24\nc_j_kgk = 1210\n";
@@ -168,32 +167,6 @@ fn five_fingers_take_less_than_a_ninth_of_the_cpu() {
         (cost.cycles_max as f64) < MILLISECOND / FINGERS as f64,
         "{cost:?}"
     );
-}
-
-/// Five uploads with a flash that makes the core wait, and the longest time that the program took to switch the multiplexers, us.
-fn switching(flash: FlashTiming) -> Result<f64, String> {
-    let scenes = five_layered_contacts().map(|mut scene| {
-        scene.chip.flash = flash;
-        scene
-    });
-    let image = Firmware::from_file(elf()).expect("an image for this chip");
-    let mut hand = FiveFingerBoard::new(&image, worlds(&scenes)).expect("the image starts");
-    let end = run(&scenes, &mut hand, |_| ());
-    println!("{}: {:.2} us", flash.name(), hand.longest_switch_us());
-    end.map(|_| hand.longest_switch_us())
-        .map_err(|error| error.to_string())
-}
-
-/// The program has the 11.1 us of one scan to switch the multiplexers after the block of a finger. Meanwhile a host's line may
-/// arrive, whose interrupt is more urgent, or the host's task may hold the device while it executes a command. The latter decides:
-/// whether a tick waits for all of it is chance. With caches and prefetch off it takes too long, and all fingers trip.
-#[test]
-fn the_multiplexers_are_switched_within_a_scan_or_all_fingers_trip() {
-    let in_time = |flash| switching(flash).expect("the image runs to the end");
-    assert_figure("five_fingers.switch", in_time(FlashTiming::Ideal));
-    assert_figure("five_fingers.switch_art", in_time(FlashTiming::Accelerated));
-    let late = switching(FlashTiming::Unaccelerated).expect_err("too late");
-    assert!(late.contains("tripped by sampling"), "{late}");
 }
 
 /// A tripped bridge driver and an `abort` each stop one finger; the others go on.

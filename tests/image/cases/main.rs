@@ -6,6 +6,7 @@ mod closed_loop;
 mod contact_transients;
 mod engine_equality;
 mod five_finger_faults;
+mod five_finger_locks;
 mod five_fingers;
 mod processor_faults;
 mod range_limits;

@@ -75,6 +75,23 @@ impl FiveFingerBoard {
         let cycles = self.machine.wiring().longest_switch;
         1e6 * cycles as f64 / f64::from(self.machine.clocks().hclk_hz)
     }
+
+    /// Runs the device on by a time, ps, from the last boundary on; at most to the next one.
+    ///
+    /// # Errors
+    /// The device did something that is not modelled.
+    pub fn run_beyond_boundary(&mut self, ps: u64) -> Result<(), Stop> {
+        let last = self.boundaries.saturating_sub(1);
+        self.machine
+            .run_until_ps(self.first_boundary_ps + last * TURN_PS + ps.min(TURN_PS))
+    }
+
+    /// Longest time, us, for which the program has locked the control tick out since the start or the last
+    /// [`reset_cost`](FiveFingerEngine::reset_cost), what preempts it excluded.
+    pub fn longest_lock_us(&self) -> f64 {
+        let cycles = self.machine.stats().masked_max;
+        1e6 * cycles as f64 / f64::from(self.machine.clocks().hclk_hz)
+    }
 }
 
 impl FiveFingerEngine for FiveFingerBoard {

@@ -42,24 +42,24 @@ impl Station {
                         self.estimator.finger.forget_tissue_history();
                     }
                     self.object.choose_finger(finger);
-                    self.restart_contact();
+                    self.contact_restart_is_due = true;
                 }
             }
             Command::Material(ref material) => {
                 self.object.choose_material(material);
-                self.restart_contact();
+                self.contact_restart_is_due = true;
             }
             Command::Body(ref body) => {
                 self.object.choose_body(body);
-                self.restart_contact();
+                self.contact_restart_is_due = true;
             }
             Command::Object(temperature) => {
                 self.object.temperature = temperature;
-                self.restart_contact();
+                self.contact_restart_is_due = true;
             }
             Command::Mode(mode) => {
                 if mode != self.object.mode {
-                    self.restart_contact();
+                    self.contact_restart_is_due = true;
                 }
                 self.object.mode = mode;
             }
@@ -115,14 +115,6 @@ impl Station {
             limited: reference.is_some_and(|reference| reference.limited),
             body: self.object.body_name,
         }
-    }
-
-    /// Makes the next tick begin a new contact for a finger that already touches. Called when the host has chosen
-    /// another object or contact model, and when `start` presents the object.
-    #[inline(never)]
-    fn restart_contact(&mut self) {
-        let bodies = self.object.bodies();
-        (self.reference).restart_contact(&mut self.estimator.finger, bodies);
     }
 
     /// Returns [`Refused::Presenting`] while an object is presented. For the commands that change parameters or
@@ -201,7 +193,7 @@ impl Station {
             (State::Preset | State::Contact, Some(_)) => return Err(Refused::AlreadyStarted),
             (State::Armed(_), Some(_)) => {}
         }
-        self.restart_contact();
+        self.contact_restart_is_due = true;
         self.averages = ThermistorAverages::default();
         self.apply_event(Event::Start);
         Ok(())
