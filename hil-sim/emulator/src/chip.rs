@@ -104,6 +104,8 @@ pub(crate) struct Chip<W> {
     pub misuse: Option<(u32, Refusal)>,
     /// Cycle of the next event of any device.
     pub next: u64,
+    /// As `next`, without the events of converter and serial line, which are nearly all and change no other device's next event.
+    next_of_others: u64,
 }
 
 impl<W: Wiring> Chip<W> {
@@ -147,6 +149,7 @@ impl<W: Wiring> Chip<W> {
             reset: None,
             misuse: None,
             next: u64::MAX,
+            next_of_others: u64::MAX,
         }
     }
 
@@ -185,15 +188,13 @@ impl<W: Wiring> Chip<W> {
 
     pub fn refresh_next(&mut self, now: u64) {
         if self.stopped_at.is_some() {
+            self.next_of_others = self.iwdg.due;
             self.next = self.iwdg.due;
             return;
         }
         let timers = self.tims.iter().fold(u64::MAX, |least, t| least.min(t.due));
-        self.next = timers
+        self.next_of_others = timers
             .min(self.ppb.systick_due)
-            .min(self.adc.due)
-            .min(self.usart.tx_due)
-            .min(self.usart.rx_due)
             .min(self.iwdg.due)
             .min(self.wwdg.due)
             .min(if self.dma_request_possible {
@@ -201,6 +202,15 @@ impl<W: Wiring> Chip<W> {
             } else {
                 u64::MAX
             });
+        self.refresh_next_of_streams();
+    }
+
+    /// As [`Self::refresh_next`], after events of the converter or the serial line only.
+    fn refresh_next_of_streams(&mut self) {
+        self.next = (self.next_of_others)
+            .min(self.adc.due)
+            .min(self.usart.tx_due)
+            .min(self.usart.rx_due);
     }
 
     /// Handles every device event up to `now`, in order of time.
@@ -211,6 +221,12 @@ impl<W: Wiring> Chip<W> {
                 break;
             }
             let at = self.next;
+            if at < self.next_of_others {
+                self.service_streams(at, memory);
+                self.sample_inputs(at);
+                self.refresh_next_of_streams();
+                continue;
+            }
             if self.ppb.systick_due <= at && self.ppb.systick_expire() {
                 self.nvic.pend(exception::SYSTICK, at);
             }
@@ -220,24 +236,7 @@ impl<W: Wiring> Chip<W> {
                     self.timer_changed(timer, at);
                 }
             }
-            if self.adc.due <= at {
-                self.end_conversion(at, memory);
-            }
-            if self.usart.tx_due <= at {
-                let connected = self.ports[0].mode(2) == Mode::Alternate(7);
-                if let Some(byte) = self.usart.transmitted() {
-                    self.usart.hear_own(byte, at);
-                    if connected {
-                        self.wiring.uart_tx(byte, at, self.usart.baud());
-                    }
-                }
-                self.serve_usart_dma(at, memory);
-            }
-            if self.usart.rx_due <= at {
-                self.usart
-                    .receive(self.ports[0].mode(3) == Mode::Alternate(7));
-                self.serve_usart_dma(at, memory);
-            }
+            self.service_streams(at, memory);
             if self.dma_request_possible {
                 self.dma_request_possible = false;
                 self.serve_adc_dma(at, memory);
@@ -255,6 +254,28 @@ impl<W: Wiring> Chip<W> {
             }
             self.sample_inputs(at);
             self.refresh_next(at);
+        }
+    }
+
+    /// Handles the events of the converter and of the serial line up to `at`.
+    fn service_streams(&mut self, at: u64, memory: &mut impl Memory) {
+        if self.adc.due <= at {
+            self.end_conversion(at, memory);
+        }
+        if self.usart.tx_due <= at {
+            let connected = self.ports[0].mode(2) == Mode::Alternate(7);
+            if let Some(byte) = self.usart.transmitted() {
+                self.usart.hear_own(byte, at);
+                if connected {
+                    self.wiring.uart_tx(byte, at, self.usart.baud());
+                }
+            }
+            self.serve_usart_dma(at, memory);
+        }
+        if self.usart.rx_due <= at {
+            self.usart
+                .receive(self.ports[0].mode(3) == Mode::Alternate(7));
+            self.serve_usart_dma(at, memory);
         }
     }
 

@@ -116,6 +116,14 @@ impl FlashWaiting {
         if (first == self.line && last == first && constants == 0) || address >= RAM_BASE {
             return 0;
         }
+        self.fetch_lines(now, code, cycles, constants)
+    }
+
+    /// As [`Self::block`], for a block that is not all in the line that the core executes.
+    fn fetch_lines(&mut self, now: u64, code: (u32, u16), cycles: u16, constants: u16) -> u64 {
+        let (address, bytes) = (code.0, u32::from(code.1));
+        let offset = address & !FLASH_BASE;
+        let (first, last) = (offset / LINE_BYTES, (offset + bytes - 1) / LINE_BYTES);
         let mut waiting = 0;
         for line in first..=last {
             if line != self.line {

@@ -38,7 +38,7 @@ impl<W: Wiring + 'static> Machine<W> {
                 RunLimit::Cycle(cycle) => cycle,
                 RunLimit::Ps(ps) => state.chip_ref().time.cycle_at(ps),
             };
-            state.limit = cycle;
+            state.set_limit(cycle);
             service(&mut self.cpu, now);
             if let Some(cause) = self.chip_mut().reset {
                 self.system_reset(cause)?;

@@ -61,9 +61,13 @@ pub(crate) struct State<W> {
     pub refill: u8,
     /// The floating-point state of the preempted program is not yet on the stack, only its place (lazy stacking).
     pub float_state_pending: bool,
-    pub limit: u64,
+    /// Cycle before which the run goes on; see [`Self::set_limit`].
+    limit: u64,
     /// The last block may have changed PRIMASK, BASEPRI or FAULTMASK.
     masks_written: bool,
+    /// Until this cycle no block needs a look at the chip: no event is due, no exception may be taken, nothing pauses the run. 0: the
+    /// chip may have changed, and the next block looks.
+    undisturbed_until: u64,
     /// Stop the CPU before the next block.
     pub pause_requested: bool,
     pub exit: Exit,
@@ -97,6 +101,7 @@ impl<W: Wiring> State<W> {
             float_state_pending: false,
             limit: 0,
             masks_written: false,
+            undisturbed_until: 0,
             pause_requested: false,
             exit: Exit::Unspecified,
             refused: None,
@@ -107,12 +112,13 @@ impl<W: Wiring> State<W> {
         }
     }
 
-    /// The chip.
+    /// The chip, for changes.
     ///
     /// # Panics
     /// If called from within [`service`]; no device does that.
     #[inline]
     pub fn chip(&mut self) -> &mut Chip<W> {
+        self.undisturbed_until = 0;
         self.chip
             .as_mut()
             .expect("the chip is in its place outside of service()")
@@ -128,20 +134,27 @@ impl<W: Wiring> State<W> {
     /// Fast path of most blocks: counts a block of known cost if no event is due before it.
     #[inline]
     fn charge_known_block(&mut self, address: u32, bytes: u32) -> bool {
-        let (Some(chip), Some(block)) = (&self.chip, self.cost.known(address)) else {
+        if self.cycles >= self.undisturbed_until {
+            return false;
+        }
+        let Some(block) = self.cost.known(address) else {
             return false;
         };
-        let undisturbed = self.cycles < chip.next
-            && self.cycles < self.limit
-            && !self.pause_requested
-            && !self.masks_written
-            && chip.reset.is_none()
-            && !chip.nvic.may_preempt();
-        if !undisturbed || u32::from(block.bytes) != bytes || block.is_special() {
+        if u32::from(block.bytes) != bytes || block.is_special() {
             return false;
         }
         self.charge(address, block);
         true
+    }
+
+    /// Sets until when blocks need no look at the chip; called when the present block does not pause the run.
+    fn set_undisturbed(&mut self) {
+        let chip = self.chip_ref();
+        self.undisturbed_until = if chip.nvic.may_preempt() {
+            0
+        } else {
+            chip.next.min(self.limit)
+        };
     }
 
     /// Counts a block that is about to run, and the refill if a branch leads to it.
@@ -187,14 +200,24 @@ impl<W: Wiring> State<W> {
         });
     }
 
+    /// The run pauses at the first block from this cycle on.
+    pub fn set_limit(&mut self, cycle: u64) {
+        (self.limit, self.undisturbed_until) = (cycle, 0);
+    }
+
+    /// Stops the CPU before the next block.
+    pub fn request_pause(&mut self) {
+        (self.pause_requested, self.undisturbed_until) = (true, 0);
+    }
+
     /// Takes a fault before the next block.
     pub fn raise(&mut self, fault: Fault) {
-        self.pause_requested = true;
+        self.request_pause();
         self.raised = Some(fault);
     }
 
     fn refuse(&mut self, refusal: Refusal, address: u32, access: Access, value: u32) {
-        self.pause_requested = true;
+        self.request_pause();
         if refusal == Refusal::BusError {
             self.raise(RESERVED_ADDRESS);
         } else if self.refused.is_none() {
@@ -214,7 +237,9 @@ pub(crate) fn with_chip<W: Wiring, R>(
     cpu: &mut Cpu<'_, W>,
     work: impl FnOnce(&mut Chip<W>, &mut dyn FnMut(&mut Chip<W>, u64)) -> R,
 ) -> Option<R> {
-    let mut chip = cpu.get_data_mut().chip.take()?;
+    let state = cpu.get_data_mut();
+    state.undisturbed_until = 0;
+    let mut chip = state.chip.take()?;
     let mut ram = Ram::new(cpu);
     let result = work(&mut chip, &mut |chip, now| chip.service(now, &mut ram));
     ram.flush();
@@ -224,7 +249,7 @@ pub(crate) fn with_chip<W: Wiring, R>(
 
 /// Handles the device events up to `now`.
 pub(crate) fn service<W: Wiring>(cpu: &mut Cpu<'_, W>, now: u64) {
-    if cpu.get_data_mut().chip().next <= now {
+    if cpu.get_data().chip_ref().next <= now {
         with_chip(cpu, |chip, service| service(chip, now));
     }
 }
@@ -276,7 +301,7 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
         note_masking(cpu);
     }
     let state = cpu.get_data_mut();
-    if state.chip().next <= now {
+    if state.chip_ref().next <= now {
         service(cpu, now);
     }
     let pause = {
@@ -303,7 +328,7 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
             }
         };
         let state = cpu.get_data_mut();
-        if !block.float || state.chip().ppb.float_enabled() {
+        if !block.float || state.chip_ref().ppb.float_enabled() {
             state.event_register |= block.sev;
             match block.exclusive {
                 Exclusive::Unchanged => {}
@@ -312,8 +337,13 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
             if block.float && std::mem::take(&mut state.float_state_pending) {
                 state.cycles += cost::FLOAT_STATE;
             }
+            state.set_undisturbed();
             state.charge(address, block);
-            state.masks_written = block.writes_masks;
+            if block.writes_masks {
+                // The next block looks at the masks.
+                state.masks_written = true;
+                state.undisturbed_until = 0;
+            }
             return;
         }
         state.exit = Exit::FloatDenied;
@@ -418,7 +448,9 @@ pub(crate) fn on_write<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8,
         state.refuse(refusal, register, Access::Write(bytes), value);
     }
     // a new clock moves the cycle at which the run shall pause
-    state.pause_requested |= register & 0xffff_fc00 == 0x4002_3800;
+    if register & 0xffff_fc00 == 0x4002_3800 {
+        state.request_pause();
+    }
     if register == FLASH_ACR {
         state.flash_waiting.control(value);
     }
