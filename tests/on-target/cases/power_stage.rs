@@ -39,7 +39,6 @@ mod tests {
         stage.apply_drive_and_comparator_test(&BoardOutputs {
             drive,
             comparator_test: ComparatorTest::None,
-            trigger_output: false,
         });
     }
 
