@@ -151,7 +151,7 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     pub fn execute_on_finger(
         &mut self,
         finger: FingerIndex<FINGERS>,
-        command: &Command,
+        command: &Command<'_>,
     ) -> Result<Reply, Refused> {
         self.station_mut(finger).execute(command)
     }
@@ -163,7 +163,7 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     pub fn execute(
         &mut self,
         finger: Option<FingerIndex<FINGERS>>,
-        command: Command,
+        command: Command<'_>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Refused>> {
         execute_in_turn(finger, |one| self.execute_on_finger(one, &command))
     }

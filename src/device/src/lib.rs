@@ -21,8 +21,8 @@ pub mod safety;
 pub mod sense;
 mod state_name;
 mod station;
+pub mod stimulus;
 mod telemetry;
-mod temperature_hold;
 
 pub use device::{Device, DeviceInPlace, execute_in_turn};
 pub use finger_index::FingerIndex;

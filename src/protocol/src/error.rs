@@ -12,6 +12,12 @@ use thermal_commissioning::{
 };
 use thermal_device::command::{AssumedFinger, Refused};
 use thermal_device::control::Law;
+use thermal_device::safety::PredictedDose;
+use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
+use thermal_device::stimulus::{
+    COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, CourseEnd, CourseError,
+    CourseStart, CourseTemperatures,
+};
 use thermal_settings::Range;
 
 use crate::calibrate_settings_set_commands::SET_COMMAND_TARGET_WORDS;
@@ -105,6 +111,16 @@ pub enum Error {
     /// The word after `calibrate` or `set correction`, quoted here, is none of the thermistors `display`, `check`,
     /// `sink`, `skin` and `room`.
     UnknownSensor(QuotedWordExcerpt),
+    /// The argument of `skin`, quoted here, is neither `sensor` nor a temperature.
+    UnknownSkin(&'static Range, QuotedWordExcerpt),
+    /// The word, quoted here, that says what starts a course is none of `now`, `trigger` and `landing`.
+    UnknownCourseStart(QuotedWordExcerpt),
+    /// The word after the times of a course, quoted here, is neither `hold` nor `neutral`.
+    UnknownCourseEnd(QuotedWordExcerpt),
+    /// The word after the number of points of a course, quoted here, is neither `absolute` nor `relative`.
+    UnknownCourseTemperatures(QuotedWordExcerpt),
+    /// A point or a course is refused, for this reason.
+    Course(CourseError),
     /// The word after `set`, quoted here, is none of `steps`, `correction` and `tile`.
     UnknownSetting(QuotedWordExcerpt),
     /// The line lacks the word with this name. The name is `command` if the line has no command, and
@@ -204,7 +220,7 @@ impl fmt::Display for Error {
                 f,
                 "upload",
                 word,
-                ["begin", "row", "commit", "object"].into_iter(),
+                ["begin", "row", "commit", "object", "course"].into_iter(),
             ),
             Self::SlabNeedsMaterial => f.write_str("a slab needs a material first"),
             Self::Upload(error) => write_upload_error(f, *error),
@@ -227,6 +243,23 @@ impl fmt::Display for Error {
             Self::UnknownSetting(word) => {
                 write_unknown_word(f, "setting", word, SET_COMMAND_TARGET_WORDS.iter().copied())
             }
+            Self::UnknownSkin(range, word) if word.is_empty() => {
+                write!(f, "skin missing; sensor or {range}")
+            }
+            Self::UnknownSkin(range, word) => write!(f, "skin {word}: sensor or {range}"),
+            Self::UnknownCourseStart(word) => {
+                let known = CourseStart::PROTOCOL_WORDS.iter();
+                write_unknown_word(f, "start of a course", word, known.map(|(name, _)| *name))
+            }
+            Self::UnknownCourseEnd(word) => {
+                let known = CourseEnd::PROTOCOL_WORDS.iter();
+                write_unknown_word(f, "end of a course", word, known.map(|(name, _)| *name))
+            }
+            Self::UnknownCourseTemperatures(word) => {
+                let known = CourseTemperatures::PROTOCOL_WORDS.iter();
+                write_unknown_word(f, "temperatures", word, known.map(|(name, _)| *name))
+            }
+            Self::Course(error) => write_course_error(f, error),
             Self::Missing(argument) => write!(f, "{argument} missing"),
             Self::Extra(word) => write!(f, "unexpected {word} after the command"),
             Self::NotANumber(range, word) | Self::NotMillimetres(range, word)
@@ -344,6 +377,37 @@ fn write_upload_error(f: &mut fmt::Formatter<'_>, error: UploadError) -> fmt::Re
     }
 }
 
+fn write_course_error(f: &mut fmt::Formatter<'_>, error: &CourseError) -> fmt::Result {
+    match error {
+        CourseError::TooManyPoints => {
+            write!(f, "too many points; at most {COURSE_POINTS_MAX}")
+        }
+        CourseError::TooFewPoints => f.write_str("a course has at least 2 points"),
+        CourseError::TimeGoesBack(before_ms) => {
+            let before_s = Rounded(f64::from(*before_ms) / 1e3, 3);
+            write!(f, "time goes back: the point before is at {before_s} s")
+        }
+        CourseError::TooLong => write!(f, "too long; at most {} s", COURSE_DURATION_MAX_MS / 1000),
+        CourseError::OutOfRange => f.write_str("temperature out of range"),
+        CourseError::TooFast(rate_k_s) => write!(
+            f,
+            "too fast: {rate_k_s} K/s from the point before; at most {COURSE_RATE_MAX_K_S} K/s"
+        ),
+        CourseError::TooHotForTooLong(dose_ms) => write_dose(f, *dose_ms),
+    }
+}
+
+/// Writes that a course would give too large a dose, given in ms at 43 °C.
+fn write_dose(f: &mut fmt::Formatter<'_>, dose_ms: u32) -> fmt::Result {
+    let minutes = |ms: u32| Rounded(f64::from(ms) / 60e3, 2);
+    write!(
+        f,
+        "too hot for too long: CEM43 would be {} min; below {} min is allowed",
+        minutes(dose_ms),
+        minutes(PredictedDose::LIMIT_MS)
+    )
+}
+
 fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::Result {
     f.write_str(match refused {
         Refused::NotArmed => "start needs arm first",
@@ -352,6 +416,7 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         Refused::AlreadyStarted => "already started; arm takes the object away",
         Refused::NeedsArmed(command) => return write!(f, "{command} needs the state armed"),
         Refused::Presenting => "not while an object is presented: abort or arm first",
+        Refused::NoCourse => "no course is loaded; upload begin course first",
         Refused::Touched => "tune needs a display without a finger on it",
         Refused::NotTuned => "nothing was tuned since arm; tune first",
         Refused::Tuning => "tuning goes on; ask again in a second",
@@ -360,6 +425,15 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         Refused::Tripped(fault) => {
             return write!(f, "tripped by {}; clear it first", fault.name());
         }
+        Refused::CourseOutOfRange(celsius) => {
+            let (min, max) = (Shortest(SETPOINT_MIN_C), Shortest(SETPOINT_MAX_C));
+            let celsius = Rounded(celsius.to_num(), 2);
+            return write!(
+                f,
+                "above this skin the course reaches {celsius} C; {min} to {max} C"
+            );
+        }
+        Refused::CourseDose(dose) => return write_dose(f, dose.milliseconds_at_43()),
         Refused::StillFaulty(fault) => {
             return write!(f, "fault {} is still present", fault.name());
         }

@@ -18,6 +18,7 @@ mod line_reader;
 mod object;
 mod reply;
 mod request;
+mod stimulus;
 mod telemetry;
 mod upload;
 

@@ -7,8 +7,6 @@ use thermal_commissioning::{SessionRequest, StorageOrder};
 use thermal_device::command::{AssumedFinger, ChosenMaterial, Command};
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
-use thermal_device::safety::Setpoint;
-use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
 use thermal_settings::{Range, Settings};
 
 use crate::Error;
@@ -20,6 +18,7 @@ use crate::calibrate_settings_set_commands::{
     parse_calibration_point_or_clear, parse_set_arguments, parse_settings_query,
 };
 use crate::object::parse_object;
+use crate::stimulus::{Pulse, parse_hold, parse_play, parse_pulse, parse_skin};
 
 /// A line from the host after parsing: a command with its arguments, which are within their ranges.
 #[allow(
@@ -36,7 +35,7 @@ pub enum Request {
     Board,
     /// A line that the stations (the control) of the addressed fingers execute as this command, such as `arm` or
     /// `material`.
-    Station(Command),
+    Station(Command<'static>),
     /// The line `object slab ...`: the object is a slab of the chosen material.
     Slab {
         /// Its thickness, mm.
@@ -44,6 +43,8 @@ pub enum Request {
         /// What is behind it.
         back: Back,
     },
+    /// The line `pulse ...`: load a course of four points, and play it.
+    Pulse(Pulse),
     /// A line `upload`: begin, a row, or commit.
     Upload,
     /// A line about settings or calibration, which the commissioning sessions of the addressed fingers execute:
@@ -87,7 +88,10 @@ impl Request {
         "mode" => Self::Station(Command::Mode(parse_contact_model(words)?)),
         "law" => Self::Station(Command::Law(words.next().map(parse_control_law_word).transpose()?)),
         "arm" => Self::Station(Command::Arm),
-        "hold" => Self::Station(Command::Hold(parse_hold_setpoint(words)?)),
+        "hold" => Self::Station(parse_hold(words)?),
+        "play" => Self::Station(Command::Play(parse_play(words)?)),
+        "pulse" => Self::Pulse(parse_pulse(words)?),
+        "skin" => Self::Station(Command::AssumeSkin(parse_skin(words)?)),
         "start" => Self::Station(Command::Start),
         "abort" => Self::Station(Command::Abort),
         "clear" => Self::Station(Command::Clear),
@@ -144,12 +148,6 @@ static STREAM_INTERVAL_RANGE: Range = Range {
     min: 0.0,
     max: 60_000.0,
 };
-static HOLD_TEMPERATURE_RANGE: Range = Range {
-    name: "temperature",
-    unit: "C",
-    min: SETPOINT_MIN_C,
-    max: SETPOINT_MAX_C,
-};
 /// Allowed ranges of the properties of a material in the line `material custom ...`, in their order on the line:
 /// thermal conductivity, density, specific heat, roughness and slope of the asperities.
 static MATERIAL_PROPERTY_RANGES: [Range; 5] = [
@@ -185,7 +183,7 @@ static MATERIAL_PROPERTY_RANGES: [Range; 5] = [
     },
 ];
 
-fn parse_stream(words: &mut Words<'_>) -> Result<Command, Error> {
+fn parse_stream(words: &mut Words<'_>) -> Result<Command<'static>, Error> {
     // Rounds a fraction of a millisecond up, so that only 0 ends the stream.
     let interval_ms = read_fixed_point_in_range(words, &STREAM_INTERVAL_RANGE)?
         .saturating_ceil()
@@ -221,15 +219,10 @@ fn parse_control_law_word(name: &str) -> Result<Law, Error> {
     Ok(law)
 }
 
-fn parse_hold_setpoint(words: &mut Words<'_>) -> Result<Setpoint, Error> {
-    let celsius = read_fixed_point_in_range(words, &HOLD_TEMPERATURE_RANGE)?.to_num();
-    Ok(Setpoint::clamp_celsius_with_flag(celsius).0)
-}
-
 fn parse_material_and_compute_contact(
     words: &mut Words<'_>,
     display: &Surface,
-) -> Result<Command, Error> {
+) -> Result<Command<'static>, Error> {
     let name = word_or_empty(words);
     let (name, material) = if name == CUSTOM_MATERIAL_WORD {
         (

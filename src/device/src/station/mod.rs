@@ -14,6 +14,7 @@
 
 mod chosen_object;
 mod execute_command;
+mod follow_stimulus;
 mod state;
 
 use contact_model::fixed_point::to_fixed;
@@ -35,6 +36,7 @@ use crate::safety::{
 use crate::sense::{
     CalibrationTables, ContactDetector, Readings, SampleConverter, Samples, ThermistorAverages,
 };
+use crate::stimulus::CourseMemory;
 use crate::{StateName, Telemetry};
 use chosen_object::ChosenObject;
 
@@ -56,6 +58,7 @@ pub struct Station {
     /// What the last self-test has measured.
     self_test_report: SelfTestReport,
     identified: IdentificationResult,
+    courses: CourseMemory,
     /// Number of the last tick: ticks of 1 ms since the start of the program; wraps after 49 days.
     tick: u32,
     /// Ticks of 1 ms from one line of telemetry to the next; 0 while telemetry is off.
@@ -118,6 +121,7 @@ impl Station {
             estimator: Estimator {
                 plate: PlateObserver::new(&parameters.observer, limit),
                 finger: FingerEstimator::default(),
+                assumed_skin: None,
             },
             object: ChosenObject::new(&settings.display),
             reference: ReferenceGenerator::default(),
@@ -126,6 +130,7 @@ impl Station {
             state: State::Off,
             self_test_report: SelfTestReport::default(),
             identified: IdentificationResult::default(),
+            courses: CourseMemory::default(),
             tick: 0,
             telemetry_ticks: 0,
             last: LastTickValues {
@@ -292,6 +297,9 @@ impl Station {
         } else {
             self.contact.detection_delay_ticks()
         };
+        if touching != previously_touching {
+            self.note_touch_change(touching, landed_ticks);
+        }
         let force = touching.then_some(valid.force);
         let pair = self.object.contact_pair();
         let bodies = self.object.bodies();
@@ -309,8 +317,8 @@ impl Station {
         let setpoint = match &mut self.state {
             State::Off | State::SelfTest(_) | State::Ready | State::Tripped(_) => return None,
             State::Armed(ArmedTask::Neutral) => finger.temperatures_before_contact()?.skin,
-            State::Armed(ArmedTask::Hold(hold)) => hold.next_setpoint().celsius(),
             State::Armed(ArmedTask::Identify(tile)) => tile.operating_point().celsius(),
+            State::Stimulus(_) => return self.reference_of_stimulus(estimate),
             State::Preset | State::Contact => {
                 let scene = self.object.presented_object_if_chosen()?;
                 let surface = estimate.previous_surface;
