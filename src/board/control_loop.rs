@@ -4,9 +4,10 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use heapless::spsc::Producer;
 use thermal_display::device::command::WithSourceFinger;
+use thermal_display::device::events::UnaskedReport;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::{DigitalInputs, Samples};
-use thermal_display::device::{DeviceInPlace, FingerIndex, Telemetry};
+use thermal_display::device::{DeviceInPlace, FingerIndex};
 
 use super::{
     ChipMonitor, ComparatorSide, EmergencyStop, FINGERS, FingerPowerStage, SampleError, Sampler,
@@ -21,7 +22,7 @@ pub struct ControlLoop {
     pub comparator_side: ComparatorSide,
     pub emergency_stop: EmergencyStop,
     pub trip_cause_recorder: TripCauseRecorder,
-    pub telemetry: Producer<'static, WithSourceFinger<Telemetry>>,
+    pub telemetry: Producer<'static, WithSourceFinger<UnaskedReport>>,
     pub window_watchdog: WindowWatchdog,
     pub chip_monitor: ChipMonitor,
 }
@@ -86,12 +87,20 @@ impl ControlLoop {
         save_dose_if_changed(finger, device.finger_thermal_dose(finger));
         self.comparator_side.select(outputs.comparator_test);
         stage.apply_drive_and_comparator_test(&outputs);
+        let mut is_due = false;
+        // What has no room stays in the station.
+        while self.telemetry.ready()
+            && let Some(event) = device.take_finger_event(finger)
+        {
+            is_due = true;
+            let _ = self.telemetry.enqueue(event);
+        }
         let telemetry = device.finger_telemetry_if_due(finger);
-        let is_due = telemetry.is_some();
+        is_due |= telemetry.is_some();
         if let Some(telemetry) = telemetry {
             // A full queue means that the link to the host is too slow; this line of telemetry is
             // then dropped.
-            if self.telemetry.enqueue(telemetry).is_err() {
+            if self.telemetry.enqueue(telemetry.into_report()).is_err() {
                 line_losses::DROPPED_TELEMETRY.count();
             }
         }

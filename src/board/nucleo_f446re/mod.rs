@@ -63,8 +63,9 @@ use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 use thermal_display::device::command::WithSourceFinger;
+use thermal_display::device::events::UnaskedReport;
 use thermal_display::device::safety::{Fault, TripCause};
-use thermal_display::device::{DeviceInPlace, FingerIndex, Station, Telemetry};
+use thermal_display::device::{DeviceInPlace, FingerIndex, Station};
 use thermal_display::line_queue::LineQueue;
 use thermal_display::protocol::{
     BoardStatus, CommandHandler, Error, OutgoingLine, Reply, StorageFailureText,
@@ -107,7 +108,7 @@ pub struct StaticMemory {
     frames: [OutgoingLine; serial::FRAME_COUNT],
     frame_queues: serial::FullAndEmptyFrameQueues,
     line_queue: LineQueue,
-    telemetry: Queue<WithSourceFinger<Telemetry>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
+    telemetry: Queue<WithSourceFinger<UnaskedReport>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
     // Created in place, because moving it while sampling runs would delay the first tick. Not an `Option`, whose `None` has a bit set,
     // so that the whole memory would be kept in flash to be copied from there at the start.
     handler: MaybeUninit<CommandHandler<FINGERS>>,

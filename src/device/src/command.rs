@@ -11,12 +11,13 @@ use contact_model::material::{Material, SKIN, Surface};
 use fixed::types::U16F16;
 
 use crate::control::{ControlParameters, Law};
+use crate::events::EventKinds;
 use crate::identification::{AbortReason, NormalEquationRow};
 use crate::reference::ContactModel;
 use crate::safety::{Fault, PredictedDose, SelfTestReport, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, Samples, ThermistorAverage};
 use crate::stimulus::{Course, PlayOrder};
-use crate::{StateName, TICK_S};
+use crate::{StateName, TICK_S, TelemetryFields};
 
 /// Upper limit of [`ChosenMaterial::impedance_ratio`]. An object at this limit takes hardly any heat.
 const EFFUSIVITY_RATIO_MAX: f64 = 200.0;
@@ -143,6 +144,8 @@ pub enum Command<'a> {
     Stream {
         /// Time from one line of telemetry to the next, ms, up to 60000; 0 switches telemetry off.
         interval_ms: u32,
+        /// The fields of each line.
+        fields: TelemetryFields,
     },
     /// Choose the material of the object that `start` presents, as a half-space. If an object is presented already, the
     /// new one replaces it at once; if a finger touches, a new contact begins.
@@ -182,6 +185,10 @@ pub enum Command<'a> {
     /// Play the course that was loaded last. Refused in off, self-test, ready and tripped, if no course is loaded, and if
     /// its temperatures above the present skin or its dose are too large.
     Play(PlayOrder),
+    /// Report events from now on, or none. Never refused.
+    ReportEvents(bool),
+    /// Give a pulse at the trigger output at events of these kinds. Never refused.
+    TriggerOutput(EventKinds),
     /// Assume this temperature of the skin before contact, °C, for set-points, or that of the sensor for `None`. If a
     /// finger touches, a new contact begins. Limits, dose and detectors keep the sensor.
     AssumeSkin(Option<Celsius>),

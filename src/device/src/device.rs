@@ -5,6 +5,7 @@ use core::borrow::BorrowMut;
 
 use crate::command::{Command, Refused, Reply, WithSourceFinger};
 use crate::drive::BoardOutputs;
+use crate::events::UnaskedReport;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
@@ -141,6 +142,27 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
             finger: finger.index_unless_single_finger(),
             content,
         })
+    }
+
+    /// The oldest event of a finger that was not fetched yet, with the index of the finger (none on a device with one
+    /// finger). To be called after each tick until there is none, or until there is no room for another one.
+    pub fn take_finger_event(
+        &mut self,
+        finger: FingerIndex<FINGERS>,
+    ) -> Option<WithSourceFinger<UnaskedReport>> {
+        let event = self.station_mut(finger).take_event()?;
+        Some(WithSourceFinger {
+            finger: finger.index_unless_single_finger(),
+            content: UnaskedReport::Event(event),
+        })
+    }
+
+    /// Takes note of an edge at the trigger input, for all fingers: a course that waits for it begins in the next tick. To
+    /// be called before the tick that follows the edge, with the time, µs, from the last tick to the edge.
+    pub fn note_trigger_edge(&mut self, microseconds: u16) {
+        for station in self.stations.borrow_mut() {
+            station.note_trigger_edge(microseconds);
+        }
     }
 
     /// Executes a command in the station of one finger, in bounded and short time. With five fingers this must end within

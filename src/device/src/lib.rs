@@ -11,6 +11,7 @@ pub mod control;
 mod device;
 pub mod drive;
 pub mod estimate;
+pub mod events;
 mod finger_index;
 pub mod identification;
 mod low_pass;
@@ -31,7 +32,7 @@ pub use pwm_period::{
 };
 pub use state_name::StateName;
 pub use station::Station;
-pub use telemetry::Telemetry;
+pub use telemetry::{Telemetry, TelemetryFields};
 pub use thermal_settings::{TICK_HZ, TICK_S};
 
 /// Scans of all eight analogue signals of one finger per second: 16 000, of which 16 are summed for each control tick.

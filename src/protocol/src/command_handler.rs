@@ -12,7 +12,7 @@ use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode_settings
 
 use crate::arguments::{expect_end, read_word};
 use crate::finger_address::{legible_address, split_address};
-use crate::line_checksum::{strip_checksum, write_line};
+use crate::line_checksum::{ChecksumError, line_checksum, strip_checksum, write_line};
 use crate::upload::{Upload, UploadStep};
 use crate::{BoardStatus, Error, OutgoingLine, Reply, Request, UploadError};
 
@@ -114,7 +114,13 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         const { assert!(FINGERS > 0 && FINGERS <= 10) };
-        let line = strip_checksum(line).map_err(|error| WithSourceFinger {
+        let stripped = match strip_checksum(line) {
+            Ok(content) if self.checksums && content.len() == line.len() => {
+                Err(ChecksumError::Missing(line_checksum(line.as_bytes())))
+            }
+            stripped => stripped,
+        };
+        let line = stripped.map_err(|error| WithSourceFinger {
             finger: legible_address::<FINGERS>(line),
             content: Error::Checksum(error),
         })?;

@@ -10,6 +10,7 @@ use thermal_commissioning::{
     IdentificationError, POINTS_PER_THERMISTOR_MAX, PointError, REFERENCE_DIFFERENCE_MAX_K,
     SessionError, THERMISTOR_WORDS,
 };
+use thermal_device::TelemetryFields;
 use thermal_device::command::{AssumedFinger, Refused};
 use thermal_device::control::Law;
 use thermal_device::safety::PredictedDose;
@@ -21,9 +22,10 @@ use thermal_device::stimulus::{
 use thermal_settings::Range;
 
 use crate::calibrate_settings_set_commands::SET_COMMAND_TARGET_WORDS;
+use crate::events::NO_EVENTS_WORD;
 use crate::line_checksum::TwoHexDigits;
 use crate::object::{BACK_WORDS, OBJECT_ARGUMENTS};
-use crate::request::{CHECKSUM_WORDS, CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
+use crate::request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, SWITCH_WORDS};
 use crate::upload::UploadError;
 use crate::{ChecksumError, LINE_MAX_BYTES, LineError, Request};
 
@@ -111,6 +113,12 @@ pub enum Error {
     /// The word after `calibrate` or `set correction`, quoted here, is none of the thermistors `display`, `check`,
     /// `sink`, `skin` and `room`.
     UnknownSensor(QuotedWordExcerpt),
+    /// The argument of `events`, quoted here, is neither `on` nor `off`.
+    UnknownEventsSwitch(QuotedWordExcerpt),
+    /// A word of the argument of `trigger-out`, quoted here, is no event that the output can mark.
+    UnknownEventKind(QuotedWordExcerpt),
+    /// A word after the interval of `stream`, quoted here, is no field of telemetry.
+    UnknownTelemetryField(QuotedWordExcerpt),
     /// The argument of `skin`, quoted here, is neither `sensor` nor a temperature.
     UnknownSkin(&'static Range, QuotedWordExcerpt),
     /// The word, quoted here, that says what starts a course is none of `now`, `trigger` and `landing`.
@@ -189,7 +197,7 @@ impl fmt::Display for Error {
                 f,
                 "checksum",
                 word,
-                CHECKSUM_WORDS.iter().map(|(name, _)| *name),
+                SWITCH_WORDS.iter().map(|(name, _)| *name),
             ),
             Self::UnknownCommand(word) => write_unknown_word(
                 f,
@@ -242,6 +250,19 @@ impl fmt::Display for Error {
             }
             Self::UnknownSetting(word) => {
                 write_unknown_word(f, "setting", word, SET_COMMAND_TARGET_WORDS.iter().copied())
+            }
+            Self::UnknownEventsSwitch(word) => {
+                let known = SWITCH_WORDS.iter();
+                write_unknown_word(f, "events", word, known.map(|(name, _)| *name))
+            }
+            Self::UnknownEventKind(word) => write_unknown_word(
+                f,
+                "event",
+                word,
+                ["land", "lift", "start", "end", NO_EVENTS_WORD].into_iter(),
+            ),
+            Self::UnknownTelemetryField(word) => {
+                write_unknown_word(f, "field", word, TelemetryFields::NAMES.into_iter())
             }
             Self::UnknownSkin(range, word) if word.is_empty() => {
                 write!(f, "skin missing; sensor or {range}")
@@ -341,6 +362,13 @@ fn write_checksum_error(f: &mut fmt::Formatter<'_>, error: &ChecksumError) -> fm
                 "checksum {received} is wrong, the line has {actual}; send the line again"
             )
         }
+        ChecksumError::Missing(actual) => {
+            let actual = TwoHexDigits(*actual);
+            write!(
+                f,
+                "checksum missing: end the line with *{actual}, or send checksum off*42"
+            )
+        }
         ChecksumError::Malformed(word) => write!(f, "checksum {word} is not 2 hexadecimal digits"),
     }
 }
@@ -415,7 +443,7 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         Refused::NoMaterial => "start needs a material first",
         Refused::AlreadyStarted => "already started; arm takes the object away",
         Refused::NeedsArmed(command) => return write!(f, "{command} needs the state armed"),
-        Refused::Presenting => "not while an object is presented: abort or arm first",
+        Refused::Presenting => "not while an object or a course is presented: abort or arm first",
         Refused::NoCourse => "no course is loaded; upload begin course first",
         Refused::Touched => "tune needs a display without a finger on it",
         Refused::NotTuned => "nothing was tuned since arm; tune first",

@@ -17,6 +17,7 @@ use crate::arguments::{
 use crate::calibrate_settings_set_commands::{
     parse_calibration_point_or_clear, parse_set_arguments, parse_settings_query,
 };
+use crate::events::{parse_events_switch, parse_telemetry_fields, parse_trigger_output};
 use crate::object::parse_object;
 use crate::stimulus::{Pulse, parse_hold, parse_play, parse_pulse, parse_skin};
 
@@ -80,6 +81,8 @@ impl Request {
         "board" => Self::Board,
         "state" => Self::Station(Command::Status),
         "stream" => Self::Station(parse_stream(words)?),
+        "events" => Self::Station(Command::ReportEvents(parse_events_switch(words)?)),
+        "trigger-out" => Self::Station(Command::TriggerOutput(parse_trigger_output(words)?)),
         "checksum" => Self::Checksum(parse_checksum_switch(words)?),
         "material" => Self::Station(parse_material_and_compute_contact(words, display)?),
         "object" => parse_object(words)?,
@@ -136,8 +139,8 @@ pub const CONTACT_MODEL_WORDS: [(&str, ContactModel); 2] = [
     ("contact", ContactModel::ContactResistance),
     ("semi-infinite", ContactModel::SemiInfinite),
 ];
-/// Arguments of the command `checksum`.
-pub const CHECKSUM_WORDS: [(&str, bool); 2] = [("on", true), ("off", false)];
+/// Arguments of the commands `checksum` and `events`.
+pub const SWITCH_WORDS: [(&str, bool); 2] = [("on", true), ("off", false)];
 /// Argument of the command `material` in place of a material's name. The properties of the material follow:
 /// conductivity (W/mK), density (kg/m³), specific heat (J/kgK), roughness (µm) and slope of the asperities (rad).
 pub const CUSTOM_MATERIAL_WORD: &str = "custom";
@@ -190,12 +193,13 @@ fn parse_stream(words: &mut Words<'_>) -> Result<Command<'static>, Error> {
         .to_num::<i64>();
     Ok(Command::Stream {
         interval_ms: interval_ms.unsigned_abs() as u32,
+        fields: parse_telemetry_fields(words)?,
     })
 }
 
 fn parse_checksum_switch(words: &mut Words<'_>) -> Result<bool, Error> {
     let name = word_or_empty(words);
-    let (_, on) = table_entry_for_word_or_none(&CHECKSUM_WORDS, name)
+    let (_, on) = table_entry_for_word_or_none(&SWITCH_WORDS, name)
         .ok_or(Error::UnknownChecksumSwitch(name.into()))?;
     Ok(on)
 }

@@ -16,7 +16,7 @@ use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::comparator::ComparatorTest as PlantTest;
 use thermal_plant::sensors::Channel;
 use thermal_protocol::{
-    CommandHandler, Error, LineReader, OutgoingLine, Reply, wrap_as_telemetry_line,
+    CommandHandler, Error, LineReader, OutgoingLine, Reply, UnaskedLine, wrap_as_telemetry_line,
 };
 use thermal_settings::{Settings, StoredSettings, decode_settings_record};
 
@@ -41,6 +41,7 @@ const WINDOW_MS: u64 = 46;
 const OFF: BoardOutputs = BoardOutputs {
     drive: Drive::Off,
     comparator_test: ComparatorTest::None,
+    trigger_output: false,
 };
 
 /// Scans between the boundaries: four end the first step's tick, eight and four follow.
@@ -225,6 +226,9 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
             test => self.side_is_high = test == ComparatorTest::Cold,
         }
         finger.set_outputs(outputs);
+        while let Some(event) = self.device.take_finger_event(index) {
+            self.send_line(&event.map_content(UnaskedLine));
+        }
         if let Some(telemetry) = self.device.finger_telemetry_if_due(index) {
             self.send_line(&wrap_as_telemetry_line(telemetry));
         }

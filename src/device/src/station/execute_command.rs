@@ -25,7 +25,13 @@ impl Station {
             Command::Average(thermistor) => return self.thermistor_average(thermistor),
             Command::NormalEquation(row) => return self.normal_equation_row(row),
             Command::Law(Some(law)) => self.controller.select_law(law),
-            Command::Stream { interval_ms } => {
+            Command::ReportEvents(on) => self.events.reports = on,
+            Command::TriggerOutput(kinds) => self.events.marked = kinds,
+            Command::Stream {
+                interval_ms,
+                fields,
+            } => {
+                self.telemetry_fields = fields;
                 self.telemetry_ticks = interval_ms * (TICK_HZ / 1000);
             }
             Command::MaterialProperties => {

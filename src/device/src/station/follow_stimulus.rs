@@ -5,6 +5,7 @@ use contact_model::fixed_point::Celsius;
 use super::{Event, State, Station};
 use crate::command::Refused;
 use crate::estimate::PlateEstimateBeforeReading;
+use crate::events::DeviceEventKind;
 use crate::reference::Reference;
 use crate::safety::Setpoint;
 use crate::safety::limits::{SETPOINT_MAX, SETPOINT_MIN};
@@ -75,7 +76,7 @@ impl Station {
         self.apply_event(Event::Stimulate(Stimulus::Wait(*order)));
         self.identified.outcome = None;
         if order.start == CourseStart::Now {
-            self.begin_course(0);
+            self.begin_course(0, self.tick.wrapping_add(1));
         }
         Ok(())
     }
@@ -104,23 +105,41 @@ impl Station {
         }
     }
 
-    /// Begins the course that waits, if one does, with `elapsed` ticks of it behind the next reference.
-    fn begin_course(&mut self, elapsed: u32) {
+    /// Takes note of an edge at the trigger input, this many µs after the last tick; a course that waits for it begins.
+    #[inline(never)]
+    pub fn note_trigger_edge(&mut self, microseconds: u16) {
+        (self.events).note(DeviceEventKind::Trigger, self.tick, microseconds);
+        if self.waits_for(CourseStart::Trigger) {
+            self.begin_course(0, self.tick.wrapping_add(1));
+        }
+    }
+
+    fn waits_for(&self, start: CourseStart) -> bool {
+        matches!(&self.state, State::Stimulus(Stimulus::Wait(order)) if order.start == start)
+    }
+
+    /// Begins the course that waits, if one does, with `elapsed` ticks of it behind the next reference; `tick` is the one
+    /// to which its time 0 belongs.
+    fn begin_course(&mut self, elapsed: u32, tick: u32) {
         if let State::Stimulus(Stimulus::Wait(order)) = self.state {
             let course = self.courses.playing();
             let player = Player::new(course.points(), self.base_of(course), &order, elapsed);
             self.state = State::Stimulus(Stimulus::Play(player));
+            self.events.note(DeviceEventKind::Start, tick, 0);
         }
     }
 
     /// Takes note of a finger that has landed, `landed_ticks` ago, or lifted.
     #[inline(never)]
     pub(super) fn note_touch_change(&mut self, touching: bool, landed_ticks: u32) {
-        if touching
-            && let State::Stimulus(Stimulus::Wait(order)) = &self.state
-            && order.start == CourseStart::Landing
-        {
-            self.begin_course(landed_ticks);
+        if !touching {
+            self.events.note(DeviceEventKind::Lift, self.tick, 0);
+            return;
+        }
+        let landed = self.tick.wrapping_sub(landed_ticks);
+        self.events.note(DeviceEventKind::Land, landed, 0);
+        if self.waits_for(CourseStart::Landing) {
+            self.begin_course(landed_ticks, landed);
         }
     }
 
@@ -147,6 +166,9 @@ impl Station {
             }
             Stimulus::Play(player) => player.next_temperatures(course.points()),
         };
+        if ended.is_some() {
+            self.events.note(DeviceEventKind::End, self.tick, 0);
+        }
         match ended {
             None => {}
             Some(CourseEnd::Hold) => *stimulus = Stimulus::Hold(Hold::at(temperatures.now)),

@@ -27,6 +27,7 @@ use crate::drive::{BoardOutputs, ComparatorTest, Current, Drive, SafeCurrent};
 use crate::estimate::{
     Estimator, FingerEstimator, LegTemperatures, PlateEstimateBeforeReading, PlateObserver,
 };
+use crate::events::{DeviceEvent, EventReporter};
 use crate::identification::{AbortReason, NormalEquationAccumulator};
 use crate::reference::{Reference, ReferenceGenerator};
 use crate::safety::{
@@ -37,7 +38,7 @@ use crate::sense::{
     CalibrationTables, ContactDetector, Readings, SampleConverter, Samples, ThermistorAverages,
 };
 use crate::stimulus::CourseMemory;
-use crate::{StateName, Telemetry};
+use crate::{StateName, Telemetry, TelemetryFields};
 use chosen_object::ChosenObject;
 
 /// The control of one finger without its hardware. Takes the samples of each tick of 1 ms and returns what the bridge
@@ -63,6 +64,8 @@ pub struct Station {
     tick: u32,
     /// Ticks of 1 ms from one line of telemetry to the next; 0 while telemetry is off.
     telemetry_ticks: u32,
+    telemetry_fields: TelemetryFields,
+    events: EventReporter,
     last: LastTickValues,
 }
 
@@ -133,6 +136,8 @@ impl Station {
             courses: CourseMemory::default(),
             tick: 0,
             telemetry_ticks: 0,
+            telemetry_fields: TelemetryFields::ALL,
+            events: EventReporter::default(),
             last: LastTickValues {
                 samples: Samples::default(),
                 readings: Readings::ALL_OPEN,
@@ -439,6 +444,7 @@ impl Station {
                 let outputs = BoardOutputs {
                     drive: Drive::On(self.voltage.duty_for_current(current, &previous_legs)),
                     comparator_test: ComparatorTest::None,
+                    trigger_output: self.events.next_trigger_output(),
                 };
                 (outputs, current.ampere())
             }
@@ -449,6 +455,7 @@ impl Station {
                 let outputs = BoardOutputs {
                     drive: Drive::Off,
                     comparator_test,
+                    trigger_output: self.events.next_trigger_output(),
                 };
                 (outputs, Current::ZERO)
             }
@@ -577,6 +584,12 @@ impl Station {
             demand: *demanded,
             current: readings.current,
             evaluations: self.reference.erfcx_evaluations(),
+            fields: self.telemetry_fields,
         })
+    }
+
+    /// The oldest event that was not fetched yet. `None` while events are not reported.
+    pub fn take_event(&mut self) -> Option<DeviceEvent> {
+        self.events.take()
     }
 }
