@@ -89,7 +89,8 @@ impl ControlLoop {
         stage.apply_drive_and_comparator_test(&outputs);
         let mut is_due = false;
         // What has no room stays in the station.
-        while self.telemetry.ready()
+        while device.finger_has_event(finger)
+            && self.telemetry.ready()
             && let Some(event) = device.take_finger_event(finger)
         {
             is_due = true;

@@ -144,6 +144,12 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
         })
     }
 
+    /// Whether there is an event of a finger that was not fetched yet.
+    #[must_use]
+    pub fn finger_has_event(&self, finger: FingerIndex<FINGERS>) -> bool {
+        self.station(finger).has_event()
+    }
+
     /// The oldest event of a finger that was not fetched yet, with the index of the finger (none on a device with one
     /// finger). To be called after each tick until there is none, or until there is no room for another one.
     pub fn take_finger_event(

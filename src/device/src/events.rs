@@ -103,7 +103,7 @@ pub struct EventReporter {
     /// Events that give a pulse at the trigger output.
     pub marked: EventKinds,
     pulse_ticks_left: u8,
-    kept: heapless::Deque<DeviceEvent, EVENTS_KEPT_MAX>,
+    kept: heapless::Vec<DeviceEvent, EVENTS_KEPT_MAX>,
 }
 
 impl EventReporter {
@@ -114,7 +114,7 @@ impl EventReporter {
             self.pulse_ticks_left = TRIGGER_PULSE_TICKS;
         }
         if self.reports {
-            let _ = self.kept.push_back(DeviceEvent {
+            let _ = self.kept.push(DeviceEvent {
                 tick,
                 microseconds,
                 kind,
@@ -124,7 +124,17 @@ impl EventReporter {
 
     /// The oldest event that was not fetched.
     pub fn take(&mut self) -> Option<DeviceEvent> {
-        self.kept.pop_front()
+        // Reversed, so that the oldest one is the last; `remove(0)` would add 1.5 KB of `memmove` to the image.
+        self.kept.reverse();
+        let oldest = self.kept.pop();
+        self.kept.reverse();
+        oldest
+    }
+
+    /// Whether an event was not fetched yet.
+    #[must_use]
+    pub fn has_event(&self) -> bool {
+        !self.kept.is_empty()
     }
 
     /// Whether the trigger output is high until the next tick; to be called once a tick.

@@ -11,7 +11,7 @@ use crate::safety::Setpoint;
 use crate::safety::limits::{SETPOINT_MAX, SETPOINT_MIN};
 use crate::stimulus::{
     Course, CourseEnd, CourseStart, CourseTemperatures, FOLLOWING_ERROR_LIMITED, Hold, PlayOrder,
-    Player, Stimulus, StimulusTemperatures,
+    Player, STEP_APPROACH_SHIFT, Stimulus, StimulusTemperatures,
 };
 
 impl Station {
@@ -36,7 +36,7 @@ impl Station {
             (State::Stimulus(_), Some(last)) if !last.limited => last.setpoint.celsius(),
             _ => (self.last.readings.display).unwrap_or_else(|_| target.celsius()),
         };
-        self.apply_event(Event::Stimulate(Stimulus::Hold(Hold::new(
+        self.apply_event(Event::Stimulate(&Stimulus::Hold(Hold::new(
             start, target, rate_k_s,
         ))));
         self.identified.outcome = None;
@@ -73,7 +73,7 @@ impl Station {
             return Err(Refused::CourseDose(dose));
         }
         self.courses.play_loaded();
-        self.apply_event(Event::Stimulate(Stimulus::Wait(*order)));
+        self.apply_event(Event::Stimulate(&Stimulus::Wait(*order)));
         self.identified.outcome = None;
         if order.start == CourseStart::Now {
             self.begin_course(0, self.tick.wrapping_add(1));
@@ -176,10 +176,16 @@ impl Station {
                 self.apply_event(Event::EndNeutral);
             }
         }
-        let mut reference = Reference::limited_to_safe_range(temperatures.now, temperatures.ahead);
-        let setpoint = reference.setpoint.celsius();
-        reference.limited |= estimate.previous_surface.abs_diff(setpoint).to_bits()
-            > FOLLOWING_ERROR_LIMITED.to_bits().unsigned_abs();
+        let surface = estimate.previous_surface;
+        let lag = temperatures.now.saturating_sub(surface);
+        let lags = lag.abs() > FOLLOWING_ERROR_LIMITED;
+        let target = if lags {
+            surface.saturating_add(lag >> STEP_APPROACH_SHIFT)
+        } else {
+            temperatures.ahead
+        };
+        let mut reference = Reference::limited_to_safe_range(temperatures.now, target);
+        reference.limited |= lags;
         Some(reference)
     }
 }

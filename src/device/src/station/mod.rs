@@ -482,7 +482,7 @@ impl Station {
 
     /// Moves the station to the state that [`State::state_after`] gives for `event`, and ends an identification of the
     /// tile that is still running. Returns false, and does nothing, if the event has no effect in the present state.
-    fn apply_event(&mut self, event: Event) -> bool {
+    fn apply_event(&mut self, event: Event<'_>) -> bool {
         let Some(state) = self.state.state_after(event) else {
             return false;
         };
@@ -586,6 +586,12 @@ impl Station {
             evaluations: self.reference.erfcx_evaluations(),
             fields: self.telemetry_fields,
         })
+    }
+
+    /// Whether an event was not fetched yet.
+    #[must_use]
+    pub fn has_event(&self) -> bool {
+        self.events.has_event()
     }
 
     /// The oldest event that was not fetched yet. `None` while events are not reported.

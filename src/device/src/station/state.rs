@@ -49,7 +49,7 @@ pub enum ArmedTask {
 /// that lands or lifts, the passing of the self-test, or a fault.
 /// [`State::state_after`] is the table of the transitions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
+pub enum Event<'a> {
     /// The host has sent `arm`: leads from off to the self-test, and from ready, armed, preset, contact and stimulus to
     /// armed, at skin temperature.
     Arm,
@@ -59,7 +59,7 @@ pub enum Event {
     Start,
     /// The host has sent `hold`, `play` or `pulse`, which then says what the display does: leads from armed, preset,
     /// contact and stimulus to stimulus.
-    Stimulate(Stimulus),
+    Stimulate(&'a Stimulus),
     /// A course has ended after which the display shall be neutral: leads from stimulus to armed.
     EndNeutral,
     /// A finger touches the display; reported in every fault-free tick of a contact. Leads from preset to contact.
@@ -96,7 +96,7 @@ impl State {
     /// The transition table: the state to which `event` leads from this state, with the initial data of the new state;
     /// `None` if the event has no effect here. docs/safety.md shows the same table, and a unit test compares the two.
     #[must_use]
-    pub fn state_after(&self, event: Event) -> Option<Self> {
+    pub fn state_after(&self, event: Event<'_>) -> Option<Self> {
         Some(match (self, event) {
             (Self::Tripped(_), Event::Clear) => Self::Off,
             // The first fault stays latched.
@@ -117,7 +117,7 @@ impl State {
             (
                 Self::Armed(_) | Self::Preset | Self::Contact | Self::Stimulus(_),
                 Event::Stimulate(stimulus),
-            ) => Self::Stimulus(stimulus),
+            ) => Self::Stimulus(*stimulus),
             (Self::Armed(_) | Self::Preset | Self::Contact | Self::Stimulus(_), Event::Abort) => {
                 Self::Ready
             }

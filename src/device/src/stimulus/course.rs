@@ -14,6 +14,11 @@ pub const COURSE_DURATION_MAX_MS: u32 = 3_600_000;
 /// `limited` while the display lags behind it.
 pub const COURSE_RATE_MAX_K_S: u32 = 100;
 
+/// Smallest and largest temperature of a relative course, K: the width of the range of set-points. Constants of their own,
+/// because a literal in a function that also runs on the device would be parsed there, by 6 KB of code.
+const RELATIVE_MIN: Celsius = Celsius::lit("-27");
+const RELATIVE_MAX: Celsius = Celsius::lit("27");
+
 /// What the temperatures of a course are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CourseTemperatures {
@@ -34,7 +39,7 @@ impl CourseTemperatures {
     pub const fn range(self) -> (Celsius, Celsius) {
         match self {
             Self::Absolute => (SETPOINT_MIN, SETPOINT_MAX),
-            Self::Relative => (Celsius::lit("-27"), Celsius::lit("27")),
+            Self::Relative => (RELATIVE_MIN, RELATIVE_MAX),
         }
     }
 }

@@ -64,6 +64,7 @@ impl Ramp {
     }
 
     /// Moves on by one tick; at its end the ramp stays.
+    #[inline(never)]
     pub const fn advance(&mut self) {
         if self.ticks_left == 0 {
             return;

@@ -25,7 +25,7 @@ fn the_documented_transitions_are_those_of_the_code() {
         ("`arm`", Event::Arm),
         ("self-test passes", Event::Pass),
         ("`start`", Event::Start),
-        ("`hold`, `play`", Event::Stimulate(Stimulus::Hold(hold))),
+        ("`hold`, `play`", Event::Stimulate(&Stimulus::Hold(hold))),
         ("course ends on neutral", Event::EndNeutral),
         ("finger lands", Event::Land),
         ("finger lifts", Event::Lift),
