@@ -33,6 +33,7 @@ mod tests;
 const TIMERS: usize = 10;
 const TIM1: usize = 0;
 const TIM2: usize = 1;
+const TIM3: usize = 2;
 const TIM5: usize = 4;
 const TIM8: usize = 7;
 const TIM10: usize = 8;
@@ -52,6 +53,8 @@ const TIMER_PINS: [(u8, u8, u8, usize, usize); 10] = [
 ];
 /// Break inputs (same table): timer, port, bit, alternate function.
 const BREAK_PINS: [(usize, u8, u8, u8); 3] = [(TIM1, 0, 6, 1), (TIM1, 1, 12, 1), (TIM8, 0, 6, 3)];
+/// Capture inputs of which edges can come from outside (same table): timer, channel, port, bit, alternate function.
+const CAPTURE_PINS: [(usize, usize, u8, u8, u8); 1] = [(TIM3, 0, 1, 4, 2)];
 /// ADC_CR2, which selects the trigger.
 const ADC_CR2: u32 = 0x4001_2008;
 const WWDG_IRQ: usize = 0;
@@ -385,13 +388,21 @@ impl<W: Wiring> Chip<W> {
         self.ports[port].level(bit, self.wiring.pin(port as u8, bit))
     }
 
-    /// Samples the inputs that act without a register access: break inputs and enabled EXTI lines.
+    /// Samples the inputs that act without a register access: break inputs, captured inputs and enabled EXTI lines.
     pub fn sample_inputs(&mut self, at: u64) {
         for (timer, port, bit, function) in BREAK_PINS {
             let watched = self.tims[timer].watches_break();
             if watched && self.ports[usize::from(port)].mode(bit) == Mode::Alternate(function) {
                 let level = self.pin(usize::from(port), bit);
                 if self.tims[timer].set_break(level) {
+                    self.timer_changed(timer, at);
+                }
+            }
+        }
+        for (timer, channel, port, bit, function) in CAPTURE_PINS {
+            if self.ports[usize::from(port)].mode(bit) == Mode::Alternate(function) {
+                let level = self.pin(usize::from(port), bit);
+                if self.tims[timer].set_input(channel, level, at) {
                     self.timer_changed(timer, at);
                 }
             }
