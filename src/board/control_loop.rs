@@ -11,7 +11,8 @@ use thermal_display::device::{DeviceInPlace, FingerIndex};
 
 use super::{
     ChipMonitor, ComparatorSide, EmergencyStop, FINGERS, FingerPowerStage, SampleError, Sampler,
-    TripCauseRecorder, WindowWatchdog, line_losses, save_dose_if_changed, stack_is_overrun,
+    TriggerInput, TriggerOutput, TripCauseRecorder, WindowWatchdog, line_losses,
+    save_dose_if_changed, stack_is_overrun,
 };
 
 /// Executes the control ticks of all fingers: samples the sensors, computes each finger's outputs,
@@ -21,6 +22,8 @@ pub struct ControlLoop {
     pub stages: [FingerPowerStage; FINGERS],
     pub comparator_side: ComparatorSide,
     pub emergency_stop: EmergencyStop,
+    pub trigger_input: TriggerInput,
+    pub trigger_output: TriggerOutput,
     pub trip_cause_recorder: TripCauseRecorder,
     pub telemetry: Producer<'static, WithSourceFinger<UnaskedReport>>,
     pub window_watchdog: WindowWatchdog,
@@ -64,6 +67,11 @@ impl ControlLoop {
         };
         let needs_scatter = device.finger_needs_scatter(finger);
         let samples = Samples::from_scans(scans, inputs, needs_scatter);
+        if finger == FingerIndex::FIRST
+            && let Some(edge) = self.trigger_input.take_edge()
+        {
+            device.note_trigger_edge(edge);
+        }
         if host_is_active.swap(false, Ordering::Relaxed) {
             device.note_host_activity();
         }
@@ -87,6 +95,7 @@ impl ControlLoop {
         save_dose_if_changed(finger, device.finger_thermal_dose(finger));
         self.comparator_side.select(outputs.comparator_test);
         stage.apply_drive_and_comparator_test(&outputs);
+        self.trigger_output.set(finger, outputs.trigger_output);
         let mut is_due = false;
         // What has no room stays in the station.
         while device.finger_has_event(finger)

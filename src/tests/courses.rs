@@ -6,6 +6,7 @@ use std::vec::Vec;
 
 use super::device::{arm, samples};
 use super::objects::checksum;
+use crate::device::TriggerEdge;
 use crate::device::drive::BoardOutputs;
 use crate::device::safety::{Fault, ThermalDose};
 use crate::device::sense::{SCANS_PER_TICK, Samples};

@@ -34,6 +34,7 @@ const TIMERS: usize = 10;
 const TIM1: usize = 0;
 const TIM2: usize = 1;
 const TIM3: usize = 2;
+const TIM4: usize = 3;
 const TIM5: usize = 4;
 const TIM8: usize = 7;
 const TIM10: usize = 8;
@@ -336,6 +337,13 @@ impl<W: Wiring> Chip<W> {
                 2 => Some(Trigger::Tim3),
                 _ => None,
             };
+            if timer == TIM2 {
+                for slave in [TIM3, TIM4] {
+                    if self.tims[slave].is_started_by_tim2() {
+                        self.tims[slave].start(at);
+                    }
+                }
+            }
             if source.is_some() && source == self.adc.trigger() {
                 let result = self.adc.start(at);
                 if let (Err(refusal), None) = (result, self.misuse) {
@@ -343,6 +351,16 @@ impl<W: Wiring> Chip<W> {
                 }
             }
         }
+    }
+
+    /// Tells the timers whether the converter or another timer uses their trigger outputs.
+    fn connect_triggers(&mut self, now: u64) {
+        let of_adc = self.adc.trigger();
+        let starts_timers = [TIM3, TIM4]
+            .iter()
+            .any(|slave| self.tims[*slave].is_started_by_tim2());
+        self.tims[TIM2].use_trigger(of_adc == Some(Trigger::Tim2) || starts_timers, now);
+        self.tims[TIM3].use_trigger(of_adc == Some(Trigger::Tim3), now);
     }
 
     /// Reports a changed bridge leg to the wiring.

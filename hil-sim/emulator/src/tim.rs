@@ -2,7 +2,7 @@
 //! flags, trigger output, PWM levels, and the main output enable with break of the advanced timer.
 //!
 //! The counter is not ticked: its value follows from the time of its last restart, and [`Tim::sync`] brings flags
-//! and preloaded registers up to date. An input is captured without filter and prescaler. Encoder, slave, centre-aligned and
+//! and preloaded registers up to date. TIM3 and TIM4 may be started by TIM2. An input is captured without filter and prescaler. Encoder, slave, centre-aligned and
 //! down-counting modes are refused, and so is capture with a filter, or from another channel's input.
 mod registers;
 
@@ -45,6 +45,9 @@ const OSSR: u32 = 1 << 11;
 const OSSI: u32 = 1 << 10;
 const LOCK: u32 = 3 << 8;
 
+/// SMCR of TIM3 and TIM4: trigger mode, started by ITR1, which is TIM2's trigger output (17.4.3).
+const STARTED_BY_TIM2: u32 = 0x16;
+
 /// Output of a channel to its pin (RM0390 16.4.9, output control bits).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Output {
@@ -61,6 +64,7 @@ pub(crate) struct Tim {
     divider: u64,
     cr1: u32,
     cr2: u32,
+    smcr: u32,
     dier: u32,
     sr: u32,
     ccmr: [u32; 2],
@@ -327,6 +331,21 @@ impl Tim {
     /// Whether the break input is enabled.
     pub fn watches_break(&self) -> bool {
         self.bdtr & BKE != 0
+    }
+
+    /// Whether TIM2's trigger output starts the counter.
+    pub const fn is_started_by_tim2(&self) -> bool {
+        self.smcr == STARTED_BY_TIM2
+    }
+
+    /// Starts the counter, as the trigger input does in trigger mode (17.3.14).
+    pub fn start(&mut self, now: u64) {
+        if self.cr1 & 1 == 0 {
+            let count = self.count(now);
+            self.cr1 |= 1;
+            self.set_count(count, now);
+            self.schedule();
+        }
     }
 
     /// Whether a channel is an input (CCxS, 17.4.7).

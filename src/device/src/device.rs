@@ -9,7 +9,7 @@ use crate::events::UnaskedReport;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
-use crate::{FingerIndex, Station};
+use crate::{FingerIndex, Station, TriggerEdge};
 use thermal_settings::{Settings, StoredSettings};
 
 /// The whole device without its hardware: one [`Station`] for each of its `FINGERS` fingers. The stations share no
@@ -164,10 +164,10 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     }
 
     /// Takes note of an edge at the trigger input, for all fingers: a course that waits for it begins in the next tick. To
-    /// be called before the tick that follows the edge, with the time, µs, from the last tick to the edge.
-    pub fn note_trigger_edge(&mut self, microseconds: u16) {
+    /// be called before the tick that [reports](TriggerEdge::ticks_ago) the edge.
+    pub fn note_trigger_edge(&mut self, edge: TriggerEdge) {
         for station in self.stations.borrow_mut() {
-            station.note_trigger_edge(microseconds);
+            station.note_trigger_edge(edge);
         }
     }
 

@@ -72,7 +72,7 @@ impl EventKinds {
 pub struct DeviceEvent {
     /// Number of the tick: ticks of 1 ms since reset.
     pub tick: u32,
-    /// Time after that tick, µs, 0 to 999; 0 for all but the edge at the trigger input.
+    /// Time since the start of the first of that tick's scans, µs, 0 to 999; 0 for all but the edge at the trigger input.
     pub microseconds: u16,
     /// What happened.
     pub kind: DeviceEventKind,

@@ -24,6 +24,7 @@ mod state_name;
 mod station;
 pub mod stimulus;
 mod telemetry;
+mod trigger_edge;
 
 pub use device::{Device, DeviceInPlace, execute_in_turn};
 pub use finger_index::FingerIndex;
@@ -34,6 +35,7 @@ pub use state_name::StateName;
 pub use station::Station;
 pub use telemetry::{Telemetry, TelemetryFields};
 pub use thermal_settings::{TICK_HZ, TICK_S};
+pub use trigger_edge::TriggerEdge;
 
 /// Scans of all eight analogue signals of one finger per second: 16 000, of which 16 are summed for each control tick.
 pub const SCANS_PER_SECOND: u32 = TICK_HZ * sense::SCANS_PER_TICK as u32;

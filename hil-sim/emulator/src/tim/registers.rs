@@ -1,5 +1,5 @@
 //! Register access of the timers (RM0390 16.4, 17.4, 19.4).
-use super::{AOE, BIF, BKE, BKP, LOCK, MOE, OSSI, OSSR, Tim, UIF};
+use super::{AOE, BIF, BKE, BKP, LOCK, MOE, OSSI, OSSR, STARTED_BY_TIM2, Tim, UIF};
 use crate::stop::{Answer, Refusal, only};
 
 impl Tim {
@@ -24,7 +24,7 @@ impl Tim {
         Ok(match offset {
             0x00 => self.cr1,
             0x04 => self.cr2,
-            0x08 => 0,
+            0x08 => self.smcr,
             0x0c => self.dier,
             0x10 => self.sr,
             0x14 => 0,
@@ -88,7 +88,12 @@ impl Tim {
                 let protected = if self.lock() >= 1 { 0x7f00 } else { 0 };
                 self.cr2 = value & !protected | self.cr2 & protected;
             }
-            0x08 => only(value, 0, "TIM SMCR (slave modes)")?,
+            0x08 => {
+                let is_tim3_or_tim4 = !self.kind.advanced && self.kind.counter_max == 0xffff;
+                let allowed = is_tim3_or_tim4 && value == STARTED_BY_TIM2;
+                only(if allowed { 0 } else { value }, 0, "TIM SMCR (slave modes)")?;
+                self.smcr = value;
+            }
             0x0c => {
                 let channels = ((1u32 << self.kind.channels) - 1) << 1;
                 let advanced = if self.kind.advanced { 0xa0 } else { 0 };

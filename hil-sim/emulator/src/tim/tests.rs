@@ -155,6 +155,7 @@ fn unmodelled_modes_are_refused() {
     let mut tim = Tim::new(GENERAL, 2);
     assert!(tim.write(0x08, 3, 0).is_err(), "encoder");
     assert!(tim.write(0x18, 2, 0).is_err(), "capture from another input");
+    assert!(tim.write(0x08, 0x06, 0).is_err(), "started by TIM1");
     assert!(tim.write(0x00, 0x20, 0).is_err(), "centre-aligned");
 }
 

@@ -84,6 +84,8 @@ pub struct Scene {
     pub faults: Vec<ScheduledFault>,
     /// Faults of the processor.
     pub injections: Vec<Injection>,
+    /// Times of the rising edges at the trigger input, s; counted to a microsecond.
+    pub triggers_s: Vec<f64>,
     /// Lines that the host sends.
     pub host: Vec<HostLine>,
 }

@@ -3,6 +3,7 @@
 use contact_model::fixed_point::Celsius;
 
 use super::{Event, State, Station};
+use crate::TriggerEdge;
 use crate::command::Refused;
 use crate::estimate::PlateEstimateBeforeReading;
 use crate::events::DeviceEventKind;
@@ -105,12 +106,14 @@ impl Station {
         }
     }
 
-    /// Takes note of an edge at the trigger input, this many µs after the last tick; a course that waits for it begins.
+    /// Takes note of an edge at the trigger input, before the tick that reports it; a course that waits for it begins.
     #[inline(never)]
-    pub fn note_trigger_edge(&mut self, microseconds: u16) {
-        (self.events).note(DeviceEventKind::Trigger, self.tick, microseconds);
+    pub fn note_trigger_edge(&mut self, edge: TriggerEdge) {
+        let coming_tick = self.tick.wrapping_add(1);
+        let tick = coming_tick.wrapping_sub(edge.ticks_ago.into());
+        (self.events).note(DeviceEventKind::Trigger, tick, edge.us);
         if self.waits_for(CourseStart::Trigger) {
-            self.begin_course(0, self.tick.wrapping_add(1));
+            self.begin_course(0, coming_tick);
         }
     }
 
