@@ -231,7 +231,10 @@ fn a_course_that_waits_for_the_trigger_begins_at_its_edge_and_marks_it() {
     );
     let tick = bench.step().tick;
     bench.outputs.clear();
-    bench.device.note_trigger_edge(437);
+    bench.device.note_trigger_edge(TriggerEdge {
+        us: 437,
+        ticks_ago: 1,
+    });
     let setpoints = bench.steps(30);
     assert_close(setpoints[20], 30.2);
     let expected = [

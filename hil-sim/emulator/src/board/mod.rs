@@ -30,6 +30,8 @@ const EMERGENCY_STOP: Pin = (C, 13);
 
 /// Trigger input.
 const TRIGGER_INPUT: Pin = (B, 4);
+/// Trigger output.
+const TRIGGER_OUTPUT: Pin = (B, 3);
 
 /// Pins of the bridge of one finger.
 struct Bridge {

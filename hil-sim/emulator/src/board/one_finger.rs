@@ -11,7 +11,9 @@ use thermal_sim::scene::Scene;
 use thermal_sim::{RamLayout, SceneRunner, World, run_scene_on};
 
 use super::meter::{Meter, TICK};
-use super::{EMERGENCY_STOP, FIRST_BRIDGE, TEST_SIDE, TRIGGER_INPUT, inject, refused};
+use super::{
+    EMERGENCY_STOP, FIRST_BRIDGE, TEST_SIDE, TRIGGER_INPUT, TRIGGER_OUTPUT, inject, refused,
+};
 use crate::{Firmware, Machine, RAM_BASE, RAM_SIZE, Stop, Wiring};
 
 /// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2, PC4.
@@ -100,6 +102,15 @@ impl OneFingerBoard {
     /// Records the execution path of the control tick from now on.
     pub fn watch_tick(&mut self) {
         self.machine.watch(TICK);
+    }
+
+    /// Times of the rising edges at the trigger output, s since the first boundary.
+    pub fn trigger_output_rises_s(&self) -> Vec<f64> {
+        let rises = self.machine.wiring().trigger_output_rises.iter();
+        let first_ps = self.first_boundary_ps as f64;
+        rises
+            .map(|at| (self.machine.ps_at(*at) as f64 - first_ps) * 1e-12)
+            .collect()
     }
 
     /// Time of the last boundary, ps since power-up.
@@ -209,6 +220,8 @@ struct Pins {
     first_conversion: Option<u64>,
     /// Level at the trigger input.
     trigger: bool,
+    /// Cycles since power-up of the rising edges at the trigger output.
+    trigger_output_rises: Vec<u64>,
     received: Vec<u8>,
 }
 
@@ -218,6 +231,7 @@ impl Pins {
             world,
             first_conversion: None,
             trigger: false,
+            trigger_output_rises: Vec::new(),
             received: Vec::new(),
         }
     }
@@ -238,6 +252,12 @@ impl Wiring for Pins {
             TEST_SIDE => self.world.side_stuck(),
             TRIGGER_INPUT => Some(self.trigger),
             _ => None,
+        }
+    }
+
+    fn output(&mut self, port: u8, bit: u8, level: Option<bool>, at: u64) {
+        if (port, bit) == TRIGGER_OUTPUT && level == Some(true) {
+            self.trigger_output_rises.push(at);
         }
     }
 
