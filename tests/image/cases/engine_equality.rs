@@ -109,6 +109,53 @@ fn both_engines_write_the_same_trace_of_the_example_scenes() {
     }
 }
 
+/// A pulse that waits for the trigger and is started by its first edge; edges all over the millisecond, also while the tick
+/// runs. The times of the edges in the events are those of the scene.
+#[test]
+fn both_engines_play_a_course_from_the_same_trigger_and_report_the_same_events() {
+    let lines = host(&[
+        (0.2, "events on"),
+        (0.3, "hold 33 5"),
+        (1.0, "pulse 33 30 5 0.2 5"),
+        (1.1, "trigger-out start,end"),
+        (2.6, "play trigger"),
+    ]);
+    let edges_s: Vec<_> = (0..100).map(|n| 3.0 + 0.021_037 * f64::from(n)).collect();
+    let triggers: String = (edges_s.iter())
+        .map(|t_s| format!("[[trigger]]\nt_s = {t_s:.6}\n"))
+        .collect();
+    let touched = forces(&[(0.5, 2.0)]) + &triggers + &lines;
+    let scene = scene("copper", 5.5, "", &touched);
+    let (native, image) = (natively(&scene), on_image(&scene));
+    let told = |outcome: &Outcome| -> Vec<String> {
+        outcome
+            .events
+            .iter()
+            .map(|(_, line)| line.clone())
+            .collect()
+    };
+    assert_eq!(told(&native), told(&image));
+    assert!(csv(&native, "native-course") == csv(&image, "image-course"));
+    let events = told(&image);
+    let of = |kind: &str| events.iter().filter(|line| line.ends_with(kind)).count();
+    assert_eq!((of("start"), of("end")), (2, 2), "{events:?}");
+    // From edge to edge the events tell what the scene says, to a microsecond.
+    let reported_us: Vec<i64> = (events.iter().filter(|line| line.ends_with("trigger")))
+        .map(|line| {
+            let mut words = line.split(' ').skip(1).map(|word| word.parse::<i64>());
+            let (Some(Ok(tick)), Some(Ok(us))) = (words.next(), words.next()) else {
+                panic!("{line}");
+            };
+            1000 * tick + us
+        })
+        .collect();
+    assert_eq!(reported_us.len(), edges_s.len(), "{events:?}");
+    for (reported, scene) in reported_us.windows(2).zip(edges_s.windows(2)) {
+        let interval_us = 1e6 * (scene[1] - scene[0]);
+        assert!(((reported[1] - reported[0]) as f64 - interval_us).abs() < 0.5);
+    }
+}
+
 #[test]
 fn a_run_repeats_bit_for_bit_and_another_seed_changes_it() {
     let with_seed = |seed| {

@@ -36,7 +36,7 @@ const TICK_NS: u64 = 730_000;
 const TICK_OF_FIVE_FINGERS_NS: u64 = 135_000;
 
 /// From the start of a tick's first scan to the boundary after it, µs: of one finger, and of the first of five.
-const SCAN_TO_BOUNDARY_US: u64 = 231;
+const SCAN_TO_BOUNDARY_US: u64 = 233;
 const SCAN_TO_BOUNDARY_OF_FIVE_FINGERS_US: u64 = 66;
 /// Time since the start of a first scan, µs, from which on an edge of the trigger input waits for the next tick, as the board's
 /// does: of one finger, and of five.
