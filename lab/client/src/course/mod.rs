@@ -4,9 +4,11 @@
 //! CSV file -> read_course -> Course -> reduce -> at most 128 points -> upload_lines -> device
 //! ```
 
+mod prepared;
 mod read;
 mod reduce;
 
+pub use prepared::{Prepared, TooCoarse};
 pub use read::{ALLOWED_C, CourseFileError, Selection, read_course};
 pub use reduce::{Reduced, reduce};
 
@@ -197,6 +199,14 @@ impl Course {
             ((segment[1].celsius - segment[0].celsius) / (segment[1].t_s - segment[0].t_s)).abs()
         });
         rates.fold(0.0, f64::max)
+    }
+
+    /// The points as CSV of two columns, which [`read_course`] reads.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let rows = self.0.iter();
+        let rows = rows.map(|point| format!("{:.3},{:.4}\n", point.t_s, point.celsius));
+        "t_s,celsius\n".to_owned() + &rows.collect::<String>()
     }
 
     /// The lines that upload the course to a device: begin, one row for each point, and commit with the checksum of the
