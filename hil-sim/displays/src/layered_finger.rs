@@ -9,12 +9,12 @@ use crate::closed_form;
 use crate::recording::touch_object;
 use crate::touch::Touch;
 
-/// Contact law with the least resistance that the plant accepts: below 3e-6 m² K/W at 0.1 N or more.
+/// Contact law and factor on the contact resistance with which nearly none is left: 1e-7 m² K/W.
 const NEARLY_PERFECT: ContactLaw = ContactLaw {
     gap_w_m2k: 1e5,
-    hardness_pa: 1e3,
     ..ContactLaw::NOMINAL
 };
+const RESISTANCE_FACTOR: f64 = 0.01;
 
 /// The skin that touches the object without resistance: three layers with blood and metabolism (Eq. 1-1) that keep flowing.
 ///
@@ -23,6 +23,7 @@ const NEARLY_PERFECT: ContactLaw = ContactLaw {
 pub fn bio_heat(touch: &Touch) -> Result<Course, ConfigError> {
     let finger = FingerParams {
         vessels: None,
+        resistance_factor: RESISTANCE_FACTOR,
         ..FingerParams::layered()
     };
     let config = with_finger(touch, finger, NEARLY_PERFECT);
