@@ -7,7 +7,7 @@ use contact_model::material::MATERIALS;
 use serde::Serialize;
 use thermal_client::course::Course;
 use thermal_sim::SceneRunner;
-use thermal_sim::metrics::{ErrorFigures, errors, skin_errors};
+use thermal_sim::metrics::{ErrorFigures, errors};
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
@@ -15,9 +15,6 @@ use crate::display::Display;
 use crate::ideal_tile::skin_on_ideal_tile;
 use crate::recording::skin_on_object;
 use crate::touch::{STEP_S, Touch};
-
-/// Interval of the errors that are kept for a picture, s.
-const KEPT_S: f64 = 0.02;
 
 /// The finger of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -80,9 +77,9 @@ pub struct Comparison {
     pub material: String,
     /// The finger that touches.
     pub tissue: Tissue,
-    /// Engine of the device.
-    pub engine: &'static str,
-    /// Skin on this device minus skin on the real object; null if the contact is shorter than a row.
+    /// Engine of the device; null if it was not run.
+    pub engine: Option<&'static str>,
+    /// Skin on this device minus skin on the real object; null if it was not run.
     pub skin_error_mk: Option<ErrorFigures>,
     /// The same on a tile that follows the course exactly.
     pub ideal_tile_skin_error_mk: Option<ErrorFigures>,
@@ -98,48 +95,58 @@ pub struct Comparison {
     pub faults: Vec<String>,
     /// Lines that the device has refused.
     pub refused_lines: Vec<String>,
-    /// Time since the landing, s, and skin error on this device, mK.
-    #[serde(skip)]
-    pub error_over_time: Vec<(f64, f64)>,
-    /// The same on the ideal tile.
-    #[serde(skip)]
-    pub ideal_error_over_time: Vec<(f64, f64)>,
 }
 
 impl Comparison {
-    /// Runs a scene with what a display would have shown; returns the run, too.
+    /// Computes what a display would have shown in a scene, on an ideal tile alone.
     ///
     /// # Errors
-    /// The scene has not one simple contact, or cannot be run.
+    /// The scene has not one simple contact, or the plant does not accept a value.
+    pub fn on_ideal_tile(scene: &Scene, display: Display) -> anyhow::Result<Self> {
+        let touch = Touch::of(scene)?;
+        let context = || format!("{} on {}", display.name(), scene.object.name);
+        let course = display.ideal_course(scene, &touch).with_context(context)?;
+        let ideal = ideal_errors(&touch, &course).with_context(context)?;
+        Ok(Self {
+            display,
+            material: scene.object.name.clone(),
+            tissue: Tissue::of(scene),
+            engine: None,
+            skin_error_mk: None,
+            ideal_tile_skin_error_mk: errors(ideal.into_iter()),
+            points: None,
+            course_error_mk: None,
+            better_than_ours: None,
+            better_than_ours_on_ideal_tile: None,
+            faults: Vec::new(),
+            refused_lines: Vec::new(),
+        })
+    }
+
+    /// Runs a scene with what a display would have shown, on an ideal tile and on the device; returns the device's run, too.
+    ///
+    /// # Errors
+    /// As [`Self::on_ideal_tile`], or the scene cannot be run.
     pub fn run(
         runner: &dyn SceneRunner,
         scene: &Scene,
         display: Display,
     ) -> anyhow::Result<(Self, Outcome)> {
-        let touch = Touch::of(scene)?;
+        let ideal = Self::on_ideal_tile(scene, display)?;
         let context = || format!("{} on {}", display.name(), scene.object.name);
-        let ideal = display.ideal_course(scene, &touch).with_context(context)?;
-        let ideal = ideal_errors(&touch, &ideal).with_context(context)?;
-        let (told, course_error_k) = display.scene(scene, &touch).with_context(context)?;
+        let (told, course_error_k) =
+            (display.scene(scene, &Touch::of(scene)?)).with_context(context)?;
         let (outcome, figures) = runner.run(&told).with_context(context)?;
-        let own: Vec<_> = skin_errors(&told, &outcome).collect();
         let comparison = Self {
-            display,
-            material: scene.object.name.clone(),
-            tissue: Tissue::of(scene),
-            engine: figures.engine,
+            engine: Some(figures.engine),
             skin_error_mk: figures.skin_error_mk,
-            ideal_tile_skin_error_mk: errors(ideal.iter().copied()),
             points: told.course.as_ref().map(|course| course.points().len()),
             course_error_mk: course_error_k.map(|error_k| error_k * 1e3),
-            better_than_ours: None,
-            better_than_ours_on_ideal_tile: None,
             faults: figures.faults.into_iter().map(|trip| trip.fault).collect(),
             refused_lines: (figures.refused_lines.into_iter())
                 .map(|refused| format!("{}: {}", refused.line.unwrap_or_default(), refused.answer))
                 .collect(),
-            error_over_time: thinned(&own),
-            ideal_error_over_time: thinned(&ideal),
+            ..ideal
         };
         Ok((comparison, outcome))
     }
@@ -165,15 +172,6 @@ fn ideal_errors(touch: &Touch, course: &Course) -> anyhow::Result<Vec<(f64, f64)
     Ok(pairs
         .map(|(step, (shown_c, real_c))| (step as f64 * STEP_S, shown_c - real_c))
         .collect())
-}
-
-/// Errors in mK at the interval of a picture, and in its first tenth of a second at every step.
-fn thinned(errors_k: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let every = (KEPT_S / STEP_S).round() as usize;
-    let kept = errors_k.iter().enumerate();
-    kept.filter(|(step, (since_s, _))| *since_s < 0.1 || step % every == 0)
-        .map(|(_, (since_s, error_k))| (*since_s, error_k * 1e3))
-        .collect()
 }
 
 /// What a display is.

@@ -28,6 +28,9 @@ pub fn table(report: &Report) -> String {
         }
         let (of_device, of_ideal): (Value, Value) = (Comparison::max_mk, Comparison::ideal_max_mk);
         for (tile, value) in [("this tile", of_device), ("ideal tile", of_ideal)] {
+            if rows.iter().all(|row| value(row).is_none()) {
+                continue;
+            }
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
@@ -145,19 +148,22 @@ pub fn chart(report: &Report) -> anyhow::Result<Option<String>> {
             largest(area, *tissue, &rows, most_mk)?;
         }
         for (i, display) in distinct(&rows, |row| row.display).into_iter().enumerate() {
-            let (x, y) = (70 + 340 * (i as i32 % 3), 8 + 24 * (i as i32 / 3));
+            let (x, y) = (76 + 250 * (i as i32 % 4), 4 + 22 * (i as i32 / 4));
             legend.draw(&Circle::new((x, y + 7), DOT, color(display).filled()))?;
-            legend.draw(&Circle::new(
-                (x + 16, y + 7),
-                DOT,
-                color(display).stroke_width(2),
-            ))?;
-            let name = format!("{}: this tile, ideal tile", display.name());
-            legend.draw(&Text::new(name, (x + 28, y), FONT))?;
+            legend.draw(&Text::new(display.name(), (x + 14, y), FONT))?;
         }
+        legend.draw(&Text::new(tiles(&rows), (326, 48), FONT))?;
         root.present()?;
     }
     Ok(Some(svg))
+}
+
+/// What dots and rings are.
+fn tiles(rows: &[&Comparison]) -> &'static str {
+    match rows.iter().any(|row| row.max_mk().is_some()) {
+        true => "dots: on this tile; rings: on a tile that follows the course exactly",
+        false => "on a tile that follows the course exactly",
+    }
 }
 
 fn largest(
@@ -191,6 +197,11 @@ fn largest(
         .light_line_style(TRANSPARENT)
         .label_style(FONT)
         .draw()?;
+    for i in 1..materials.len() {
+        let x = i as f64 - 0.5;
+        let edge = [(x, LEAST_MK * 0.8), (x, most_mk * 1.5)];
+        chart.draw_series(LineSeries::new(edge, BLACK.mix(0.15)))?;
+    }
     let (_, height) = area.dim_in_pixel();
     let (left, _) = area.get_base_pixel();
     for (i, material) in materials.iter().enumerate() {

@@ -31,6 +31,9 @@ pub struct Arguments {
     /// All displays, side by side
     #[arg(long, conflicts_with = "display")]
     all: bool,
+    /// On an ideal tile alone, without the device
+    #[arg(long, requires = "all", conflicts_with_all = ["engine", "elf"])]
+    ideal_only: bool,
     /// What runs the device's logic [default: native with --all, or that of `run`]
     #[arg(long, value_enum)]
     engine: Option<EngineKind>,
@@ -138,7 +141,10 @@ fn all(arguments: &Arguments) -> Result<(), Failure> {
             })
             .collect(),
     };
-    let runner = runner(arguments, EngineKind::Native)?;
+    let runner = match arguments.ideal_only {
+        true => None,
+        false => Some(runner(arguments, EngineKind::Native)?),
+    };
     let jobs: Vec<_> = scenes
         .iter()
         .flat_map(|scene| Display::ALL.map(|display| (scene, display)))
@@ -147,9 +153,9 @@ fn all(arguments: &Arguments) -> Result<(), Failure> {
     let rows = parallel_map(
         &jobs,
         output::threads(arguments.threads),
-        |(scene, display)| {
-            let (comparison, _) = Comparison::run(runner.as_ref(), scene, *display)?;
-            Ok(comparison)
+        |(scene, display)| match &runner {
+            Some(runner) => Ok(Comparison::run(runner.as_ref(), scene, *display)?.0),
+            None => Comparison::on_ideal_tile(scene, *display),
         },
         || bar.inc(1),
     );

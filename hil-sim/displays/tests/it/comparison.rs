@@ -1,5 +1,6 @@
 //! Displays side by side.
 
+use documented_figures::assert_row;
 use earlier_displays::{Comparison, Display, Report, Tissue, scene, table};
 use thermal_sim::NativeRunner;
 
@@ -31,4 +32,28 @@ fn a_mode_of_the_device_is_compared_with_ours() {
         text.contains("ho-2006-chapter-4") && text.contains("ours"),
         "{text}"
     );
+}
+
+/// Largest error on an ideal tile, mK with one decimal.
+fn ideal_mk(display: Display, material: &str, tissue: Tissue) -> f64 {
+    let row = Comparison::on_ideal_tile(&scene(material, tissue), display);
+    let row = row.unwrap_or_else(|error| panic!("{error:#}"));
+    (row.ideal_max_mk().expect("a contact of 10 s") * 10.0).round() / 10.0
+}
+
+#[test]
+fn the_documented_errors_on_an_ideal_tile_are_those_of_the_methods() {
+    for tissue in Tissue::ALL {
+        for display in Display::ALL {
+            let errors_mk: Vec<_> = (Report::materials().into_iter())
+                .map(|material| ideal_mk(display, material, tissue))
+                .collect();
+            let display = display.name();
+            let key = match tissue {
+                Tissue::HalfSpace => format!("ideal-display-half-space.{display}"),
+                Tissue::Layered => format!("ideal-display-layered.{display}"),
+            };
+            assert_row(&key, &errors_mk);
+        }
+    }
 }
