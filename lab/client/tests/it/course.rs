@@ -200,6 +200,10 @@ fn a_rate_limit_follows_the_course_as_soon_as_it_can() {
     // Behind by 5 K at 1 s; it falls by 5 K/s and the course rises by 3 K/s.
     assert!((hook.at(1.625) - 21.875).abs() < 1e-9);
     assert!((hook.at(3.0) - 26.0).abs() < 1e-9);
+    // And mirrored, in one that falls.
+    let hook = course(&[(0.0, 20.0), (1.0, 30.0), (3.0, 24.0)]).rate_limited(5.0);
+    assert!((hook.at(1.625) - 28.125).abs() < 1e-9);
+    assert!((hook.at(3.0) - 24.0).abs() < 1e-9);
     let slow = course(&[(0.0, 30.0), (1.0, 27.0), (2.0, 28.0)]);
     assert_eq!(slow.rate_limited(5.0), slow);
 }
