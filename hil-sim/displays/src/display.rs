@@ -256,5 +256,6 @@ impl Display {
     }
 }
 
-/// Largest rate of a course that the device is given, K/s.
-const RATE_MAX_K_S: f64 = 20.0;
+/// Largest rate of a course that the device is given, K/s: below the 100 K/s that it accepts by more than the roundings of two
+/// temperatures a millisecond apart.
+const RATE_MAX_K_S: f64 = 99.0;

@@ -155,11 +155,15 @@ fn parse_course(
         };
         return Err(wrong(
             last_line,
-            format!("{problem}; at least one is needed"),
+            format!("{problem}; at least two are needed"),
         ));
     };
     if first.t_s > 0.0 {
         points.insert(0, CoursePoint { t_s: 0.0, ..first });
+    }
+    if points.len() == 1 {
+        let problem = "one row is no course; at least two are needed";
+        return Err(wrong(last_line, problem.into()));
     }
     Course::new(points).map_err(|error| wrong(last_line, error.to_string()))
 }
@@ -288,11 +292,15 @@ mod tests {
         for (text, answer) in [
             (
                 "",
-                "c.csv:1: no row of a time in seconds and a temperature in °C; at least one is needed",
+                "c.csv:1: no row of a time in seconds and a temperature in °C; at least two are needed",
+            ),
+            (
+                "0,30\n",
+                "c.csv:1: one row is no course; at least two are needed",
             ),
             (
                 "t_s,celsius\n",
-                "c.csv:1: no row of a time in seconds and a temperature in °C; at least one is needed",
+                "c.csv:1: no row of a time in seconds and a temperature in °C; at least two are needed",
             ),
             (
                 "0,30\n1,x\n",
@@ -340,7 +348,7 @@ mod tests {
             ),
             (
                 "t_s,force_n,display_c\n0,0,30\n",
-                "c.csv:2: no row with a positive force_n; at least one is needed",
+                "c.csv:2: no row with a positive force_n; at least two are needed",
             ),
         ] {
             assert_eq!(parse(text), Err(answer.into()), "{text:?}");
