@@ -228,7 +228,11 @@ impl Display {
             Self::Yamamoto => closed_form::static_then_contact(touch, YAMAMOTO_RAMP_S),
             _ => self.ideal_course(scene, touch)?,
         };
-        let limited = computed.rate_limited(RATE_MAX_K_S);
+        let mut limited = computed.rate_limited(RATE_MAX_K_S);
+        if limited != computed {
+            // On whole milliseconds, because rounding the time of a point changes the rates beside it.
+            limited = touch.sampled(|t_s| limited.at(t_s));
+        }
         let course = reduce(&limited, POINTS_MAX).course.rounded();
         Ok(Showing::Course {
             error_k: course.largest_difference_k(&computed),
