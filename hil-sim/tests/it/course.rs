@@ -92,3 +92,44 @@ fn all_displays_on_an_ideal_tile_are_one_json_object() {
     assert_eq!(rows[0]["display"], "ho-2006-chapter-4");
     assert_eq!(rows[0]["better_than_ours_on_ideal_tile"], false);
 }
+
+#[test]
+fn a_course_is_played_from_landing_on_and_its_error_is_told() {
+    let course = file("ramp.csv", "t_s,celsius\n0,31\n1,31\n4,28\n5,28\n");
+    let folder = temporary("played");
+    let out = folder.to_str().expect("a path");
+    let text = good(
+        &[
+            "play",
+            &course,
+            "--engine",
+            "native",
+            "--force-n",
+            "1",
+            "--out",
+            out,
+            "--json",
+        ],
+        "",
+    );
+    let figures: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let of = |name: &str| figures["course_error_mk"][name].as_f64().expect("a number");
+    assert!(of("max_after_50ms") < 50.0 && of("rms") < 20.0, "{text}");
+    assert_eq!(figures["points"], 4);
+    assert_eq!(figures["refused_lines"].as_array().map(Vec::len), Some(0));
+    // What was shown can be played again: the trace's display from landing on.
+    let trace = folder.join("trace.csv");
+    let again = good(
+        &[
+            "play",
+            trace.to_str().expect("a path"),
+            "--engine",
+            "native",
+            "--coarse",
+            "--json",
+        ],
+        "",
+    );
+    let figures: serde_json::Value = serde_json::from_str(&again).expect("JSON");
+    assert!(figures["points"].as_u64() <= Some(128), "{again}");
+}

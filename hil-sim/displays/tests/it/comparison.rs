@@ -1,6 +1,6 @@
 //! Displays side by side.
 
-use documented_figures::assert_row;
+use documented_figures::{assert_figure, assert_row};
 use earlier_displays::{Comparison, Display, Report, Tissue, scene, table};
 use thermal_sim::NativeRunner;
 
@@ -56,4 +56,41 @@ fn the_documented_errors_on_an_ideal_tile_are_those_of_the_methods() {
             assert_row(&key, &errors_mk);
         }
     }
+}
+
+#[test]
+fn layers_without_resistance_are_better_than_ours_in_a_moist_contact() {
+    let mut scene = scene("copper", Tissue::Layered);
+    scene.params.contact.gap_w_m2k = 1000.0;
+    let rows = [Display::LayeredBioHeat, Display::Ours].map(|display| {
+        let run = Comparison::run(&NativeRunner, &scene, display);
+        run.unwrap_or_else(|error| panic!("{error:#}")).0
+    });
+    let report = Report::new(rows.to_vec());
+    let [layers, ours] = report.rows.as_slice() else {
+        panic!("two rows")
+    };
+    assert_figure("moist-contact.layers", layers.max_mk().expect("a contact"));
+    assert_figure("moist-contact.ours", ours.max_mk().expect("a contact"));
+    assert_eq!(layers.better_than_ours, Some(true));
+    assert!(table(&report).contains('*'));
+}
+
+#[test]
+fn a_course_is_played_by_the_device_as_on_the_ideal_tile() {
+    // A slow course that the tile can follow: the skin on the device is that on the ideal tile.
+    let slow = run(Display::Yang, "foam", Tissue::HalfSpace);
+    assert!(
+        slow.faults.is_empty() && slow.refused_lines.is_empty(),
+        "{slow:?}"
+    );
+    assert!(
+        slow.points <= Some(128) && slow.course_error_mk < Some(0.5),
+        "{slow:?}"
+    );
+    let (device_mk, ideal_mk) = (
+        slow.max_mk().expect("a contact"),
+        slow.ideal_max_mk().expect("a contact"),
+    );
+    assert!((device_mk - ideal_mk).abs() < 5.0, "{device_mk} {ideal_mk}");
 }
