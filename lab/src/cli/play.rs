@@ -1,13 +1,21 @@
 //! `thermal-lab play`: a course from a CSV file on the device.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
 use serde_json::json;
+use thermal_client::client::{PlainCommand, QueryState};
 use thermal_client::course::{Prepared, Selection, read_course};
+use thermal_device::StateName;
 
+use super::target::AnyClient;
 use super::{Failure, Target, print};
+
+/// Time between two looks at the state while the self-test runs, and their number: 5 s.
+const LOOK: Duration = Duration::from_millis(100);
+const LOOKS: u32 = 50;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -25,6 +33,9 @@ pub struct Arguments {
     /// Play it even if the device's points are more than 5 mK off
     #[arg(long)]
     coarse: bool,
+    /// Arm the device first, which drives the display to skin temperature
+    #[arg(long)]
+    arm: bool,
     /// Finger of a device with five
     #[arg(long)]
     finger: Option<u8>,
@@ -71,6 +82,9 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
         arguments.repeats
     ));
     target.with_client(|client| {
+        if arguments.arm {
+            arm(client, arguments.finger)?;
+        }
         for line in &lines {
             let line = match arguments.finger {
                 Some(finger) => format!("@{finger} {line}"),
@@ -89,4 +103,22 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             arguments.at.word()
         ))
     })
+}
+
+/// Arms the device, and waits for the end of its self-test.
+fn arm(client: &mut AnyClient<'_>, finger: Option<u8>) -> Result<(), Failure> {
+    (client.ask_finger(finger, &PlainCommand::Arm)).map_err(Failure::run)?;
+    for _ in 0..LOOKS {
+        let status = client
+            .ask_finger(finger, &QueryState)
+            .map_err(Failure::run)?;
+        match status.state {
+            StateName::Armed => return Ok(()),
+            StateName::Tripped(_) => break,
+            _ => client.wait(LOOK).map_err(Failure::run)?,
+        }
+    }
+    Err(Failure::run(anyhow!(
+        "the device is not armed; `thermal-lab info` says why"
+    )))
 }
