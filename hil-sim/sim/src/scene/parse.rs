@@ -89,6 +89,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
                 })
             })
             .collect::<Result<_, _>>()?,
+        course: None,
     };
     let object_at = match &file.object.get_ref().start_c {
         Some(start_c) => start_c.span(),
