@@ -1,7 +1,7 @@
 //! The displays.
 
 use serde::Serialize;
-use thermal_client::course::{Course, POINTS_MAX, reduce};
+use thermal_client::course::{COURSE_POINTS_MAX, Course, reduce};
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
@@ -233,7 +233,7 @@ impl Display {
             // On whole milliseconds, because rounding the time of a point changes the rates beside it.
             limited = touch.sampled(|t_s| limited.at(t_s));
         }
-        let course = reduce(&limited, POINTS_MAX).course.rounded();
+        let course = reduce(&limited, COURSE_POINTS_MAX).course.rounded();
         Ok(Showing::Course {
             error_k: course.largest_difference_k(&computed),
             course,

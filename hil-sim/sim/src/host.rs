@@ -90,12 +90,13 @@ impl Host {
         let law = scene.law.map(|law| format!("law {}", law.name()));
         let set_up = material_and_temperature(scene).into_iter();
         let set_up = set_up.chain([mode.into()]).chain(law);
+        let upload = (scene.course.as_ref()).map_or_else(Vec::new, Course::upload_commands);
         // What the device assumes follows the command that arms it, which so is sent at the same time for all scenes.
         let finger = format!("finger {}", scene.assumed_finger.name());
         let set_up = set_up
             .chain(["arm".into(), finger])
             .chain(relaxations(scene))
-            .chain(scene.course.iter().flat_map(Course::upload_lines));
+            .chain(upload.iter().map(ToString::to_string));
         let arm_ms = set_up_from_ms + SPACING_MS * settings.len() as u64;
         let mut queue: Vec<_> = (settings.iter().cloned().chain(set_up).zip(0..))
             .map(|(line, i)| (set_up_from_ms + i * SPACING_MS, line))

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::{Context, anyhow};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::json;
 use thermal_client::client::{PlainCommand, QueryState};
 use thermal_client::course::{Prepared, Selection, read_course};
 use thermal_device::StateName;
+use thermal_device::stimulus::{CourseEnd, CourseStart, PlayOrder};
 
 use super::target::AnyClient;
 use super::{Failure, Target, print};
@@ -25,11 +26,11 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME")]
     column: Option<String>,
     /// When it begins; until then the display waits on its first point
-    #[arg(long, value_enum, default_value_t = Start::Landing)]
-    at: Start,
+    #[arg(long, value_parser = start, default_value = "landing")]
+    at: CourseStart,
     /// How often it is played
     #[arg(long, value_name = "N", default_value_t = 1)]
-    repeats: u32,
+    repeats: u16,
     /// Play it even if the device's points are more than 5 mK off
     #[arg(long)]
     coarse: bool,
@@ -44,25 +45,14 @@ pub struct Arguments {
     json: bool,
 }
 
-/// What begins a course.
-#[derive(Clone, Copy, ValueEnum)]
-enum Start {
-    /// At once
-    Now,
-    /// The trigger input
-    Trigger,
-    /// The landing of the finger
-    Landing,
-}
-
-impl Start {
-    const fn word(self) -> &'static str {
-        match self {
-            Self::Now => "now",
-            Self::Trigger => "trigger",
-            Self::Landing => "landing",
-        }
-    }
+/// What begins a course, by its word in the protocol.
+fn start(word: &str) -> Result<CourseStart, String> {
+    let all = CourseStart::PROTOCOL_WORDS;
+    let found = all.iter().find(|(known, _)| *known == word);
+    found.map(|(_, start)| *start).ok_or_else(|| {
+        let words = all.map(|(known, _)| known).join(", ");
+        format!("one of {words} is allowed")
+    })
 }
 
 /// Uploads the course to a device that is armed, and starts it.
@@ -75,32 +65,28 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
         .fine_enough(arguments.coarse)
         .with_context(|| arguments.course.display().to_string())
         .map_err(Failure::input)?;
-    let mut lines = played.points.upload_lines();
-    lines.push(format!(
-        "play {} {}",
-        arguments.at.word(),
-        arguments.repeats
-    ));
+    let mut commands = played.points.upload_commands();
+    commands.push(PlainCommand::Play(PlayOrder {
+        start: arguments.at,
+        times: arguments.repeats,
+        end: CourseEnd::Hold,
+    }));
     target.with_client(|client| {
         if arguments.arm {
             arm(client, arguments.finger)?;
         }
-        for line in &lines {
-            let line = match arguments.finger {
-                Some(finger) => format!("@{finger} {line}"),
-                None => line.clone(),
-            };
-            client.command(&line).map_err(Failure::run)?;
+        for command in &commands {
+            (client.ask_finger(arguments.finger, command)).map_err(Failure::run)?;
         }
         let points = played.points.points().len();
         let error_mk = played.error_k * 1e3;
         if arguments.json {
-            let answer = json!({ "points": points, "reduction_error_mk": error_mk, "at": arguments.at.word() });
+            let answer = json!({ "points": points, "reduction_error_mk": error_mk, "at": arguments.at.name() });
             return print(&answer.to_string());
         }
         print(&format!(
             "{points} points, reduction error {error_mk:.2} mK, begins at: {}",
-            arguments.at.word()
+            arguments.at.name()
         ))
     })
 }

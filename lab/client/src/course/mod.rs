@@ -1,7 +1,7 @@
 //! Courses of temperature that a display follows, on the host: reading, reducing and uploading them.
 //!
 //! ```text
-//! CSV file -> read_course -> Course -> reduce -> at most 128 points -> upload_lines -> device
+//! CSV file -> read_course -> Course -> reduce -> at most 128 points -> upload_commands -> device
 //! ```
 
 mod prepared;
@@ -12,10 +12,11 @@ pub use prepared::{Prepared, TooCoarse};
 pub use read::{ALLOWED_C, CourseFileError, Selection, read_course};
 pub use reduce::{Reduced, reduce};
 
-use thermal_settings::CRC_32;
+use thermal_device::stimulus::CourseTemperatures;
 
-/// Largest number of points of a course on the device.
-pub const POINTS_MAX: usize = 128;
+use crate::client::{PlainCommand, upload_course};
+
+pub use thermal_device::stimulus::COURSE_POINTS_MAX;
 /// Largest error of a reduction that is played without being asked for, K.
 pub const REDUCTION_ERROR_MAX_K: f64 = 5e-3;
 /// Steps in which a course's times, s, and temperatures, °C, are told to a device: 1 ms and 0.1 mK.
@@ -209,18 +210,12 @@ impl Course {
         "t_s,celsius\n".to_owned() + &rows.collect::<String>()
     }
 
-    /// The lines that upload the course to a device: begin, one row for each point, and commit with the checksum of the
-    /// lines before it. Times are seconds from the start, temperatures absolute.
+    /// The commands that upload the course to a device, with absolute temperatures.
     #[must_use]
-    pub fn upload_lines(&self) -> Vec<String> {
-        let mut lines = vec![format!("upload begin course {} absolute", self.0.len())];
-        let rows = self.0.iter().enumerate();
-        lines.extend(rows.map(|(index, point)| {
-            format!("upload row {index} {:.3} {:.4}", point.t_s, point.celsius)
-        }));
-        let sent: String = lines.iter().map(|line| format!("{line}\n")).collect();
-        let checksum = CRC_32.checksum(sent.as_bytes());
-        lines.push(format!("upload commit {checksum:08x}"));
-        lines
+    pub fn upload_commands(&self) -> Vec<PlainCommand> {
+        let points: Vec<_> = (self.0.iter())
+            .map(|point| (point.t_s, point.celsius))
+            .collect();
+        upload_course(CourseTemperatures::Absolute, &points)
     }
 }

@@ -1,6 +1,6 @@
 //! A course made ready for a device.
 
-use super::{Course, POINTS_MAX, REDUCTION_ERROR_MAX_K, reduce};
+use super::{COURSE_POINTS_MAX, Course, REDUCTION_ERROR_MAX_K, reduce};
 
 /// A course, and the points of it that a device is given.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Prepared {
 /// Why a course is not played without being asked for.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "with {POINTS_MAX} points, which a device can hold, the course is {:.1} mK off; up to {:.0} mK are allowed without --coarse",
+    "with {COURSE_POINTS_MAX} points, which a device can hold, the course is {:.1} mK off; up to {:.0} mK are allowed without --coarse",
     1e3 * error_k, 1e3 * REDUCTION_ERROR_MAX_K
 )]
 pub struct TooCoarse {
@@ -28,7 +28,7 @@ impl Prepared {
     /// Reduces and rounds a course.
     #[must_use]
     pub fn new(whole: Course) -> Self {
-        let points = reduce(&whole, POINTS_MAX).course.rounded();
+        let points = reduce(&whole, COURSE_POINTS_MAX).course.rounded();
         Self {
             error_k: points.largest_difference_k(&whole),
             points,

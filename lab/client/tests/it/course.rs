@@ -216,16 +216,20 @@ fn an_upload_ends_with_the_checksum_of_its_lines() {
         (1.2346, 26.1),
         (2.0, 25.123_46),
     ]);
-    let lines = course.rounded().upload_lines();
+    let commands = course.rounded().upload_commands();
+    let lines: Vec<_> = commands.iter().map(ToString::to_string).collect();
     let rows = [
         "upload begin course 4 absolute",
-        "upload row 0 0.000 30.0000",
-        "upload row 1 1.234 26.0000",
+        "upload row 0 0.000 30.000000",
+        "upload row 1 1.234 26.000000",
     ];
     assert_eq!(lines[..3], rows);
     assert_eq!(
         lines[3..5],
-        ["upload row 2 1.235 26.1000", "upload row 3 2.000 25.1235"]
+        [
+            "upload row 2 1.235 26.100000",
+            "upload row 3 2.000 25.123500"
+        ]
     );
     let sent = lines[..5].join("\n") + "\n";
     assert_eq!(

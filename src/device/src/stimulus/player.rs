@@ -23,6 +23,16 @@ impl CourseStart {
         ("trigger", Self::Trigger),
         ("landing", Self::Landing),
     ];
+
+    /// Its word in the protocol.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Now => "now",
+            Self::Trigger => "trigger",
+            Self::Landing => "landing",
+        }
+    }
 }
 
 /// What the display does after a course.
