@@ -97,13 +97,9 @@ impl ControlLoop {
         stage.apply_drive_and_comparator_test(&outputs);
         self.trigger_output.set(finger, outputs.trigger_output);
         let mut is_due = false;
-        // What has no room stays in the station.
-        while device.finger_has_event(finger)
-            && self.telemetry.ready()
-            && let Some(event) = device.take_finger_event(finger)
-        {
+        if device.finger_has_event(finger) {
             is_due = true;
-            let _ = self.telemetry.enqueue(event);
+            self.queue_events(device, finger);
         }
         let telemetry = device.finger_telemetry_if_due(finger);
         is_due |= telemetry.is_some();
@@ -122,6 +118,17 @@ impl ControlLoop {
             self.chip_monitor.restart_when_clock_has_come();
         }
         Ok(is_due)
+    }
+
+    /// Queues the events of a finger for the host, as far as there is room; the others stay in the station.
+    #[inline(never)]
+    fn queue_events(&mut self, device: &mut DeviceInPlace<FINGERS>, finger: FingerIndex<FINGERS>) {
+        // Ends, because each round takes an event that nothing replaces meanwhile.
+        while self.telemetry.ready()
+            && let Some(event) = device.take_finger_event(finger)
+        {
+            let _ = self.telemetry.enqueue(event);
+        }
     }
 
     /// Turns all bridges off, stops sampling until the next reset, trips all fingers by the fault

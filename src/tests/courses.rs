@@ -474,7 +474,7 @@ fn the_host_chooses_the_fields_of_telemetry() {
 fn a_line_without_a_checksum_is_refused_while_checksums_are_on() {
     let mut bench = Bench::armed();
     bench.send_ok(&["checksum on", "checksum on*2C"]);
-    let refused = "err checksum missing: end the line with *7D, or send checksum off*42";
+    let refused = "err checksum missing, the line has 7D; send the line again with it";
     assert_eq!(bench.send("law pi-10hz"), refused);
     assert_eq!(bench.send("law*7A"), "ok law=model");
     bench.send_ok(&["checksum off*42", "law pi"]);

@@ -7,6 +7,8 @@ use crate::telemetry::Telemetry;
 pub const TRIGGER_PULSE_TICKS: u8 = 10;
 /// Events that are kept until they are fetched; a tick has at most four.
 const EVENTS_KEPT_MAX: usize = 8;
+// The counts of the ring wrap at 256.
+const _: () = assert!(256 % EVENTS_KEPT_MAX == 0);
 
 /// What happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,7 +105,12 @@ pub struct EventReporter {
     /// Events that give a pulse at the trigger output.
     pub marked: EventKinds,
     pulse_ticks_left: u8,
-    kept: heapless::Vec<DeviceEvent, EVENTS_KEPT_MAX>,
+    /// A ring; a queue with a loop or a `memmove` would be code of the control path to argue for.
+    kept: [Option<DeviceEvent>; EVENTS_KEPT_MAX],
+    /// Number of events fetched so far; the oldest one is at this place of the ring.
+    first: u8,
+    /// Number of events kept so far; the next one goes to this place of the ring.
+    end: u8,
 }
 
 impl EventReporter {
@@ -113,28 +120,28 @@ impl EventReporter {
         if self.marked.contains(kind) {
             self.pulse_ticks_left = TRIGGER_PULSE_TICKS;
         }
-        if self.reports {
-            let _ = self.kept.push(DeviceEvent {
+        let place = &mut self.kept[usize::from(self.end) % EVENTS_KEPT_MAX];
+        if self.reports && place.is_none() {
+            *place = Some(DeviceEvent {
                 tick,
                 microseconds,
                 kind,
             });
+            self.end = self.end.wrapping_add(1);
         }
     }
 
     /// The oldest event that was not fetched.
     pub fn take(&mut self) -> Option<DeviceEvent> {
-        // Reversed, so that the oldest one is the last; `remove(0)` would add 1.5 KB of `memmove` to the image.
-        self.kept.reverse();
-        let oldest = self.kept.pop();
-        self.kept.reverse();
-        oldest
+        let oldest = self.kept[usize::from(self.first) % EVENTS_KEPT_MAX].take()?;
+        self.first = self.first.wrapping_add(1);
+        Some(oldest)
     }
 
     /// Whether an event was not fetched yet.
     #[must_use]
-    pub fn has_event(&self) -> bool {
-        !self.kept.is_empty()
+    pub const fn has_event(&self) -> bool {
+        self.first != self.end
     }
 
     /// Whether the trigger output is high until the next tick; to be called once a tick.

@@ -82,8 +82,8 @@ pub enum Error {
     Line(LineError),
     /// The line is rejected for its checksum, for this reason.
     Checksum(ChecksumError),
-    /// The argument of `checksum`, quoted here, is neither `on` nor `off`.
-    UnknownChecksumSwitch(QuotedWordExcerpt),
+    /// The argument of the command named here, quoted here, is neither `on` nor `off`.
+    UnknownSwitch(&'static str, QuotedWordExcerpt),
     /// The first word of the line, quoted here, is no command. In this and all other errors of unknown words the quoted
     /// word is empty if it is missing.
     UnknownCommand(QuotedWordExcerpt),
@@ -113,8 +113,6 @@ pub enum Error {
     /// The word after `calibrate` or `set correction`, quoted here, is none of the thermistors `display`, `check`,
     /// `sink`, `skin` and `room`.
     UnknownSensor(QuotedWordExcerpt),
-    /// The argument of `events`, quoted here, is neither `on` nor `off`.
-    UnknownEventsSwitch(QuotedWordExcerpt),
     /// A word of the argument of `trigger-out`, quoted here, is no event that the output can mark.
     UnknownEventKind(QuotedWordExcerpt),
     /// A word after the interval of `stream`, quoted here, is no field of telemetry.
@@ -193,12 +191,10 @@ impl fmt::Display for Error {
         match self {
             Self::Line(error) => write_line_error(f, *error),
             Self::Checksum(error) => write_checksum_error(f, error),
-            Self::UnknownChecksumSwitch(word) => write_unknown_word(
-                f,
-                "checksum",
-                word,
-                SWITCH_WORDS.iter().map(|(name, _)| *name),
-            ),
+            Self::UnknownSwitch(command, word) => {
+                let known = SWITCH_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, command, word, &known)
+            }
             Self::UnknownCommand(word) => write_unknown_word(
                 f,
                 "command",
@@ -223,62 +219,50 @@ impl fmt::Display for Error {
                 write!(f, "object missing; {OBJECT_ARGUMENTS}")
             }
             Self::UnknownObject(word) => write!(f, "object {word}: {OBJECT_ARGUMENTS}"),
-            Self::UnknownBack(word) => write_unknown_word(f, "back", word, BACK_WORDS.into_iter()),
-            Self::UnknownUpload(word) => write_unknown_word(
-                f,
-                "upload",
-                word,
-                ["begin", "row", "commit", "object", "course"].into_iter(),
-            ),
+            Self::UnknownBack(word) => write_word_not_in_list(f, "back", word, &BACK_WORDS),
+            Self::UnknownUpload(word) => {
+                let known = ["begin", "row", "commit", "object", "course"];
+                write_word_not_in_list(f, "upload", word, &known)
+            }
             Self::SlabNeedsMaterial => f.write_str("a slab needs a material first"),
             Self::Upload(error) => write_upload_error(f, *error),
             Self::Body(error) => error.fmt(f),
-            Self::UnknownMode(word) => write_unknown_word(
-                f,
-                "mode",
-                word,
-                CONTACT_MODEL_WORDS.iter().map(|(name, _)| *name),
-            ),
-            Self::UnknownLaw(word) => write_unknown_word(
-                f,
-                "law",
-                word,
-                Law::PROTOCOL_WORDS.iter().map(|(name, _)| *name),
-            ),
+            Self::UnknownMode(word) => {
+                let known = CONTACT_MODEL_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, "mode", word, &known)
+            }
+            Self::UnknownLaw(word) => {
+                let known = Law::PROTOCOL_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, "law", word, &known)
+            }
             Self::UnknownSensor(word) => {
-                write_unknown_word(f, "sensor", word, THERMISTOR_WORDS.iter().copied())
+                write_word_not_in_list(f, "sensor", word, &THERMISTOR_WORDS)
             }
             Self::UnknownSetting(word) => {
-                write_unknown_word(f, "setting", word, SET_COMMAND_TARGET_WORDS.iter().copied())
+                write_word_not_in_list(f, "setting", word, &SET_COMMAND_TARGET_WORDS)
             }
-            Self::UnknownEventsSwitch(word) => {
-                let known = SWITCH_WORDS.iter();
-                write_unknown_word(f, "events", word, known.map(|(name, _)| *name))
+            Self::UnknownEventKind(word) => {
+                let known = ["land", "lift", "start", "end", NO_EVENTS_WORD];
+                write_word_not_in_list(f, "event", word, &known)
             }
-            Self::UnknownEventKind(word) => write_unknown_word(
-                f,
-                "event",
-                word,
-                ["land", "lift", "start", "end", NO_EVENTS_WORD].into_iter(),
-            ),
             Self::UnknownTelemetryField(word) => {
-                write_unknown_word(f, "field", word, TelemetryFields::NAMES.into_iter())
+                write_word_not_in_list(f, "field", word, &TelemetryFields::NAMES)
             }
             Self::UnknownSkin(range, word) if word.is_empty() => {
                 write!(f, "skin missing; sensor or {range}")
             }
             Self::UnknownSkin(range, word) => write!(f, "skin {word}: sensor or {range}"),
             Self::UnknownCourseStart(word) => {
-                let known = CourseStart::PROTOCOL_WORDS.iter();
-                write_unknown_word(f, "start of a course", word, known.map(|(name, _)| *name))
+                let known = CourseStart::PROTOCOL_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, "start of a course", word, &known)
             }
             Self::UnknownCourseEnd(word) => {
-                let known = CourseEnd::PROTOCOL_WORDS.iter();
-                write_unknown_word(f, "end of a course", word, known.map(|(name, _)| *name))
+                let known = CourseEnd::PROTOCOL_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, "end of a course", word, &known)
             }
             Self::UnknownCourseTemperatures(word) => {
-                let known = CourseTemperatures::PROTOCOL_WORDS.iter();
-                write_unknown_word(f, "temperatures", word, known.map(|(name, _)| *name))
+                let known = CourseTemperatures::PROTOCOL_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, "temperatures", word, &known)
             }
             Self::Course(error) => write_course_error(f, error),
             Self::Missing(argument) => write!(f, "{argument} missing"),
@@ -315,6 +299,17 @@ impl fmt::Display for Error {
 
 /// Writes that `word` is unknown, and which words are known, as in `unknown mode 'x'; known: contact semi-infinite`.
 /// There, `mode` is the `kind` of the word.
+#[inline(never)]
+fn write_word_not_in_list(
+    f: &mut fmt::Formatter<'_>,
+    kind: &str,
+    word: &QuotedWordExcerpt,
+    known: &[&str],
+) -> fmt::Result {
+    write_unknown_word(f, kind, word, known.iter().copied())
+}
+
+/// [`write_word_not_in_list`] for any table of words.
 fn write_unknown_word<'a>(
     f: &mut fmt::Formatter<'_>,
     kind: &str,
@@ -366,7 +361,7 @@ fn write_checksum_error(f: &mut fmt::Formatter<'_>, error: &ChecksumError) -> fm
             let actual = TwoHexDigits(*actual);
             write!(
                 f,
-                "checksum missing: end the line with *{actual}, or send checksum off*42"
+                "checksum missing, the line has {actual}; send the line again with it"
             )
         }
         ChecksumError::Malformed(word) => write!(f, "checksum {word} is not 2 hexadecimal digits"),

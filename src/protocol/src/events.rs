@@ -11,10 +11,12 @@ use crate::request::SWITCH_WORDS;
 /// Argument of `trigger-out` that switches the output off.
 pub const NO_EVENTS_WORD: &str = "none";
 
-pub fn parse_events_switch(words: &mut Words<'_>) -> Result<bool, Error> {
+/// Reads `on` or `off`, the argument of this command.
+#[inline(never)]
+pub fn parse_switch(words: &mut Words<'_>, command: &'static str) -> Result<bool, Error> {
     let word = word_or_empty(words);
     let (_, on) = table_entry_for_word_or_none(&SWITCH_WORDS, word)
-        .ok_or(Error::UnknownEventsSwitch(word.into()))?;
+        .ok_or(Error::UnknownSwitch(command, word.into()))?;
     Ok(on)
 }
 

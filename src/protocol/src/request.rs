@@ -17,7 +17,7 @@ use crate::arguments::{
 use crate::calibrate_settings_set_commands::{
     parse_calibration_point_or_clear, parse_set_arguments, parse_settings_query,
 };
-use crate::events::{parse_events_switch, parse_telemetry_fields, parse_trigger_output};
+use crate::events::{parse_switch, parse_telemetry_fields, parse_trigger_output};
 use crate::object::parse_object;
 use crate::stimulus::{Pulse, parse_hold, parse_play, parse_pulse, parse_skin};
 
@@ -81,9 +81,9 @@ impl Request {
         "board" => Self::Board,
         "state" => Self::Station(Command::Status),
         "stream" => Self::Station(parse_stream(words)?),
-        "events" => Self::Station(Command::ReportEvents(parse_events_switch(words)?)),
+        "events" => Self::Station(Command::ReportEvents(parse_switch(words, "events")?)),
         "trigger-out" => Self::Station(Command::TriggerOutput(parse_trigger_output(words)?)),
-        "checksum" => Self::Checksum(parse_checksum_switch(words)?),
+        "checksum" => Self::Checksum(parse_switch(words, "checksum")?),
         "material" => Self::Station(parse_material_and_compute_contact(words, display)?),
         "object" => parse_object(words)?,
         "finger" => Self::Station(Command::Finger(words.next().map(parse_finger).transpose()?)),
@@ -195,13 +195,6 @@ fn parse_stream(words: &mut Words<'_>) -> Result<Command<'static>, Error> {
         interval_ms: interval_ms.unsigned_abs() as u32,
         fields: parse_telemetry_fields(words)?,
     })
-}
-
-fn parse_checksum_switch(words: &mut Words<'_>) -> Result<bool, Error> {
-    let name = word_or_empty(words);
-    let (_, on) = table_entry_for_word_or_none(&SWITCH_WORDS, name)
-        .ok_or(Error::UnknownChecksumSwitch(name.into()))?;
-    Ok(on)
 }
 
 fn parse_finger(name: &str) -> Result<AssumedFinger, Error> {

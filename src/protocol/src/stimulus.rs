@@ -115,16 +115,19 @@ impl Pulse {
 }
 
 /// Duration of a ramp, ms, rounded up, at least 1.
+#[inline(never)]
 fn duration_ms(from: Celsius, to: Celsius, rate_k_s: Celsius) -> u32 {
     let way = u64::from(from.abs_diff(to).to_bits()) * 1000;
     way.div_ceil(u64::from(rate_k_s.to_bits().unsigned_abs().max(1)))
         .max(1) as u32
 }
 
+#[inline(never)]
 fn read_celsius(words: &mut Words<'_>, range: &'static Range) -> Result<Celsius, Error> {
     Ok(read_fixed_point_in_range(words, range)?.to_num())
 }
 
+#[inline(never)]
 fn read_milliseconds(words: &mut Words<'_>) -> Result<u32, Error> {
     let seconds = read_fixed_point_in_range(words, &TIME_RANGE)?;
     let milliseconds = seconds.saturating_mul_int(1000).round();
@@ -143,6 +146,7 @@ pub fn parse_hold(words: &mut Words<'_>) -> Result<Command<'static>, Error> {
     })
 }
 
+#[inline(never)]
 pub fn parse_play(words: &mut Words<'_>) -> Result<PlayOrder, Error> {
     let word = word_or_empty(words);
     let (_, start) = table_entry_for_word_or_none(&CourseStart::PROTOCOL_WORDS, word)

@@ -112,7 +112,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id board state stream checksum material object finger upload mode law arm hold start abort clear cause self-test raw \
+            "err unknown command 'fly'; known: id board state stream events trigger-out checksum material object finger upload mode law arm hold play pulse skin start abort clear cause self-test raw \
              calibrate tune margins settings set save forget",
         ),
         (

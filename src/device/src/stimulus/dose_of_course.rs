@@ -28,6 +28,7 @@ impl EquivalentTime {
 
 /// Weight of a temperature that is this much, K, below a reference of at most 43 °C, relative to that of the reference:
 /// `4^-below` in units of 2^-32.
+#[inline(never)]
 fn weight_below(below: Celsius) -> u64 {
     let exponent = -(i64::from(below.to_bits().max(0)) << (33 - Celsius::FRAC_NBITS));
     let whole = (exponent >> 32).unsigned_abs().min(63);
@@ -61,6 +62,7 @@ pub fn time_equivalent_to_largest(
 }
 
 /// The same of a straight line between two temperatures, in units of 2^-8 ms.
+#[inline(never)]
 fn equivalent_time_of_segment(
     (from, to): (Celsius, Celsius),
     duration_ms: u64,

@@ -84,12 +84,11 @@ impl Cursor {
     }
 
     /// Moves on to the next segment if the present one has ended. Returns false at the end of the course.
+    #[inline(never)]
     fn enter_segment(&mut self, points: &[CoursePoint]) -> bool {
-        // The first segment has no ticks if the first point is at 0, so at most two segments end at once.
-        for _ in 0..3 {
-            if self.ramp.ticks_left() > 0 {
-                return true;
-            }
+        // Ends, because each round takes the next point or one of the repetitions. Only the first segment has no ticks, if
+        // the first point is at 0.
+        while self.ramp.ticks_left() == 0 {
             let end = usize::from(self.point);
             if let (Some(from), Some(to)) = (points.get(end), points.get(end + 1)) {
                 let ticks = to.time_ms.saturating_sub(from.time_ms);
@@ -105,6 +104,7 @@ impl Cursor {
     }
 
     /// Moves on by `ticks`; at the end of the course it stays.
+    #[inline(never)]
     fn advance(&mut self, points: &[CoursePoint], mut ticks: u32) {
         while ticks > 0 && self.enter_segment(points) {
             ticks -= self.ramp.skip(ticks);

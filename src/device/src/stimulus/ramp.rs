@@ -35,16 +35,24 @@ impl Ramp {
     /// A ramp from `start` to `end`, °C, in this number of ticks of 1 ms, at most 2^24; at `end` from the start if that is
     /// zero.
     #[must_use]
+    #[inline(never)]
     pub const fn new(start: Celsius, end: Celsius, ticks: u32) -> Self {
         if ticks == 0 {
             return Self::constant(end);
         }
         let way = end.to_bits().saturating_sub(start.to_bits());
-        let divisor = ticks as i32;
+        // Unsigned, because a signed division may overflow, which the compiler would answer with a panic.
+        let (quotient, rest) = (way.unsigned_abs() / ticks, way.unsigned_abs() % ticks);
+        let (step, remainder) = match (way < 0, rest) {
+            (false, _) => (quotient as i32, rest),
+            (true, 0) => ((quotient as i32).wrapping_neg(), 0),
+            // Rounded down, away from zero.
+            (true, _) => (!(quotient as i32), ticks - rest),
+        };
         Self {
             value: start.to_bits(),
-            step: way.div_euclid(divisor),
-            remainder: way.rem_euclid(divisor).unsigned_abs(),
+            step,
+            remainder,
             sum: 0,
             ticks,
             ticks_left: ticks,
