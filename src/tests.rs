@@ -3,6 +3,7 @@
 
 mod bridge;
 mod commissioning;
+mod courses;
 mod device;
 mod line_queue;
 mod objects;

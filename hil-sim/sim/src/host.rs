@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use thermal_client::course::Course;
 use thermal_device::reference::ContactModel;
 use thermal_protocol::LINE_MAX_BYTES;
 
@@ -89,11 +90,13 @@ impl Host {
         let law = scene.law.map(|law| format!("law {}", law.name()));
         let set_up = material_and_temperature(scene).into_iter();
         let set_up = set_up.chain([mode.into()]).chain(law);
+        let upload = (scene.course.as_ref()).map_or_else(Vec::new, Course::upload_commands);
         // What the device assumes follows the command that arms it, which so is sent at the same time for all scenes.
         let finger = format!("finger {}", scene.assumed_finger.name());
         let set_up = set_up
             .chain(["arm".into(), finger])
-            .chain(relaxations(scene));
+            .chain(relaxations(scene))
+            .chain(upload.iter().map(ToString::to_string));
         let arm_ms = set_up_from_ms + SPACING_MS * settings.len() as u64;
         let mut queue: Vec<_> = (settings.iter().cloned().chain(set_up).zip(0..))
             .map(|(line, i)| (set_up_from_ms + i * SPACING_MS, line))
@@ -104,7 +107,12 @@ impl Host {
         } else {
             arm_ms + SKIN_SETTLING_MS
         };
-        queue.push((start_ms, "start".into()));
+        let start = if scene.course.is_some() {
+            "play landing"
+        } else {
+            "start"
+        };
+        queue.push((start_ms, start.into()));
         queue.push((zero_ms - STREAM_MS, format!("stream {stream_ms}")));
         queue.extend(
             scene

@@ -12,6 +12,7 @@ pub mod five_fingers;
 mod flash_cells;
 pub mod host;
 pub mod metrics;
+pub mod play;
 pub mod processor;
 pub mod report;
 pub mod run;

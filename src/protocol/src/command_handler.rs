@@ -12,20 +12,20 @@ use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode_settings
 
 use crate::arguments::{expect_end, read_word};
 use crate::finger_address::{legible_address, split_address};
-use crate::line_checksum::{strip_checksum, write_line};
-use crate::upload::Upload;
+use crate::line_checksum::{ChecksumError, line_checksum, strip_checksum, write_line};
+use crate::upload::{Upload, UploadStep};
 use crate::{BoardStatus, Error, OutgoingLine, Reply, Request, UploadError};
 
 /// A function that executes a command in the station (the control) of the given finger, or in the stations of all
 /// fingers for `None`, and returns the reply or the refusal, in bounded and short time. [`CommandHandler::answer`]
 /// calls it.
 pub trait ExecuteOnStations<const FINGERS: usize>:
-    FnMut(Option<FingerIndex<FINGERS>>, Command) -> ExecutionResult
+    FnMut(Option<FingerIndex<FINGERS>>, Command<'_>) -> ExecutionResult
 {
 }
 
 impl<const FINGERS: usize, F> ExecuteOnStations<FINGERS> for F where
-    F: FnMut(Option<FingerIndex<FINGERS>>, Command) -> ExecutionResult
+    F: FnMut(Option<FingerIndex<FINGERS>>, Command<'_>) -> ExecutionResult
 {
 }
 
@@ -114,7 +114,13 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         const { assert!(FINGERS > 0 && FINGERS <= 10) };
-        let line = strip_checksum(line).map_err(|error| WithSourceFinger {
+        let stripped = match strip_checksum(line) {
+            Ok(content) if self.checksums && content.len() == line.len() => {
+                Err(ChecksumError::Missing(line_checksum(line.as_bytes())))
+            }
+            stripped => stripped,
+        };
+        let line = stripped.map_err(|error| WithSourceFinger {
             finger: legible_address::<FINGERS>(line),
             content: Error::Checksum(error),
         })?;
@@ -148,9 +154,29 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 let command = Command::Body(body.map_err(rejected)?);
                 Self::execute_in_stations(command, finger, execute)
             }
+            Request::Pulse(pulse) => {
+                let course = pulse.course().map_err(Error::Course).map_err(rejected)?;
+                Self::execute_in_stations(
+                    Command::LoadCourse(Some(&course)),
+                    finger,
+                    &mut execute,
+                )?;
+                Self::execute_in_stations(Command::Play(pulse.order), finger, execute)
+            }
             Request::Upload => match self.continue_upload(finger, line).map_err(rejected)? {
-                None => Ok(addressed(Reply::DONE)),
-                Some(body) => {
+                UploadStep::Row => Ok(addressed(Reply::DONE)),
+                UploadStep::BeginCourse => {
+                    let permitted =
+                        Self::execute_in_stations(Command::LoadCourse(None), finger, execute);
+                    if permitted.is_err() {
+                        self.upload = None;
+                    }
+                    permitted
+                }
+                UploadStep::Course(course) => {
+                    Self::execute_in_stations(Command::LoadCourse(Some(&course)), finger, execute)
+                }
+                UploadStep::Object(body) => {
                     let command = Command::Body(ObjectBody::Upload(body));
                     Self::execute_in_stations(command, finger, execute)
                 }
@@ -169,7 +195,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// Executes a command in the station of `finger`, or in all stations for `None`.
     #[inline(never)]
     fn execute_in_stations(
-        command: Command,
+        command: Command<'_>,
         finger: Option<FingerIndex<FINGERS>>,
         mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
@@ -204,7 +230,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         Ok(material)
     }
 
-    /// Executes one line of an upload, and returns the object if the line is a valid commit. A commit with one argument
+    /// Executes one line of an upload, and returns what the line has completed. A commit with one argument
     /// ends the upload even if it is refused, and so does a `begin` that is refused. There is one upload for all fingers,
     /// which saves the RAM of the others: it belongs to the address that began it last, so that hosts of several fingers
     /// that upload at the same time get an error and not each other's rows.
@@ -213,7 +239,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         &mut self,
         finger: Option<FingerIndex<FINGERS>>,
         line: &str,
-    ) -> Result<Option<Body>, Error> {
+    ) -> Result<UploadStep, Error> {
         // The only finger is all fingers.
         let owner = finger.filter(|_| FINGERS > 1);
         let mut words = line.split_ascii_whitespace();
@@ -222,7 +248,12 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         match (step, &mut self.upload) {
             ("begin", upload) => {
                 *upload = None;
-                *upload = Some((owner, Upload::begin(line, &mut words)?));
+                let begun = Upload::begin(line, &mut words)?;
+                let is_course = begun.is_course();
+                *upload = Some((owner, begun));
+                if is_course {
+                    return Ok(UploadStep::BeginCourse);
+                }
             }
             ("row" | "commit", Some((other, _))) if *other != owner => {
                 let other = other.map(FingerIndex::index_u8);
@@ -232,15 +263,14 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             ("commit", upload @ Some(_)) => {
                 let checksum = read_word(&mut words, "checksum")?;
                 expect_end(&mut words)?;
-                return upload
-                    .take()
-                    .map(|(_, upload)| upload.commit(checksum))
-                    .transpose();
+                if let Some((_, upload)) = upload.take() {
+                    return upload.commit(checksum);
+                }
             }
             ("row" | "commit", None) => return Err(Error::Upload(UploadError::NotBegun)),
             (unknown, _) => return Err(Error::UnknownUpload(unknown.into())),
         }
-        Ok(None)
+        Ok(UploadStep::Row)
     }
 
     /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. With

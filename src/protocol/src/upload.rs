@@ -1,5 +1,5 @@
-//! Upload of an object's relaxations in several lines: begin, rows, and commit with a checksum. The object changes only at
-//! the commit.
+//! Upload of an object's relaxations or of a course in several lines: begin, rows, and commit with a checksum. What is
+//! uploaded changes only at the commit.
 
 use core::fmt;
 
@@ -8,11 +8,15 @@ use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::SKIN;
 use heapless::Vec;
 use thermal_device::TICK_S;
+use thermal_device::stimulus::Course;
 use thermal_settings::{CRC_32, Crc32Digest, Range};
 
 use crate::Error;
 use crate::arguments::{
     Words, expect_end, read_fixed_point_in_range, read_whole_number_in_range, read_word,
+};
+use crate::stimulus::{
+    COURSE_POINT_COUNT_RANGE, COURSE_POINT_INDEX_RANGE, read_course_point, read_course_temperatures,
 };
 
 /// Largest number of rows of an upload.
@@ -69,41 +73,83 @@ pub enum UploadError {
     MalformedChecksum,
 }
 
+/// What is uploaded, as far as it has been received.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "no heap to box the larger one in"
+)]
+#[derive(Clone)]
+enum Content {
+    /// The body of an object.
+    Object {
+        direct_m2k_w: f64,
+        rows: Vec<Relaxation, ROWS_MAX>,
+    },
+    /// A course.
+    Course(Course),
+}
+
+/// What a line of an upload has completed.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "no heap to box the larger one in"
+)]
+#[derive(Debug)]
+pub enum UploadStep {
+    /// Nothing yet: the begin of an object, or a row.
+    Row,
+    /// The begin of a course, which the stations may refuse.
+    BeginCourse,
+    /// An object.
+    Object(Body),
+    /// A course.
+    Course(Course),
+}
+
 /// An upload that has begun and is not committed yet.
 #[derive(Clone)]
 pub struct Upload {
     count: usize,
-    direct_m2k_w: f64,
-    rows: Vec<Relaxation, ROWS_MAX>,
+    content: Content,
     /// Checksum of the lines so far, each followed by a line feed.
     digest: Crc32Digest,
 }
 
 impl fmt::Debug for Upload {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Upload {{ {} of {} rows }}", self.rows.len(), self.count)
+        write!(f, "Upload {{ {} of {} rows }}", self.received(), self.count)
     }
 }
 
 impl Upload {
     /// Reads the line `upload begin object COUNT DIRECT`, after its second word: an object of `COUNT` relaxations and a direct
-    /// term, mm² K/W.
+    /// term, mm² K/W; or `upload begin course COUNT absolute|relative`.
     ///
     /// # Errors
     /// An argument is missing, no number, or out of range.
     pub fn begin(line: &str, words: &mut Words<'_>) -> Result<Self, Error> {
         let kind = read_word(words, "kind of upload")?;
-        if kind != "object" {
-            return Err(Error::UnknownUpload(kind.into()));
-        }
-        let count = read_whole_number_in_range(words, &ROW_COUNT_RANGE)?;
-        let direct_m2k_w =
-            M2_PER_MM2 * read_fixed_point_in_range(words, &DIRECT_RANGE)?.to_num::<f64>();
+        let (count, content) = match kind {
+            "object" => {
+                let count = read_whole_number_in_range(words, &ROW_COUNT_RANGE)?;
+                let direct_mm2k_w = read_fixed_point_in_range(words, &DIRECT_RANGE)?;
+                let content = Content::Object {
+                    direct_m2k_w: M2_PER_MM2 * direct_mm2k_w.to_num::<f64>(),
+                    rows: Vec::new(),
+                };
+                (count, content)
+            }
+            "course" => {
+                let count = read_whole_number_in_range(words, &COURSE_POINT_COUNT_RANGE)?;
+                let temperatures = read_course_temperatures(words)?;
+                (count, Content::Course(Course::new(temperatures)))
+            }
+            unknown => return Err(Error::UnknownUpload(unknown.into())),
+        };
         expect_end(words)?;
         let mut upload = Self {
             count,
-            direct_m2k_w,
-            rows: Vec::new(),
+            content,
             digest: CRC_32.digest(),
         };
         upload.add_to_checksum(line);
@@ -117,15 +163,51 @@ impl Upload {
         }
     }
 
-    /// Reads the line `upload row INDEX RATE GAIN`, after its second word: rate, 1/s, and gain, mm² K/J.
+    /// Whether a course is uploaded.
+    pub const fn is_course(&self) -> bool {
+        matches!(self.content, Content::Course(_))
+    }
+
+    fn received(&self) -> usize {
+        match &self.content {
+            Content::Object { rows, .. } => rows.len(),
+            Content::Course(course) => course.points().len(),
+        }
+    }
+
+    /// Reads the line `upload row INDEX RATE GAIN`, after its second word: rate, 1/s, and gain, mm² K/J; or
+    /// `upload row INDEX T_S CELSIUS` of a course. A host that has lost the answer to a row may repeat the line: the row that
+    /// was received last is accepted again if it says the same.
     ///
     /// # Errors
     /// An argument is missing, no number, or out of range, or it is not the next row; the upload is unchanged.
     pub fn add_row(&mut self, line: &str, words: &mut Words<'_>) -> Result<(), Error> {
-        let index = read_whole_number_in_range(words, &ROW_INDEX_RANGE)?;
-        if index != self.rows.len() || index >= self.count {
-            return Err(Error::Upload(UploadError::NotNextRow(self.rows.len())));
+        let range = match self.content {
+            Content::Object { .. } => &ROW_INDEX_RANGE,
+            Content::Course(_) => &COURSE_POINT_INDEX_RANGE,
+        };
+        let index = read_whole_number_in_range(words, range)?;
+        let received = self.received();
+        let is_next = index == received && index < self.count;
+        let may_be_repeated = index + 1 == received;
+        let not_next = Error::Upload(UploadError::NotNextRow(received));
+        if !is_next && !may_be_repeated {
+            return Err(not_next);
         }
+        let rows = match &mut self.content {
+            Content::Object { rows, .. } => rows,
+            Content::Course(course) => {
+                let point = read_course_point(words, course.temperatures())?;
+                expect_end(words)?;
+                if is_next {
+                    course.push(point).map_err(Error::Course)?;
+                    self.add_to_checksum(line);
+                } else if course.points().last() != Some(&point) {
+                    return Err(not_next);
+                }
+                return Ok(());
+            }
+        };
         let rate_1_s = read_fixed_point_in_range(words, &RATE_RANGE)?.to_num();
         let gain_m2k_j =
             M2_PER_MM2 * read_fixed_point_in_range(words, &GAIN_RANGE)?.to_num::<f64>();
@@ -134,19 +216,24 @@ impl Upload {
             rate_1_s,
             gain_m2k_j,
         };
-        (self.rows.push(row)).map_err(|_| Error::Upload(UploadError::NotNextRow(index)))?;
-        self.add_to_checksum(line);
+        if is_next {
+            rows.push(row).map_err(|_| not_next)?;
+            self.add_to_checksum(line);
+        } else if rows.last() != Some(&row) {
+            return Err(not_next);
+        }
         Ok(())
     }
 
-    /// Ends the upload, and returns its object if the lines have this checksum, given in eight hexadecimal digits.
+    /// Ends the upload, and returns its object or course if the lines have this checksum, given in eight hexadecimal digits.
     ///
     /// # Errors
-    /// Rows are missing, the checksum is another one, or the device cannot follow such an object.
-    pub fn commit(self, checksum: &str) -> Result<Body, Error> {
+    /// Rows are missing, the checksum is another one, or the device cannot follow such an object or course.
+    pub fn commit(self, checksum: &str) -> Result<UploadStep, Error> {
         let failed = |error| Err(Error::Upload(error));
-        if self.rows.len() != self.count {
-            return failed(UploadError::Incomplete(self.rows.len(), self.count));
+        let received = self.received();
+        if received != self.count {
+            return failed(UploadError::Incomplete(received, self.count));
         }
         let actual = self.digest.finalize();
         // `from_str_radix` accepts a leading `+`.
@@ -156,10 +243,19 @@ impl Upload {
             Ok(_) if digits => return failed(UploadError::Checksum(actual)),
             _ => return failed(UploadError::MalformedChecksum),
         }
-        let impedance = Impedance {
-            direct_m2k_w: self.direct_m2k_w,
-            relaxations: &self.rows,
-        };
-        Body::new(&impedance, SKIN.effusivity(), TICK_S).map_err(Error::Body)
+        match self.content {
+            Content::Object { direct_m2k_w, rows } => {
+                let impedance = Impedance {
+                    direct_m2k_w,
+                    relaxations: &rows,
+                };
+                let body = Body::new(&impedance, SKIN.effusivity(), TICK_S);
+                body.map(UploadStep::Object).map_err(Error::Body)
+            }
+            Content::Course(mut course) => {
+                course.check_whole().map_err(Error::Course)?;
+                Ok(UploadStep::Course(course))
+            }
+        }
     }
 }

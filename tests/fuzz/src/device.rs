@@ -133,6 +133,8 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
             StateName::Preset | StateName::Contact => {
                 matches!(state, StateName::Preset | StateName::Contact)
             }
+            // A course may end on neutral.
+            StateName::Stimulus => matches!(state, StateName::Stimulus | StateName::Armed),
             before => state == before,
         };
         let trips = state.fault().is_some() && before.fault().is_none();
@@ -225,7 +227,11 @@ fn check_outputs(outputs: BoardOutputs, state: StateName, samples: &Samples) {
     };
     let may_drive = matches!(
         state,
-        StateName::SelfTest | StateName::Armed | StateName::Preset | StateName::Contact
+        StateName::SelfTest
+            | StateName::Armed
+            | StateName::Preset
+            | StateName::Contact
+            | StateName::Stimulus
     );
     assert!(may_drive, "driven while {state:?}");
     let fraction: f64 = duty.fraction().to_num();

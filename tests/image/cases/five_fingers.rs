@@ -12,7 +12,7 @@ use thermal_sim::World;
 use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, NativeFiveFingers, run};
 use thermal_sim::metrics::figures;
 use thermal_sim::run::Outcome;
-use thermal_sim::scene::Scene;
+use thermal_sim::scene::{HostLine, Scene};
 
 /// Cycles in a millisecond at 180 MHz.
 const MILLISECOND: f64 = 180_000.0;
@@ -128,6 +128,44 @@ fn five_uploaded_objects_reach_their_fingers() {
 
 /// The image writes the same traces as five native devices; up to the noise of the sensors, it also equals five devices for
 /// one finger whose bridges switch at the same frequency: the losses at each edge grow with it.
+/// All fingers share the trigger input; one of them waits for it, all report it.
+#[test]
+fn an_edge_of_the_trigger_reaches_all_fingers_with_the_same_time_on_both_engines() {
+    let mut scenes = five_contacts().map(|mut scene| {
+        let lines = [
+            (0.3, "events on"),
+            (0.4, "pulse 33 30 5 0.2 5"),
+            (1.2, "play trigger"),
+        ];
+        let lines = lines.map(|(t_s, line)| HostLine {
+            t_s,
+            line: line.into(),
+        });
+        scene.host.extend(lines);
+        scene
+    });
+    scenes[1].triggers_s = vec![1.5, 1.6, 2.1];
+    let image = equal_on_both_engines(&scenes);
+    let mut native = NativeFiveFingers::new(worlds(&scenes));
+    let native = run(&scenes, &mut native, |_| ()).expect("runs");
+    for (image, native) in image.iter().zip(&native) {
+        let told = |outcome: &Outcome| -> Vec<String> {
+            outcome
+                .events
+                .iter()
+                .map(|(_, line)| line.clone())
+                .collect()
+        };
+        assert_eq!(told(image), told(native));
+        let edges = told(image);
+        let edges: Vec<_> = edges
+            .iter()
+            .filter(|line| line.ends_with("trigger"))
+            .collect();
+        assert_eq!(edges.len(), 3, "{edges:?}");
+    }
+}
+
 #[test]
 fn each_of_five_fingers_behaves_like_a_finger_alone() {
     let scenes = five_contacts();

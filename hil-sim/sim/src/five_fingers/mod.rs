@@ -67,6 +67,12 @@ pub trait FiveFingerEngine {
     /// The fault does not apply to the engine, or its machine refuses it.
     fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected>;
 
+    /// Raises the trigger input now, until the next boundary.
+    ///
+    /// # Errors
+    /// The device did something that is not modelled.
+    fn trigger(&mut self) -> Result<(), Self::Stop>;
+
     /// Resets of the device after power-up; time counts from the first finger's first boundary.
     fn resets(&self) -> Vec<DeviceReset>;
 
@@ -80,8 +86,8 @@ pub trait FiveFingerEngine {
 }
 
 /// Runs a scene on each finger and returns their results; `progress` is called with the fraction done. Faults of the
-/// processor in any of the scenes are injected into the one that all fingers share, at whole milliseconds, before the first
-/// finger's boundary.
+/// processor in any of the scenes are injected into the one that all fingers share, and edges of their triggers raise the input
+/// that all share, at whole milliseconds, before the first finger's boundary.
 ///
 /// # Errors
 /// The engine stopped, the device refused a scene, or a fault of the processor could not be injected.
@@ -108,6 +114,10 @@ pub fn run<H: FiveFingerEngine>(
     let end_ms = last(|finger| finger.end_ms);
     let last_ms = end_ms + DRAIN_MS;
     let injections = injections(scenes, zero_ms, end_ms)?;
+    let triggers_s = scenes.iter().flat_map(|scene| &scene.triggers_s);
+    let triggers_ms: Vec<_> = triggers_s
+        .map(|t_s| (t_s * 1e3).round() as u64 + zero_ms)
+        .collect();
     let mut received = LineSplitter::default();
     for ms in 0..=last_ms {
         if ms == zero_ms {
@@ -115,6 +125,9 @@ pub fn run<H: FiveFingerEngine>(
         }
         for (_, fault) in injections.iter().filter(|(at_ms, _)| *at_ms == ms) {
             engine.inject(fault)?;
+        }
+        if triggers_ms.contains(&ms) {
+            engine.trigger().map_err(RunError::Stop)?;
         }
         for index in 0..FINGERS {
             engine.run_to(index).map_err(RunError::Stop)?;

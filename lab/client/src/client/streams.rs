@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use thermal_device::TelemetryFields;
+
 /// The streams of telemetry that a client has asked for.
 #[derive(Clone, Debug, Default)]
 pub struct TelemetryStreams {
@@ -9,23 +11,36 @@ pub struct TelemetryStreams {
     interval_ms: u32,
     /// Interval of single fingers, ms.
     own_ms: BTreeMap<u8, u32>,
+    /// Fields of all fingers that have none of their own; `None` for all fields.
+    fields: Option<TelemetryFields>,
+    /// Fields of single fingers.
+    own_fields: BTreeMap<u8, TelemetryFields>,
     /// Tick of the last line of each finger.
     last: BTreeMap<Option<u8>, u32>,
 }
 
 impl TelemetryStreams {
-    /// Takes note of an interval, ms, 0 for none, of a finger or of all.
-    pub fn set(&mut self, finger: Option<u8>, interval_ms: u32) {
+    /// Takes note of an interval, ms, 0 for none, and of the fields, of a finger or of all.
+    pub fn set(&mut self, finger: Option<u8>, interval_ms: u32, fields: TelemetryFields) {
         match finger {
             Some(finger) => {
                 self.own_ms.insert(finger, interval_ms);
+                self.own_fields.insert(finger, fields);
             }
             None => {
                 self.interval_ms = interval_ms;
+                self.fields = Some(fields);
+                self.own_fields.clear();
                 self.own_ms.clear();
             }
         }
         self.last.clear();
+    }
+
+    /// The fields of a finger's telemetry.
+    pub fn fields(&self, finger: Option<u8>) -> TelemetryFields {
+        let own = finger.and_then(|finger| self.own_fields.get(&finger));
+        own.copied().or(self.fields).unwrap_or(TelemetryFields::ALL)
     }
 
     /// Whether any finger streams.

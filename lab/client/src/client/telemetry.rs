@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use serde::Serialize;
-use thermal_device::StateName;
 use thermal_device::safety::Fault;
+use thermal_device::{StateName, TelemetryFields};
 
 use super::fields::{number_or_unknown, state, state_word};
 
@@ -55,11 +55,24 @@ impl Telemetry {
     /// Reads a line without its finger; `None` if it is not telemetry. Words after the known ones are ignored.
     #[must_use]
     pub fn parse(line: &str) -> Option<Self> {
-        let words: Vec<_> = line.split(' ').collect();
-        let &[
-            "T",
-            tick,
-            state_name,
+        Self::parse_fields(line, TelemetryFields::ALL)
+    }
+
+    /// The same of a line with these fields only; those that are left out are `None`, the currents and `evaluations` 0.
+    #[must_use]
+    pub fn parse_fields(line: &str, fields: TelemetryFields) -> Option<Self> {
+        let mut words = line.split(' ');
+        let ("T", tick, state_name) = (words.next()?, words.next()?, words.next()?) else {
+            return None;
+        };
+        let mut values = ["-", "-", "-", "-", "-", "-", "0", "0", "0"];
+        for (index, value) in values.iter_mut().enumerate() {
+            if fields.contains(index) {
+                *value = words.next()?;
+            }
+        }
+        let remark = words.next()?;
+        let [
             setpoint,
             display,
             sink,
@@ -69,12 +82,7 @@ impl Telemetry {
             demand,
             current,
             evaluations,
-            remark,
-            ..,
-        ] = words.as_slice()
-        else {
-            return None;
-        };
+        ] = values;
         Some(Self {
             tick: tick.parse().ok()?,
             state: state(state_name, remark)?,

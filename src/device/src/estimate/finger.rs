@@ -279,6 +279,13 @@ impl FingerEstimator {
         };
     }
 
+    /// Replaces the temperature of the skin before contact, °C, once there is one.
+    pub const fn set_skin_before_contact(&mut self, skin: Celsius) {
+        if let Some(before) = &mut self.before_contact {
+            before.skin = skin;
+        }
+    }
+
     /// Discards the temperatures before contact, the contact, and the cooling of the skin; the next call of
     /// [`Self::update_by_readings`] starts from its readings. Called in each tick whose readings are invalid or in
     /// which a fault detector finds a fault, because such a tick does not update the estimates, and a landing or

@@ -14,6 +14,7 @@
 
 mod chosen_object;
 mod execute_command;
+mod follow_stimulus;
 mod state;
 
 use contact_model::fixed_point::to_fixed;
@@ -26,6 +27,7 @@ use crate::drive::{BoardOutputs, ComparatorTest, Current, Drive, SafeCurrent};
 use crate::estimate::{
     Estimator, FingerEstimator, LegTemperatures, PlateEstimateBeforeReading, PlateObserver,
 };
+use crate::events::{DeviceEvent, EventReporter};
 use crate::identification::{AbortReason, NormalEquationAccumulator};
 use crate::reference::{Reference, ReferenceGenerator};
 use crate::safety::{
@@ -35,7 +37,8 @@ use crate::safety::{
 use crate::sense::{
     CalibrationTables, ContactDetector, Readings, SampleConverter, Samples, ThermistorAverages,
 };
-use crate::{StateName, Telemetry};
+use crate::stimulus::CourseMemory;
+use crate::{StateName, Telemetry, TelemetryFields};
 use chosen_object::ChosenObject;
 
 /// The control of one finger without its hardware. Takes the samples of each tick of 1 ms and returns what the bridge
@@ -60,10 +63,13 @@ pub struct Station {
     /// What the last self-test has measured.
     self_test_report: SelfTestReport,
     identified: IdentificationResult,
+    courses: CourseMemory,
     /// Number of the last tick: ticks of 1 ms since the start of the program; wraps after 49 days.
     tick: u32,
     /// Ticks of 1 ms from one line of telemetry to the next; 0 while telemetry is off.
     telemetry_ticks: u32,
+    telemetry_fields: TelemetryFields,
+    events: EventReporter,
     last: LastTickValues,
 }
 
@@ -122,6 +128,7 @@ impl Station {
             estimator: Estimator {
                 plate: PlateObserver::new(&parameters.observer, limit),
                 finger: FingerEstimator::default(),
+                assumed_skin: None,
             },
             object: ChosenObject::new(&settings.display),
             reference: ReferenceGenerator::default(),
@@ -131,8 +138,11 @@ impl Station {
             state: State::Off,
             self_test_report: SelfTestReport::default(),
             identified: IdentificationResult::default(),
+            courses: CourseMemory::default(),
             tick: 0,
             telemetry_ticks: 0,
+            telemetry_fields: TelemetryFields::ALL,
+            events: EventReporter::default(),
             last: LastTickValues {
                 samples: Samples::default(),
                 readings: Readings::ALL_OPEN,
@@ -300,12 +310,24 @@ impl Station {
         self.sensors
             .track_force_zero_unless_touching(samples, &self.contact);
         let touching = self.contact.touching();
-        self.apply_event(if touching { Event::Land } else { Event::Lift });
+        // The table is asked only in the states in which a touch changes something, which saves 30 instructions a tick.
+        match (&self.state, touching) {
+            (State::Preset, true) => {
+                self.apply_event(Event::Land);
+            }
+            (State::Contact, false) => {
+                self.apply_event(Event::Lift);
+            }
+            _ => {}
+        }
         let landed_ticks = if previously_touching {
             0
         } else {
             self.contact.detection_delay_ticks()
         };
+        if touching != previously_touching {
+            self.note_touch_change(touching, landed_ticks);
+        }
         let force = touching.then_some(valid.force);
         let pair = self.object.contact_pair();
         let bodies = self.object.bodies();
@@ -323,8 +345,8 @@ impl Station {
         let setpoint = match &mut self.state {
             State::Off | State::SelfTest(_) | State::Ready | State::Tripped(_) => return None,
             State::Armed(ArmedTask::Neutral) => finger.temperatures_before_contact()?.skin,
-            State::Armed(ArmedTask::Hold(hold)) => hold.next_setpoint().celsius(),
             State::Armed(ArmedTask::Identify(tile)) => tile.operating_point().celsius(),
+            State::Stimulus(_) => return self.reference_of_stimulus(estimate),
             State::Preset | State::Contact => {
                 let scene = self.object.presented_object_if_chosen()?;
                 let surface = estimate.previous_surface;
@@ -441,6 +463,7 @@ impl Station {
                 let outputs = BoardOutputs {
                     drive: Drive::On(self.voltage.duty_for_current(current, &previous_legs)),
                     comparator_test: ComparatorTest::None,
+                    trigger_output: self.events.next_trigger_output(),
                 };
                 (outputs, current.ampere())
             }
@@ -451,6 +474,7 @@ impl Station {
                 let outputs = BoardOutputs {
                     drive: Drive::Off,
                     comparator_test,
+                    trigger_output: self.events.next_trigger_output(),
                 };
                 (outputs, Current::ZERO)
             }
@@ -477,7 +501,7 @@ impl Station {
 
     /// Moves the station to the state that [`State::state_after`] gives for `event`, and ends an identification of the
     /// tile that is still running. Returns false, and does nothing, if the event has no effect in the present state.
-    fn apply_event(&mut self, event: Event) -> bool {
+    fn apply_event(&mut self, event: Event<'_>) -> bool {
         let Some(state) = self.state.state_after(event) else {
             return false;
         };
@@ -579,6 +603,18 @@ impl Station {
             demand: *demanded,
             current: readings.current,
             evaluations: self.reference.erfcx_evaluations(),
+            fields: self.telemetry_fields,
         })
+    }
+
+    /// Whether an event was not fetched yet.
+    #[must_use]
+    pub fn has_event(&self) -> bool {
+        self.events.has_event()
+    }
+
+    /// The oldest event that was not fetched yet. `None` while events are not reported.
+    pub fn take_event(&mut self) -> Option<DeviceEvent> {
+        self.events.take()
     }
 }

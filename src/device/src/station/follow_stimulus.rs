@@ -1,0 +1,194 @@
+//! Holds and courses of one station: their commands, what starts and ends them, and their reference.
+
+use contact_model::fixed_point::Celsius;
+
+use super::{Event, State, Station};
+use crate::TriggerEdge;
+use crate::command::Refused;
+use crate::estimate::PlateEstimateBeforeReading;
+use crate::events::DeviceEventKind;
+use crate::reference::Reference;
+use crate::safety::Setpoint;
+use crate::safety::limits::{SETPOINT_MAX, SETPOINT_MIN};
+use crate::stimulus::{
+    Course, CourseEnd, CourseStart, CourseTemperatures, FOLLOWING_ERROR_LIMITED, Hold, PlayOrder,
+    Player, STEP_APPROACH_SHIFT, Stimulus, StimulusTemperatures,
+};
+
+impl Station {
+    /// Refuses what follows a set-point of the host, unless the display is driven and the self-test is over.
+    fn require_driven(&self, command: &'static str) -> Result<(), Refused> {
+        match self.state {
+            State::Tripped(fault) => Err(Refused::Tripped(fault)),
+            State::Off | State::SelfTest(_) | State::Ready => Err(Refused::NeedsArmed(command)),
+            _ => Ok(()),
+        }
+    }
+
+    #[inline(never)]
+    pub(super) fn execute_hold(
+        &mut self,
+        target: Setpoint,
+        rate_k_s: Celsius,
+    ) -> Result<(), Refused> {
+        self.require_driven("hold")?;
+        let start = match (&self.state, self.last.reference) {
+            // A display that keeps up with its set-point goes on from there, because a slow thermistor lags behind it.
+            (State::Stimulus(_), Some(last)) if !last.limited => last.setpoint.celsius(),
+            _ => (self.last.readings.display).unwrap_or_else(|_| target.celsius()),
+        };
+        self.apply_event(Event::Stimulate(&Stimulus::Hold(Hold::new(
+            start, target, rate_k_s,
+        ))));
+        self.identified.outcome = None;
+        Ok(())
+    }
+
+    #[inline(never)]
+    pub(super) fn execute_load_course(&mut self, course: Option<&Course>) -> Result<(), Refused> {
+        if let State::Tripped(fault) = self.state {
+            return Err(Refused::Tripped(fault));
+        }
+        if let Some(course) = course {
+            self.courses.load(course);
+        }
+        Ok(())
+    }
+
+    #[inline(never)]
+    pub(super) fn execute_play(&mut self, order: &PlayOrder) -> Result<(), Refused> {
+        self.require_driven("play")?;
+        let course = self.courses.loaded().ok_or(Refused::NoCourse)?;
+        let base = self.base_of(course);
+        let (smallest, largest) = course.extremes();
+        for extreme in [smallest, largest] {
+            let celsius = extreme.saturating_add(base);
+            if !(SETPOINT_MIN..=SETPOINT_MAX).contains(&celsius) {
+                return Err(Refused::CourseOutOfRange(celsius));
+            }
+        }
+        let dose = course
+            .dose(base)
+            .times_after(order.times, self.detectors.dose());
+        if dose.reaches_limit() {
+            return Err(Refused::CourseDose(dose));
+        }
+        self.courses.play_loaded();
+        self.apply_event(Event::Stimulate(&Stimulus::Wait(*order)));
+        self.identified.outcome = None;
+        if order.start == CourseStart::Now {
+            self.begin_course(0, self.tick.wrapping_add(1));
+        }
+        Ok(())
+    }
+
+    pub(super) fn execute_assume_skin(&mut self, skin: Option<Celsius>) {
+        let present = match skin {
+            // During a contact the sensor does not show the skin before it, so the assumed one stays until lifting.
+            None if self.contact.touching() => None,
+            None => self.last.readings.skin.ok(),
+            skin => skin,
+        };
+        self.estimator.assume_skin(skin, present);
+        self.contact_restart_is_due = true;
+    }
+
+    /// What is added to the temperatures of a course now, °C.
+    fn base_of(&self, course: &Course) -> Celsius {
+        let before_contact = self.estimator.finger.temperatures_before_contact();
+        match (course.temperatures(), before_contact) {
+            (CourseTemperatures::Relative, Some(before_contact)) => before_contact.skin,
+            // No estimate of the skin: the station has no valid readings, and the bridge is off.
+            (CourseTemperatures::Relative, None) => {
+                self.last.readings.skin.ok().unwrap_or_default()
+            }
+            (CourseTemperatures::Absolute, _) => Celsius::ZERO,
+        }
+    }
+
+    /// Takes note of an edge at the trigger input, before the tick that reports it; a course that waits for it begins.
+    #[inline(never)]
+    pub fn note_trigger_edge(&mut self, edge: TriggerEdge) {
+        let coming_tick = self.tick.wrapping_add(1);
+        let tick = coming_tick.wrapping_sub(edge.ticks_ago.into());
+        (self.events).note(DeviceEventKind::Trigger, tick, edge.us);
+        if self.waits_for(CourseStart::Trigger) {
+            self.begin_course(0, coming_tick);
+        }
+    }
+
+    fn waits_for(&self, start: CourseStart) -> bool {
+        matches!(&self.state, State::Stimulus(Stimulus::Wait(order)) if order.start == start)
+    }
+
+    /// Begins the course that waits, if one does, with `elapsed` ticks of it behind the next reference; `tick` is the one
+    /// to which its time 0 belongs.
+    fn begin_course(&mut self, elapsed: u32, tick: u32) {
+        if let State::Stimulus(Stimulus::Wait(order)) = self.state {
+            let course = self.courses.playing();
+            let player = Player::new(course.points(), self.base_of(course), &order, elapsed);
+            self.state = State::Stimulus(Stimulus::Play(player));
+            self.events.note(DeviceEventKind::Start, tick, 0);
+        }
+    }
+
+    /// Takes note of a finger that has landed, `landed_ticks` ago, or lifted.
+    #[inline(never)]
+    pub(super) fn note_touch_change(&mut self, touching: bool, landed_ticks: u32) {
+        if !touching {
+            self.events.note(DeviceEventKind::Lift, self.tick, 0);
+            return;
+        }
+        let landed = self.tick.wrapping_sub(landed_ticks);
+        self.events.note(DeviceEventKind::Land, landed, 0);
+        if self.waits_for(CourseStart::Landing) {
+            self.begin_course(landed_ticks, landed);
+        }
+    }
+
+    /// Reference of the state stimulus. A course that ends moves on to what follows it.
+    #[inline(never)]
+    pub(super) fn reference_of_stimulus(
+        &mut self,
+        estimate: &PlateEstimateBeforeReading,
+    ) -> Option<Reference> {
+        let course = self.courses.playing();
+        let base = self.base_of(course);
+        let State::Stimulus(stimulus) = &mut self.state else {
+            return None;
+        };
+        let (temperatures, ended) = match stimulus {
+            Stimulus::Hold(hold) => (hold.next_temperatures(), None),
+            Stimulus::Wait(_) => {
+                let first = course.points().first()?.temperature.saturating_add(base);
+                let waiting = StimulusTemperatures {
+                    now: first,
+                    ahead: first,
+                };
+                (waiting, None)
+            }
+            Stimulus::Play(player) => player.next_temperatures(course.points()),
+        };
+        if ended.is_some() {
+            self.events.note(DeviceEventKind::End, self.tick, 0);
+        }
+        match ended {
+            None => {}
+            Some(CourseEnd::Hold) => *stimulus = Stimulus::Hold(Hold::at(temperatures.now)),
+            Some(CourseEnd::Neutral) => {
+                self.apply_event(Event::EndNeutral);
+            }
+        }
+        let surface = estimate.previous_surface;
+        let lag = temperatures.now.saturating_sub(surface);
+        let lags = lag.abs() > FOLLOWING_ERROR_LIMITED;
+        let target = if lags {
+            surface.saturating_add(lag >> STEP_APPROACH_SHIFT)
+        } else {
+            temperatures.ahead
+        };
+        let mut reference = Reference::limited_to_safe_range(temperatures.now, target);
+        reference.limited |= lags;
+        Some(reference)
+    }
+}

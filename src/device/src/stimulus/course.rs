@@ -1,0 +1,188 @@
+//! A course: temperatures of the display over time, linear between points.
+
+use contact_model::fixed_point::Celsius;
+use heapless::Vec;
+
+use super::dose_of_course::{EquivalentTime, time_equivalent_to_largest};
+use crate::safety::limits::{DOSE_COUNTED_FROM, SETPOINT_MAX, SETPOINT_MIN};
+
+/// Largest number of points of a course.
+pub const COURSE_POINTS_MAX: usize = 128;
+/// Longest course, ms: one hour.
+pub const COURSE_DURATION_MAX_MS: u32 = 3_600_000;
+/// Steepest course and fastest `hold`, K/s. No tile gives as much; a course this steep asks for a step, and is reported as
+/// `limited` while the display lags behind it.
+pub const COURSE_RATE_MAX_K_S: u32 = 100;
+
+/// Smallest and largest temperature of a relative course, K: the width of the range of set-points. Constants of their own,
+/// because a literal in a function that also runs on the device would be parsed there, by 6 KB of code.
+const RELATIVE_MIN: Celsius = Celsius::lit("-27");
+const RELATIVE_MAX: Celsius = Celsius::lit("27");
+
+/// What the temperatures of a course are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CourseTemperatures {
+    /// °C.
+    #[default]
+    Absolute,
+    /// K above the skin before contact.
+    Relative,
+}
+
+impl CourseTemperatures {
+    /// Both, with their words in the protocol.
+    pub const PROTOCOL_WORDS: [(&'static str, Self); 2] =
+        [("absolute", Self::Absolute), ("relative", Self::Relative)];
+
+    /// Smallest and largest temperature of a point, °C or K.
+    #[must_use]
+    pub const fn range(self) -> (Celsius, Celsius) {
+        match self {
+            Self::Absolute => (SETPOINT_MIN, SETPOINT_MAX),
+            Self::Relative => (RELATIVE_MIN, RELATIVE_MAX),
+        }
+    }
+}
+
+/// A point of a course.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CoursePoint {
+    /// Time since the start of the course, ms.
+    pub time_ms: u32,
+    /// Temperature, °C, or K above the skin.
+    pub temperature: Celsius,
+}
+
+/// Why a point or a course is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CourseError {
+    /// There is no room for more than [`COURSE_POINTS_MAX`] points.
+    TooManyPoints,
+    /// The point is not later than the one before, whose time, ms, this is.
+    TimeGoesBack(u32),
+    /// The point is later than [`COURSE_DURATION_MAX_MS`].
+    TooLong,
+    /// The point's temperature is out of range.
+    OutOfRange,
+    /// From the point before to this one the temperature changes by this rate, K/s, which is more than
+    /// [`COURSE_RATE_MAX_K_S`].
+    TooFast(u32),
+    /// A course has at least two points.
+    TooFewPoints,
+    /// The course alone gives this thermal dose, ms at 43 °C, which reaches the limit.
+    TooHotForTooLong(u32),
+}
+
+/// A course: its points are in order, in range, and not too steep. One that has passed [`Self::check_whole`] has at least two
+/// points, and by itself gives no dose that trips.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Course {
+    points: Vec<CoursePoint, COURSE_POINTS_MAX>,
+    temperatures: CourseTemperatures,
+    smallest: Celsius,
+    largest: Celsius,
+    /// Time at the largest temperature that gives the dose of the course; set by [`Self::check_whole`].
+    equivalent: EquivalentTime,
+}
+
+impl Course {
+    /// A course without points yet.
+    #[must_use]
+    pub const fn new(temperatures: CourseTemperatures) -> Self {
+        Self {
+            points: Vec::new(),
+            temperatures,
+            smallest: Celsius::MAX,
+            largest: Celsius::MIN,
+            equivalent: EquivalentTime::ZERO,
+        }
+    }
+
+    /// Adds a point.
+    ///
+    /// # Errors
+    /// The point does not fit behind the ones before; the course is unchanged.
+    pub fn push(&mut self, point: CoursePoint) -> Result<(), CourseError> {
+        let (min, max) = self.temperatures.range();
+        if point.time_ms > COURSE_DURATION_MAX_MS {
+            return Err(CourseError::TooLong);
+        }
+        if !(min..=max).contains(&point.temperature) {
+            return Err(CourseError::OutOfRange);
+        }
+        if let Some(before) = self.points.last() {
+            if point.time_ms <= before.time_ms {
+                return Err(CourseError::TimeGoesBack(before.time_ms));
+            }
+            let way = point.temperature.abs_diff(before.temperature).to_bits();
+            let duration_ms = point.time_ms - before.time_ms;
+            // In steps of 2^-22 K per ms.
+            const RATE_MAX: u64 = ((COURSE_RATE_MAX_K_S as u64) << Celsius::FRAC_NBITS) / 1000;
+            // One step more, so that a rate at the limit is not refused for the rounding of its temperatures.
+            if u64::from(way) > (RATE_MAX + 1) * u64::from(duration_ms) {
+                let rate = u64::from(way) * 1000 / u64::from(duration_ms);
+                let half = 1 << (Celsius::FRAC_NBITS - 1);
+                return Err(CourseError::TooFast(
+                    ((rate + half) >> Celsius::FRAC_NBITS) as u32,
+                ));
+            }
+        }
+        (self.points.push(point)).map_err(|_| CourseError::TooManyPoints)?;
+        self.smallest = self.smallest.min(point.temperature);
+        self.largest = self.largest.max(point.temperature);
+        Ok(())
+    }
+
+    /// Checks the course as a whole, and predicts its dose. Takes up to some milliseconds, so it is not for the control
+    /// tick.
+    ///
+    /// # Errors
+    /// There are less than two points, or the dose of the course alone trips.
+    pub fn check_whole(&mut self) -> Result<(), CourseError> {
+        if self.points.len() < 2 {
+            return Err(CourseError::TooFewPoints);
+        }
+        let counted_from = match self.temperatures {
+            CourseTemperatures::Absolute => DOSE_COUNTED_FROM,
+            // No set-point is above 42 °C, so what is 3 K below the largest temperature is never counted.
+            CourseTemperatures::Relative => self
+                .largest
+                .saturating_sub(SETPOINT_MAX.saturating_sub(DOSE_COUNTED_FROM)),
+        };
+        self.equivalent = time_equivalent_to_largest(&self.points, self.largest, counted_from);
+        if self.temperatures == CourseTemperatures::Absolute {
+            let dose = self.dose(Celsius::ZERO);
+            if dose.reaches_limit() {
+                return Err(CourseError::TooHotForTooLong(dose.milliseconds_at_43()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Dose of the course if its temperatures are this much, °C, above what its points say. An upper bound.
+    #[must_use]
+    pub fn dose(&self, base: Celsius) -> crate::safety::PredictedDose {
+        self.equivalent.at(self.largest.saturating_add(base))
+    }
+
+    /// The points.
+    #[must_use]
+    pub fn points(&self) -> &[CoursePoint] {
+        &self.points
+    }
+
+    /// What the temperatures of the points are.
+    #[must_use]
+    pub const fn temperatures(&self) -> CourseTemperatures {
+        self.temperatures
+    }
+
+    /// Smallest and largest temperature of the points, °C, or K above the skin.
+    #[must_use]
+    pub const fn extremes(&self) -> (Celsius, Celsius) {
+        (self.smallest, self.largest)
+    }
+}
+
+#[cfg(test)]
+mod tests;

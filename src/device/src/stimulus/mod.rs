@@ -1,0 +1,56 @@
+//! Temperatures that the host prescribes instead of an object: a temperature that is held, and courses.
+//!
+//! ```text
+//! upload --> Course --> CourseMemory --- play --> Player --> set-point now, and 12 ms ahead --> reference
+//!                                                   ^
+//! hold ------------------------------------> Hold --+-- Ramp: exact interpolation in integers
+//! ```
+
+mod course;
+mod course_memory;
+mod dose_of_course;
+mod hold;
+mod player;
+mod ramp;
+
+pub use course::{
+    COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, Course, CourseError,
+    CoursePoint, CourseTemperatures,
+};
+pub use course_memory::CourseMemory;
+pub use hold::Hold;
+pub use player::{CourseEnd, CourseStart, PlayOrder, Player};
+
+use contact_model::fixed_point::Celsius;
+
+/// Time, ticks of 1 ms, by which the target of the control law is ahead of the set-point of a hold or a course. The law
+/// `model` reaches its target after 12 ms, so that the display then keeps up with a ramp.
+pub const STIMULUS_LEAD_TICKS: u32 = 12;
+/// Distance, K, of the display's surface from the set-point of a hold or a course from which on the set-point is
+/// reported as `limited`: the tile cannot keep the rate.
+pub const FOLLOWING_ERROR_LIMITED: Celsius = Celsius::lit("0.1");
+
+/// Divisor, as a power of two, of the distance that the target is ahead of a display that lags behind a step: 2^3 = 8. The
+/// display then approaches the step with a time constant of 8 times 12 ms, so that the observer has time to unlearn the
+/// error of the plate model at the current limit, which else carries the display beyond its set-point.
+pub const STEP_APPROACH_SHIFT: u32 = 3;
+
+/// What the display does in the state stimulus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stimulus {
+    /// The set-point moves to a temperature and stays there.
+    Hold(Hold),
+    /// A course waits on its first point for what starts it.
+    Wait(PlayOrder),
+    /// A course plays.
+    Play(Player),
+}
+
+/// Set-point of one tick, and where it will be when the control law has reached its target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StimulusTemperatures {
+    /// Temperature of this tick, °C.
+    pub now: Celsius,
+    /// Temperature [`STIMULUS_LEAD_TICKS`] later, °C.
+    pub ahead: Celsius,
+}
