@@ -341,7 +341,8 @@ fn display_thermistors_that_differ_by_more_than_3_k_trip_after_40_ms() {
     drift(&mut bench, -2.9);
     bench.steps(4);
     bench.check_c = bench.display_c - 3.1;
-    // The detector looks at every second tick, the first of which may be this one or the next.
+    // The detector needs 20 looks, at every second tick. The first may be in this tick or the next, so the last is in
+    // the 39th tick or the 40th.
     bench.steps(38);
     assert_eq!(bench.state(), StateName::Preset);
     let (drive, _) = bench.steps(2);
