@@ -43,7 +43,7 @@ impl CurrentMismatchDetector {
         let high = measured > demanded.saturating_add(tolerance);
         let low = measured < demanded.saturating_sub(tolerance);
         let limit = MISMATCH_TRIP_NET_EVALUATIONS;
-        if !self.0.count_tick(high || low, limit) {
+        if !self.0.count(high || low, limit) {
             Ok(())
         } else if high {
             Err(Fault::CurrentHigh)

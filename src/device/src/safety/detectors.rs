@@ -41,8 +41,9 @@ const SUPPLY_TRIP_NET_TICKS: u8 = 10;
 /// station by [`Fault::HostSilent`].
 const HOST_SILENT_TICKS: u16 = 2000;
 
-/// Ticks of 1 ms from one evaluation of a detector that counts over 30 ms or more to the next. These detectors are two
-/// groups that take turns, which halves their time in each tick; their counts stand for ticks.
+/// Ticks of 1 ms between two evaluations of the same group of detectors: `check_display_pair_and_current` and
+/// `check_direction_model_room_and_host` run in alternate ticks, which halves their cost; each evaluation counts for two
+/// ticks. A disturbance that is locked to every second tick is thus seen always or never.
 pub(super) const EVALUATION_INTERVAL_TICKS: u8 = 2;
 
 /// What one tick demanded of the bridge, and whether the residual of the display's model was too large in that tick.
@@ -81,8 +82,8 @@ pub struct FaultDetectors {
     dose: ThermalDose,
     host_silent_ticks: u16,
     second_group_is_due: bool,
-    /// What either group of detectors found when it was last evaluated.
-    found: [Option<Fault>; EVALUATION_INTERVAL_TICKS as usize],
+    /// Fault that either group of detectors found when it was last evaluated.
+    fault_of_group: [Option<Fault>; EVALUATION_INTERVAL_TICKS as usize],
 }
 
 impl FaultDetectors {
@@ -143,23 +144,23 @@ impl FaultDetectors {
     /// [`Fault::DisplaysApart`] (3 K for 40 ms), [`Fault::CurrentHigh`] or [`Fault::CurrentLow`] (1 A plus a quarter of
     /// the demanded current for 30 ms), [`Fault::Polarity`] or [`Fault::Runaway`] (2.5 K against the current),
     /// [`Fault::UnlikeModel`] (large residual for 30 ms), [`Fault::RoomAboveSkin`] (8 K for 40 ms), [`Fault::HostSilent`]
-    /// (2 s), [`Fault::Supply`] (outside of 10.8 to 13.2 V for 10 ms). Of the group that is not evaluated in this tick
-    /// the fault is that of the tick before. A group counts even when another detector has a fault.
+    /// (2 s), [`Fault::Supply`] (outside of 10.8 to 13.2 V for 10 ms). The group that is not evaluated in this tick
+    /// contributes the fault of its last evaluation. A group counts even when another detector has a fault.
     pub fn run_detectors_of_valid_readings(
         &mut self,
         readings: &ValidReadings,
         previous: &PreviousDemandAndResidual,
         streams: bool,
     ) -> Result<(), Fault> {
-        let [mut first, mut second] = self.found;
+        let [mut first, mut second] = self.fault_of_group;
         if self.second_group_is_due {
             second = (self.check_direction_model_room_and_host(readings, previous, streams)).err();
         } else {
-            first = (self.check_second_display_and_current(readings, previous)).err();
+            first = (self.check_display_pair_and_current(readings, previous)).err();
         }
-        self.found = [first, second];
+        self.fault_of_group = [first, second];
         self.second_group_is_due = !self.second_group_is_due;
-        let supply_is_wrong = self.supply.count_tick(
+        let supply_is_wrong = self.supply.count(
             previous.supply_should_be_on && !(SUPPLY_MIN..=SUPPLY_MAX).contains(&readings.supply),
             SUPPLY_TRIP_NET_TICKS,
         );
@@ -169,13 +170,13 @@ impl FaultDetectors {
     }
 
     /// The first group: the second display thermistor against the first one, the measured current against the demand.
-    fn check_second_display_and_current(
+    fn check_display_pair_and_current(
         &mut self,
         readings: &ValidReadings,
         previous: &PreviousDemandAndResidual,
     ) -> Result<(), Fault> {
         let difference = readings.display.saturating_sub(readings.check);
-        let displays_differ = self.display_difference.count_tick(
+        let displays_differ = self.display_difference.count(
             !(-DISPLAY_THERMISTOR_DIFFERENCE_MAX..=DISPLAY_THERMISTOR_DIFFERENCE_MAX)
                 .contains(&difference),
             DISPLAY_DIFFERENCE_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS,
@@ -195,12 +196,12 @@ impl FaultDetectors {
         let above_setpoint = previous.setpoint.map_or(Celsius::ZERO, |setpoint| {
             readings.display.saturating_sub(setpoint.celsius())
         });
-        let room_above_skin = self.room_above_skin.count_tick(
+        let room_above_skin = self.room_above_skin.count(
             readings.room.saturating_sub(readings.skin) > ROOM_ABOVE_SKIN_MAX,
             ROOM_ABOVE_SKIN_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS,
         );
         let follows_setpoint = previous.setpoint.is_some();
-        let unlike_model = self.residual.count_tick(
+        let unlike_model = self.residual.count(
             follows_setpoint && previous.residual_is_large,
             UNLIKE_MODEL_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS,
         );
@@ -218,8 +219,15 @@ impl FaultDetectors {
         err_if(host_silent, Fault::HostSilent)
     }
 
-    /// Restarts the jump and wrong-direction detectors with the next readings. To be called in a tick with invalid
-    /// readings, and after a new calibration, which shifts the readings without any movement of the display.
+    /// Takes note of a tick with invalid readings: restarts the jump and wrong-direction detectors with the next valid ones, and
+    /// forgets the faults of the last evaluations, which may be old by then.
+    pub fn note_invalid_readings(&mut self) {
+        self.restart_motion_detectors();
+        self.fault_of_group = [None; EVALUATION_INTERVAL_TICKS as usize];
+    }
+
+    /// Restarts the jump and wrong-direction detectors with the next readings. To be called
+    /// after a new calibration, which shifts the readings without any movement of the display.
     pub fn restart_motion_detectors(&mut self) {
         self.jump = JumpDetector::default();
         self.wrong_way = WrongWayDetector::default();

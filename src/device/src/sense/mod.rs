@@ -164,12 +164,13 @@ impl Samples {
 fn are_all_codes_of_connected_thermistors(scan: &Scan) -> bool {
     const TOP_BITS: u32 = 0x8000_8000;
     let in_both_halves = |number: u16| u32::from(number) * 0x1_0001;
-    let from_smallest = in_both_halves((1 << 15) - thermistor::SMALLEST_CONNECTED_CODE);
-    let above_largest = in_both_halves((1 << 15) - 1 - thermistor::LARGEST_CONNECTED_CODE);
+    let offset_for_smallest = in_both_halves((1 << 15) - thermistor::SMALLEST_CONNECTED_CODE);
+    let offset_for_largest = in_both_halves((1 << 15) - 1 - thermistor::LARGEST_CONNECTED_CODE);
     let words: [u32; ADC_CHANNELS_PER_FINGER / 2] = bytemuck::cast(*scan);
     let (mut connected, mut beyond_12_bits) = (TOP_BITS, 0);
     for word in words.into_iter().take(THERMISTOR_COUNT.div_ceil(2)) {
-        connected &= word.wrapping_add(from_smallest) & !word.wrapping_add(above_largest);
+        connected &=
+            word.wrapping_add(offset_for_smallest) & !word.wrapping_add(offset_for_largest);
         beyond_12_bits |= word & in_both_halves(0xf000);
     }
     connected == TOP_BITS && beyond_12_bits == 0
@@ -275,13 +276,13 @@ impl Readings {
 /// To save time, each tick converts the sum of only one of them to °C, so that their temperatures are at most 3 ms old.
 /// Every tick checks the wires of all.
 const THERMISTORS_CONVERTED_IN_TURN: usize = THERMISTOR_COUNT - 1;
-/// Number of thermistors, 2, whose temperature has a limit at which the station trips: second display and sink. They are the
-/// first of those that take turns.
-const THERMISTORS_WITH_LIMIT: usize = 2;
-/// Change of the sum of 16 conversions of a thermistor with a limit since its last conversion to °C, from which on it is
-/// converted out of turn, so that it trips in the tick in which it passes its limit by more than this: 4 codes, 0.1 K. The
-/// noise of a sum is 3 to 5, and the fastest display moves by this much in 4 ms.
-const CHANGE_CONVERTED_AT_ONCE: u32 = 4 * SCANS_PER_TICK as u32;
+/// Number, 2, of those that take turns whose temperature has a trip limit: the second display thermistor and the sink's, the
+/// first two.
+const THERMISTORS_IN_TURN_WITH_LIMIT_COUNT: usize = 2;
+/// If the sum of a thermistor with a limit differs by more than this from the sum that was last converted, 4 codes or about
+/// 0.1 K, all four are converted in this tick. A smaller excess over the limit trips up to 3 ticks later. For comparison: the
+/// noise of a sum is 3 to 5, and the fastest display moves by 0.1 K in 4 ms.
+const CONVERT_OUT_OF_TURN_ABOVE: u32 = 4 * SCANS_PER_TICK as u32;
 
 /// Converts one finger's [`Samples`] of each tick to [`Readings`] with the finger's calibration. Stores the zero of the
 /// force sensor, which it tracks while no finger touches, and the last temperatures of the thermistors that take turns.
@@ -292,7 +293,7 @@ pub struct SampleConverter {
     force: ForceChannel,
     /// Current of the Peltier module, A, per unit of the current mirror's sum of 16 conversions; nominally 1/6400 A.
     current_per_unit: Current,
-    /// Last converted temperatures, °C, of second display, sink, skin and room, in this order. `None` until all four
+    /// Last converted temperatures, °C, of the thermistors of second display, sink, skin and room, in this order. `None` until all four
     /// thermistors were connected in the same tick, also after one of them was open or shorted, and after a change of the
     /// calibration; until then each tick converts all of them.
     last_temperatures: Option<[Celsius; THERMISTORS_CONVERTED_IN_TURN]>,
@@ -378,10 +379,10 @@ impl SampleConverter {
         let mut with_limit = sums
             .iter()
             .zip(&self.last_sums)
-            .take(THERMISTORS_WITH_LIMIT);
+            .take(THERMISTORS_IN_TURN_WITH_LIMIT_COUNT);
         let have_moved = with_limit.any(|(now, last)| {
-            (u32::from(*now) + CHANGE_CONVERTED_AT_ONCE).wrapping_sub(*last)
-                > 2 * CHANGE_CONVERTED_AT_ONCE
+            (u32::from(*now) + CONVERT_OUT_OF_TURN_ABOVE).wrapping_sub(*last)
+                > 2 * CONVERT_OUT_OF_TURN_ABOVE
         });
         if are_connected
             && !have_moved

@@ -262,7 +262,7 @@ impl Station {
                     .run_detectors_of_valid_readings(valid, &previous, streams)
             }
             Err(_) => {
-                self.detectors.restart_motion_detectors();
+                self.detectors.note_invalid_readings();
                 Ok(())
             }
         };
