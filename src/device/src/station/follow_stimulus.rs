@@ -157,6 +157,8 @@ impl Station {
         let State::Stimulus(stimulus) = &mut self.state else {
             return None;
         };
+        // A course follows its points as fast as the tile can; a `hold` approaches its step without passing it.
+        let approaches_step = matches!(stimulus, Stimulus::Hold(_) | Stimulus::Wait(_));
         let (temperatures, ended) = match stimulus {
             Stimulus::Hold(hold) => (hold.next_temperatures(), None),
             Stimulus::Wait(_) => {
@@ -182,7 +184,7 @@ impl Station {
         let surface = estimate.previous_surface;
         let lag = temperatures.now.saturating_sub(surface);
         let lags = lag.abs() > FOLLOWING_ERROR_LIMITED;
-        let target = if lags {
+        let target = if lags && approaches_step {
             surface.saturating_add(lag >> STEP_APPROACH_SHIFT)
         } else {
             temperatures.ahead
