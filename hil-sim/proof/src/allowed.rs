@@ -217,6 +217,7 @@ pub static LOOPS: [Entry; 13] = [
         names: &[
             "thermal_device::device::Device::earliest_trip_cause",
             "thermal_device::device::Device::note_host_activity",
+            "thermal_device::device::Device::note_trigger_edge",
             "thermal_device::device::Device::trip_all",
             "thermal_display::board::control_loop::ControlLoop::run_finger_tick",
             "thermal_display::board::control_loop::ControlLoop::stop_and_trip_all",

@@ -259,7 +259,7 @@ fn check_outputs(outputs: BoardOutputs, state: StateName, samples: &Samples) {
 
 /// Whether a line may change a state in this way.
 fn may_change_state(line: &str, from: StateName, to: StateName) -> bool {
-    use StateName::{Armed, Contact, Off, Preset, Ready, SelfTest, Tripped};
+    use StateName::{Armed, Contact, Off, Preset, Ready, SelfTest, Stimulus, Tripped};
     let mut words = line
         .split_ascii_whitespace()
         .skip_while(|word| word.starts_with('@'));
@@ -267,10 +267,12 @@ fn may_change_state(line: &str, from: StateName, to: StateName) -> bool {
         // A second fault, still present, is reported next.
         ("clear", Tripped(_)) => matches!(to, Off | Tripped(_)),
         ("arm", Off) => to == SelfTest,
-        ("arm", Ready | Preset | Contact) => to == Armed,
-        ("start", Armed) => to == Preset,
+        ("arm", Ready | Preset | Contact | Stimulus) => to == Armed,
+        ("tune", Stimulus) => to == Armed,
+        ("start", Armed | Stimulus) => to == Preset,
+        ("hold" | "play" | "pulse", Armed | Preset | Contact) => to == Stimulus,
         ("abort", SelfTest) => to == Off,
-        ("abort", Armed | Preset | Contact) => to == Ready,
+        ("abort", Armed | Preset | Contact | Stimulus) => to == Ready,
         _ => false,
     }
 }
