@@ -171,8 +171,8 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
         }
     }
 
-    /// Executes a command in the station of one finger, in bounded and short time. With five fingers this must end within
-    /// 11 us, because the next finger's tick cannot begin meanwhile.
+    /// Executes a command in the station of one finger, in bounded and short time. Meanwhile no tick
+    /// begins: a tick switches the multiplexers of five fingers, at most 11 us after its finger's last scan.
     ///
     /// # Errors
     /// The station's refusal.

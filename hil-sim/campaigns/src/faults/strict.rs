@@ -13,12 +13,11 @@ const LATE_CLOCK_US: u32 = 19_000;
 
 /// A device on a strict chip: the emulator checks what it otherwise leaves out, and programming and erasing take their longest
 /// times. Each of these is drawn by scene, half of the scenes each: the internal low-speed oscillator has its lowest or its
-/// highest rate; the core waits for the flash with its accelerator or, in scenes of one finger, without it; the external clock
-/// starts at once or late.
+/// highest rate; the core waits for the flash with its accelerator or without it; the external clock starts at once or late.
 pub struct Strict<D: ?Sized>(pub Box<D>);
 
-/// The scene on its strict chip, with one of these timings of the flash.
-fn on_strict_chip(scene: &Scene, flash: [FlashTiming; 2]) -> Scene {
+/// The scene on its strict chip.
+fn on_strict_chip(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let name = format!("{:?} {:?} {:?}", scene.faults, scene.injections, scene.host);
     let drawn = stream_seed(scene.seed, &name);
@@ -31,7 +30,11 @@ fn on_strict_chip(scene: &Scene, flash: [FlashTiming; 2]) -> Scene {
     } else {
         *ChipState::LSI_HZ.end()
     };
-    chip.flash = flash[usize::from(half(1))];
+    chip.flash = if half(1) {
+        FlashTiming::Accelerated
+    } else {
+        FlashTiming::Unaccelerated
+    };
     if half(2) {
         chip.external_clock_start_us = LATE_CLOCK_US;
     }
@@ -44,8 +47,7 @@ impl SceneRunner for Strict<dyn SceneRunner> {
     }
 
     fn run(&self, scene: &Scene) -> anyhow::Result<(Outcome, Figures)> {
-        let flash = [FlashTiming::Accelerated, FlashTiming::Unaccelerated];
-        self.0.run(&on_strict_chip(scene, flash))
+        self.0.run(&on_strict_chip(scene))
     }
 
     fn has_processor(&self) -> bool {
@@ -57,11 +59,9 @@ impl SceneRunner for Strict<dyn SceneRunner> {
     }
 }
 
-/// The fingers share the chip, which is that of the first finger's scene. Without the accelerator of the flash the multiplexers
-/// are switched too late, and all fingers trip.
+/// The fingers share the chip, which is that of the first finger's scene.
 impl FiveFingerRunner for Strict<dyn FiveFingerRunner> {
     fn run_five(&self, scenes: &[Scene; FINGERS]) -> anyhow::Result<Vec<(Outcome, Figures)>> {
-        let strict = |scene| on_strict_chip(scene, [FlashTiming::Accelerated; 2]);
-        self.0.run_five(&scenes.each_ref().map(strict))
+        self.0.run_five(&scenes.each_ref().map(on_strict_chip))
     }
 }
