@@ -78,11 +78,11 @@ fn copy_examples() -> Result<()> {
 }
 
 /// `cargo xtask bench-image`: builds the image that the benchmark runs and prints its path. The profile is that of the flashed
-/// image, so that the model is compiled as it is there.
+/// image, so that the model is compiled as it is there, and so is the folder, which has the macros compiled.
 pub fn benchmark(permission: Permission) -> Result<()> {
     let package = "--package model-bench --bin image --features image --profile firmware";
     let package: Vec<_> = package.split(' ').collect();
-    build(permission, "target/bench-image", &package, "firmware/image")
+    build(permission, "target/firmware", &package, "firmware/image")
 }
 
 /// Target folder of a toolchain: compilers that shared one would rebuild each other's artifacts.

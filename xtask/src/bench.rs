@@ -2,6 +2,7 @@
 use anyhow::Result;
 use clap::ValueEnum;
 
+use crate::process::Invocation;
 use crate::report;
 use crate::setup::Permission;
 
@@ -23,5 +24,6 @@ pub fn run(permission: Permission, job: Job, options: report::Options) -> Result
         Job::Plant => "plant",
         Job::Engines => "engines",
     };
-    report::run(permission, ("model-bench", job), options, Vec::new())
+    let measure = Invocation::bench_package("model-bench", [job]);
+    report::run(permission, measure, options, Vec::new())
 }

@@ -25,6 +25,7 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
+use process::Invocation;
 use setup::{Choice, Permission};
 
 /// Set-up, build, demo, test and benchmark of the thermal display.
@@ -207,7 +208,12 @@ fn main() -> ExitCode {
             set_up,
             report,
             rest,
-        } => report::run(set_up.permission(), ("hil-sim", "fidelity"), report, rest),
+        } => report::run(
+            set_up.permission(),
+            Invocation::run_package("hil-sim", ["fidelity"]),
+            report,
+            rest,
+        ),
         Task::Faults {
             mutations: Some(names),
             ..
@@ -217,7 +223,12 @@ fn main() -> ExitCode {
             report,
             rest,
             ..
-        } => report::run(set_up.permission(), ("hil-sim", "faults"), report, rest),
+        } => report::run(
+            set_up.permission(),
+            Invocation::run_package("hil-sim", ["faults"]),
+            report,
+            rest,
+        ),
         Task::Hardware { set_up, json, rest } => hardware::run(set_up.permission(), json, rest),
         Task::BringUp { set_up, options } => bring_up::run(set_up.permission(), options),
         Task::OnTarget { set_up, options } => on_target::run(set_up.permission(), &options),

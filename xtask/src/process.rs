@@ -63,6 +63,14 @@ impl Invocation {
         Self::cargo(["run", "--release", "--package", package, "--"]).args(args)
     }
 
+    /// Runs a program of the workspace as it is measured: compiled without checks of integer overflow.
+    pub fn bench_package<A: Into<OsString>>(
+        package: &'static str,
+        args: impl IntoIterator<Item = A>,
+    ) -> Self {
+        Self::cargo(["run", "--profile", "bench", "--package", package, "--"]).args(args)
+    }
+
     /// Appends to the command line.
     pub fn args<A: Into<OsString>>(mut self, args: impl IntoIterator<Item = A>) -> Self {
         self.args.extend(args.into_iter().map(Into::into));

@@ -21,12 +21,11 @@ pub struct Options {
 /// Runs a command of a package; a relative `--out` is relative to the caller's folder.
 pub fn run(
     permission: Permission,
-    (package, command): (&'static str, &str),
+    mut report: Invocation,
     options: Options,
     rest: Vec<OsString>,
 ) -> Result<()> {
     setup::prepare(Needs::EMULATOR, permission)?;
-    let mut report = Invocation::run_package(package, [command]);
     if options.json {
         report = report.args(["--json"]);
     }

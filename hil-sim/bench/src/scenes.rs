@@ -8,8 +8,8 @@ use contact_model::fixed_point::{
     Celsius, ChordInterpolation, ContactPair, ContactPairError, Force, log2_relative_pressure,
 };
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
-use thermal_display::device::estimate::{Bodies, FingerEstimator};
-use thermal_display::device::reference::{
+use thermal_device::estimate::{Bodies, FingerEstimator};
+use thermal_device::reference::{
     self, ContactModel, ReferenceGenerator, SETPOINT_INTERPOLATION_TOLERANCE,
 };
 

@@ -58,20 +58,16 @@ fn figures() -> Check {
     check("figures of the documentation", ["xtask docs --check"])
 }
 
-/// Unit tests in the dev profile, where integer overflow panics.
 fn units(members: &[Member]) -> Check {
     let small = members::options(members, Member::is_small);
-    let line = format!("test --quiet {small} --lib --bins --tests");
-    check(
-        "units of model, firmware and xtask, with overflow checks",
-        [&line],
-    )
+    let line = format!("test --release --quiet {small} --lib --bins --tests");
+    check("units of model, firmware and xtask", [&line])
 }
 
 /// What a person runs before each commit.
 fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
     let small = members::options(members, Member::is_small);
-    let clippy = format!("clippy {small} --all-targets -- -Dwarnings");
+    let clippy = format!("clippy --release {small} --all-targets -- -Dwarnings");
     let small = vec![
         formatting(lints),
         figures(),
@@ -91,14 +87,9 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
     ]]
 }
 
-/// All checks: phases, in each of which lanes run side by side. Whatever compiles the emulator does so in the release
-/// profile, and so once.
-fn whole(
-    members: &[Member],
-    toolchain: &Toolchain,
-    choice: Choice,
-    lints: Lints,
-) -> Vec<Vec<Lane>> {
+/// All checks: phases, in each of which lanes run side by side. Programs of the host are compiled in the release profile only,
+/// in which integer overflow panics, too.
+fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> {
     let firmware_lints = lints.clippy || matches!(toolchain, Toolchain::Distribution(_));
     let image = |title, line| Check {
         title,
@@ -123,22 +114,14 @@ fn whole(
                 ]),
             },
         ),
-        units(members),
     ];
-    let native = members::options(members, Member::is_native);
-    // clippy shares its artifacts with the lints of the whole workspace.
-    let checker = if lints.clippy { "clippy" } else { "check" };
-    let native_command = format!("{checker} --release -p hil-sim --no-default-features");
-    let without_emulator = format!("{checker} --release --all-targets {native}");
+    let without_emulator = "check --release -p hil-sim --no-default-features";
     let lints_of_all = "clippy --release --workspace --all-targets -- -Dwarnings";
     let documentation = cargo("doc --release --workspace --no-deps");
     let host = vec![
         formatting(lints),
         figures(),
-        check(
-            "native packages without the emulator",
-            [&without_emulator, &native_command],
-        ),
+        check("hil-sim without the emulator", [without_emulator]),
         only_if(
             lints.clippy,
             NO_CLIPPY,
@@ -181,7 +164,7 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
         if quick_only {
             quick(&members, lints)
         } else {
-            whole(&members, toolchain, permission.choice, lints)
+            whole(toolchain, permission.choice, lints)
         }
     };
     let all = phases(&Toolchain::Active, Lints::ALL);
@@ -212,8 +195,7 @@ mod tests {
     use super::*;
 
     fn checks(lints: Lints) -> Vec<Check> {
-        let members = members::all().unwrap();
-        let phases = whole(&members, &Toolchain::Active, Choice::Auto, lints);
+        let phases = whole(&Toolchain::Active, Choice::Auto, lints);
         phases.into_iter().flatten().flatten().collect()
     }
 
