@@ -115,7 +115,8 @@ fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> 
             },
         ),
     ];
-    let without_emulator = "check --release -p hil-sim --no-default-features";
+    // The emulator is selected beside it for the sake of its dependencies' features, with which the lints compile them.
+    let without_emulator = "check --release -p hil-sim -p stm32-emulator --no-default-features";
     let lints_of_all = "clippy --release --workspace --all-targets -- -Dwarnings";
     let documentation = cargo("doc --release --workspace --no-deps");
     let host = vec![

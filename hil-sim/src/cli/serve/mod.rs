@@ -8,11 +8,10 @@ mod pty;
 use std::io::{Write as _, stdout};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
-use signal_hook::consts::{SIGINT, SIGTERM};
 use thermal_sim::World;
 use thermal_sim::board::{Board, BoardBench, LossyLine};
 use thermal_sim::commissioning::{CommissioningSetup, SimulatedSurroundings};
@@ -106,9 +105,8 @@ fn fingers(text: &str) -> Result<usize, String> {
 /// Serves until a signal ends it.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let stop = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
-        signal_hook::flag::register(signal, Arc::clone(&stop)).map_err(Failure::run)?;
-    }
+    let set = Arc::clone(&stop);
+    ctrlc::set_handler(move || set.store(true, Ordering::Relaxed)).map_err(Failure::run)?;
     let scene = read_scene(arguments.scene.as_deref()).map_err(Failure::input)?;
     note_host_lines(&scene);
     // What cannot be listened on is refused before an image is built.
