@@ -73,7 +73,9 @@ fn a_link_that_vanishes_ends_a_wait_at_once() {
 fn a_flood_of_garbage_neither_hides_the_answer_nor_holds_up_the_client() {
     let (address, server) = serve(|mut stream| {
         assert_eq!(line(&mut stream), "law");
-        let mut garbage: Vec<u8> = (0..1_000_000u32).map(|i| (i.wrapping_mul(i) % 251) as u8).collect();
+        let mut garbage: Vec<u8> = (0..1_000_000u32)
+            .map(|i| (i.wrapping_mul(i) % 251) as u8)
+            .collect();
         garbage.push(b'\n');
         stream.write_all(&garbage).unwrap();
         stream.write_all(b"ok law=pi\n").unwrap();

@@ -86,9 +86,12 @@ impl Instrumented {
         std::fs::hard_link(&this, &wrapper)
             .or_else(|_| std::fs::copy(&this, &wrapper).map(|_| ()))
             .with_context(|| format!("{}: cannot be made", wrapper.display()))?;
-        Invocation::cargo("build --release --package fuzz --features libfuzzer".split(' '))
-            .env("RUSTC_WORKSPACE_WRAPPER", wrapper.to_string_lossy())
-            .run_to_stderr()?;
+        // The whole workspace is selected for the features of the dependencies, with which all other programs compile them.
+        Invocation::cargo(
+            "build --release --workspace --bin fuzz --features fuzz/libfuzzer".split(' '),
+        )
+        .env("RUSTC_WORKSPACE_WRAPPER", wrapper.to_string_lossy())
+        .run_to_stderr()?;
         Ok(workspace().join("target/release/fuzz"))
     }
 }
