@@ -187,8 +187,8 @@ fn create_and_restore_device(
     device
 }
 
-/// Creates the stations in `places`, one after the other: an array of them on the stack would need more of it than
-/// everything that runs later.
+/// Creates the stations in `places`: the first one, and the others as its copies. On the stack they would need more of it
+/// than everything that runs later.
 ///
 /// The device gets one reference to the whole array, not an array of references. The latter was once all that a resource of
 /// RTIC held, in memory that the start leaves as it is (`.uninit`). As the program stored it once only, LLVM 21 made the
@@ -199,11 +199,17 @@ fn create_stations(
     places: &'static mut MaybeUninit<[Station; FINGERS]>,
     cause: Option<TripCause>,
 ) -> &'static mut [Station; FINGERS] {
-    let station = Station::new_optionally_tripped(cause, &Settings::default());
     let first = places.as_mut_ptr().cast::<Station>();
-    for finger in 0..FINGERS {
-        // SAFETY: the place is one of the array's, which nothing else refers to.
-        unsafe { first.add(finger).write(station.clone()) };
+    // SAFETY: the places are those of the array, which nothing else refers to, and the first one is written first.
+    unsafe {
+        first.write(Station::new(&Settings::default()));
+        // Not before the move, which then needs no second place on the stack.
+        if let Some(cause) = cause {
+            (*first).trip(cause);
+        }
+        for finger in 1..FINGERS {
+            first.add(finger).write((*first).clone());
+        }
     }
     // SAFETY: all places were written.
     unsafe { places.assume_init_mut() }

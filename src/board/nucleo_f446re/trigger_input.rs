@@ -60,11 +60,22 @@ impl TriggerInput {
 
     /// The last rising edge since the call before, but for one that must wait. Called in each tick of the first finger.
     pub fn take_edge(&mut self) -> Option<TriggerEdge> {
+        let is_new = self.timer.sr().read().cc1if().bit_is_set();
+        if is_new || self.waiting_us.is_some() {
+            self.take_new_or_waiting(is_new)
+        } else {
+            None
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn take_new_or_waiting(&mut self, is_new: bool) -> Option<TriggerEdge> {
         let waited = self
             .waiting_us
             .take()
             .map(|us| TriggerEdge { us, ticks_ago: 1 });
-        if self.timer.sr().read().cc1if().bit_is_clear() {
+        if !is_new {
             return waited;
         }
         // Reading the count clears the flag.

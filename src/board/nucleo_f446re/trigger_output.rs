@@ -23,11 +23,16 @@ impl TriggerOutput {
 
     /// Sets what a finger's tick demands; it stays until the finger's next tick.
     pub fn set(&mut self, finger: FingerIndex<FINGERS>, high: bool) {
-        let bit = 1 << finger.index_u8();
-        let marking = self.marking & !bit | if high { bit } else { 0 };
-        if marking != self.marking {
-            self.marking = marking;
-            self.pin.set_state((marking != 0).into());
+        if high || self.marking != 0 {
+            self.update_pin(finger, high);
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn update_pin(&mut self, finger: FingerIndex<FINGERS>, high: bool) {
+        let bit = 1 << finger.index_u8();
+        self.marking = self.marking & !bit | if high { bit } else { 0 };
+        self.pin.set_state((self.marking != 0).into());
     }
 }

@@ -16,7 +16,7 @@ use crate::identification::{AbortReason, NormalEquationRow};
 use crate::reference::ContactModel;
 use crate::safety::{Fault, PredictedDose, SelfTestReport, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, Samples, ThermistorAverage};
-use crate::stimulus::{Course, PlayOrder};
+use crate::stimulus::{CoursePart, PlayOrder};
 use crate::{StateName, TICK_S, TelemetryFields};
 
 /// Upper limit of [`ChosenMaterial::impedance_ratio`]. An object at this limit takes hardly any heat.
@@ -179,9 +179,9 @@ pub enum Command<'a> {
         /// Rate, K/s, above zero.
         rate_k_s: Celsius,
     },
-    /// Load a course, which replaces the one that was loaded before, but not one that plays. `None` only asks whether
-    /// loading is permitted. Refused while the station is tripped.
-    LoadCourse(Option<&'a Course>),
+    /// Load a part of a course, which with its last part replaces the one that was loaded before, but not one that plays.
+    /// `None` only asks whether loading is permitted. Refused while the station is tripped.
+    LoadCourse(Option<CoursePart<'a>>),
     /// Play the course that was loaded last. Refused in off, self-test, ready and tripped, if no course is loaded, and if
     /// its temperatures above the present skin or its dose are too large.
     Play(PlayOrder),

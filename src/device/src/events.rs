@@ -146,11 +146,14 @@ impl EventReporter {
 
     /// Whether the trigger output is high until the next tick; to be called once a tick.
     pub const fn next_trigger_output(&mut self) -> bool {
-        let high = self.pulse_ticks_left > 0;
-        if high {
-            self.pulse_ticks_left -= 1;
-        }
-        high
+        self.pulse_ticks_left > 0 && self.count_pulse_tick()
+    }
+
+    #[cold]
+    #[inline(never)]
+    const fn count_pulse_tick(&mut self) -> bool {
+        self.pulse_ticks_left -= 1;
+        true
     }
 }
 

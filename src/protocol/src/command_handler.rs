@@ -40,8 +40,9 @@ pub type ExecutionResult = Result<WithSourceFinger<command::Reply>, WithSourceFi
 #[derive(Clone, Debug)]
 pub struct CommandHandler<const FINGERS: usize> {
     sessions: [CommissioningSession; FINGERS],
-    /// The upload that has begun and is not committed yet, with the finger whose address its lines have.
-    upload: Option<(Option<FingerIndex<FINGERS>>, Upload)>,
+    upload: Upload,
+    /// The finger whose address the lines of the upload have.
+    upload_owner: Option<FingerIndex<FINGERS>>,
     /// Whether lines to the host end with a checksum.
     checksums: bool,
     /// State of the board, for the answer to `board`. Whoever has a board keeps it up to date.
@@ -54,7 +55,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     pub fn new(settings: Settings) -> Self {
         Self {
             sessions: array::from_fn(|_| CommissioningSession::new(settings)),
-            upload: None,
+            upload: Upload::new(),
+            upload_owner: None,
             checksums: false,
             board: BoardStatus::default(),
         }
@@ -69,7 +71,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         };
         Self {
             sessions: stored.each_ref().map(session),
-            upload: None,
+            upload: Upload::new(),
+            upload_owner: None,
             checksums: false,
             board: BoardStatus::default(),
         }
@@ -155,12 +158,9 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 Self::execute_in_stations(command, finger, execute)
             }
             Request::Pulse(pulse) => {
-                let course = pulse.course().map_err(Error::Course).map_err(rejected)?;
-                Self::execute_in_stations(
-                    Command::LoadCourse(Some(&course)),
-                    finger,
-                    &mut execute,
-                )?;
+                (pulse.replace_course(self.upload.course_to_replace()))
+                    .map_err(|error| rejected(Error::Course(error)))?;
+                self.load_course(finger, &mut execute)?;
                 Self::execute_in_stations(Command::Play(pulse.order), finger, execute)
             }
             Request::Upload => match self.continue_upload(finger, line).map_err(rejected)? {
@@ -169,13 +169,11 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                     let permitted =
                         Self::execute_in_stations(Command::LoadCourse(None), finger, execute);
                     if permitted.is_err() {
-                        self.upload = None;
+                        self.upload.end();
                     }
                     permitted
                 }
-                UploadStep::Course(course) => {
-                    Self::execute_in_stations(Command::LoadCourse(Some(&course)), finger, execute)
-                }
+                UploadStep::Course => self.load_course(finger, &mut execute),
                 UploadStep::Object(body) => {
                     let command = Command::Body(ObjectBody::Upload(body));
                     Self::execute_in_stations(command, finger, execute)
@@ -200,6 +198,23 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         match execute(finger, command) {
+            Ok(reply) => Ok(reply.map_content(Reply::Station)),
+            Err(refused) => Err(refused.map_content(Error::from)),
+        }
+    }
+
+    /// Loads the course of the upload in the station of `finger`, or in all stations for `None`.
+    #[inline(never)]
+    fn load_course(
+        &self,
+        finger: Option<FingerIndex<FINGERS>>,
+        execute: &mut impl ExecuteOnStations<FINGERS>,
+    ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
+        let mut result = Ok(WithSourceFinger::from_whole_device(command::Reply::Done));
+        for part in self.upload.course().parts() {
+            result = execute(finger, Command::LoadCourse(Some(part)));
+        }
+        match result {
             Ok(reply) => Ok(reply.map_content(Reply::Station)),
             Err(refused) => Err(refused.map_content(Error::from)),
         }
@@ -245,30 +260,25 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         let mut words = line.split_ascii_whitespace();
         words.next();
         let step = read_word(&mut words, "begin, row or commit")?;
-        match (step, &mut self.upload) {
-            ("begin", upload) => {
-                *upload = None;
-                let begun = Upload::begin(line, &mut words)?;
-                let is_course = begun.is_course();
-                *upload = Some((owner, begun));
-                if is_course {
-                    return Ok(UploadStep::BeginCourse);
-                }
+        match step {
+            "begin" => {
+                self.upload_owner = owner;
+                return self.upload.begin(line, &mut words);
             }
-            ("row" | "commit", Some((other, _))) if *other != owner => {
-                let other = other.map(FingerIndex::index_u8);
+            "row" | "commit" if !self.upload.has_begun() => {
+                return Err(Error::Upload(UploadError::NotBegun));
+            }
+            "row" | "commit" if self.upload_owner != owner => {
+                let other = self.upload_owner.map(FingerIndex::index_u8);
                 return Err(Error::Upload(UploadError::OfAnother(other)));
             }
-            ("row", Some((_, upload))) => upload.add_row(line, &mut words)?,
-            ("commit", upload @ Some(_)) => {
+            "row" => self.upload.add_row(line, &mut words)?,
+            "commit" => {
                 let checksum = read_word(&mut words, "checksum")?;
                 expect_end(&mut words)?;
-                if let Some((_, upload)) = upload.take() {
-                    return upload.commit(checksum);
-                }
+                return self.upload.commit(checksum);
             }
-            ("row" | "commit", None) => return Err(Error::Upload(UploadError::NotBegun)),
-            (unknown, _) => return Err(Error::UnknownUpload(unknown.into())),
+            unknown => return Err(Error::UnknownUpload(unknown.into())),
         }
         Ok(UploadStep::Row)
     }

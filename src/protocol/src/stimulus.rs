@@ -80,12 +80,12 @@ pub struct Pulse {
 }
 
 impl Pulse {
-    /// The course: from base to target, there until the hold ends, and back.
+    /// Replaces a course by that of the pulse: from base to target, there until the hold ends, and back.
     ///
     /// # Errors
     /// The course is too long or too hot for too long.
-    pub fn course(&self) -> Result<Course, CourseError> {
-        let mut course = Course::new(CourseTemperatures::Absolute);
+    pub fn replace_course(&self, course: &mut Course) -> Result<(), CourseError> {
+        course.restart(CourseTemperatures::Absolute);
         let mut time_ms = 0u32;
         for (temperature, duration_ms) in [
             (self.base, 0),
@@ -109,8 +109,7 @@ impl Pulse {
                 course.push(point)?;
             }
         }
-        course.check_whole()?;
-        Ok(course)
+        course.check_whole()
     }
 }
 

@@ -8,7 +8,7 @@ use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::SKIN;
 use heapless::Vec;
 use thermal_device::TICK_S;
-use thermal_device::stimulus::Course;
+use thermal_device::stimulus::{Course, CourseTemperatures};
 use thermal_settings::{CRC_32, Crc32Digest, Range};
 
 use crate::Error;
@@ -73,27 +73,16 @@ pub enum UploadError {
     MalformedChecksum,
 }
 
-/// What is uploaded, as far as it has been received.
-#[allow(
-    clippy::large_enum_variant,
-    reason = "no heap to box the larger one in"
-)]
-#[derive(Clone)]
-enum Content {
+/// What is uploaded.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
     /// The body of an object.
-    Object {
-        direct_m2k_w: f64,
-        rows: Vec<Relaxation, ROWS_MAX>,
-    },
+    Object,
     /// A course.
-    Course(Course),
+    Course,
 }
 
 /// What a line of an upload has completed.
-#[allow(
-    clippy::large_enum_variant,
-    reason = "no heap to box the larger one in"
-)]
 #[derive(Debug)]
 pub enum UploadStep {
     /// Nothing yet: the begin of an object, or a row.
@@ -102,15 +91,20 @@ pub enum UploadStep {
     BeginCourse,
     /// An object.
     Object(Body),
-    /// A course.
-    Course(Course),
+    /// A course, which is [`Upload::course`].
+    Course,
 }
 
-/// An upload that has begun and is not committed yet.
+/// An upload, which may have begun. Object and course are filled where they are: moving a course would take a kilobyte of stack
+/// at each function.
 #[derive(Clone)]
 pub struct Upload {
+    /// `None` while no upload has begun.
+    kind: Option<Kind>,
     count: usize,
-    content: Content,
+    direct_m2k_w: f64,
+    rows: Vec<Relaxation, ROWS_MAX>,
+    course: Course,
     /// Checksum of the lines so far, each followed by a line feed.
     digest: Crc32Digest,
 }
@@ -122,38 +116,69 @@ impl fmt::Debug for Upload {
 }
 
 impl Upload {
+    /// No upload.
+    pub const fn new() -> Self {
+        Self {
+            kind: None,
+            count: 0,
+            direct_m2k_w: 0.0,
+            rows: Vec::new(),
+            course: Course::new(CourseTemperatures::Absolute),
+            digest: CRC_32.digest(),
+        }
+    }
+
     /// Reads the line `upload begin object COUNT DIRECT`, after its second word: an object of `COUNT` relaxations and a direct
-    /// term, mm² K/W; or `upload begin course COUNT absolute|relative`.
+    /// term, mm² K/W; or `upload begin course COUNT absolute|relative`. Ends an upload that had begun.
     ///
     /// # Errors
-    /// An argument is missing, no number, or out of range.
-    pub fn begin(line: &str, words: &mut Words<'_>) -> Result<Self, Error> {
-        let kind = read_word(words, "kind of upload")?;
-        let (count, content) = match kind {
+    /// An argument is missing, no number, or out of range; no upload has begun then.
+    pub fn begin(&mut self, line: &str, words: &mut Words<'_>) -> Result<UploadStep, Error> {
+        self.kind = None;
+        let kind = match read_word(words, "kind of upload")? {
             "object" => {
-                let count = read_whole_number_in_range(words, &ROW_COUNT_RANGE)?;
+                self.count = read_whole_number_in_range(words, &ROW_COUNT_RANGE)?;
                 let direct_mm2k_w = read_fixed_point_in_range(words, &DIRECT_RANGE)?;
-                let content = Content::Object {
-                    direct_m2k_w: M2_PER_MM2 * direct_mm2k_w.to_num::<f64>(),
-                    rows: Vec::new(),
-                };
-                (count, content)
+                self.direct_m2k_w = M2_PER_MM2 * direct_mm2k_w.to_num::<f64>();
+                self.rows.clear();
+                Kind::Object
             }
             "course" => {
-                let count = read_whole_number_in_range(words, &COURSE_POINT_COUNT_RANGE)?;
-                let temperatures = read_course_temperatures(words)?;
-                (count, Content::Course(Course::new(temperatures)))
+                self.count = read_whole_number_in_range(words, &COURSE_POINT_COUNT_RANGE)?;
+                self.course.restart(read_course_temperatures(words)?);
+                Kind::Course
             }
             unknown => return Err(Error::UnknownUpload(unknown.into())),
         };
         expect_end(words)?;
-        let mut upload = Self {
-            count,
-            content,
-            digest: CRC_32.digest(),
-        };
-        upload.add_to_checksum(line);
-        Ok(upload)
+        self.kind = Some(kind);
+        self.digest = CRC_32.digest();
+        self.add_to_checksum(line);
+        Ok(match kind {
+            Kind::Object => UploadStep::Row,
+            Kind::Course => UploadStep::BeginCourse,
+        })
+    }
+
+    /// Whether an upload has begun that is not ended.
+    pub const fn has_begun(&self) -> bool {
+        self.kind.is_some()
+    }
+
+    /// Ends the upload without a result.
+    pub const fn end(&mut self) {
+        self.kind = None;
+    }
+
+    /// The course that was uploaded last.
+    pub const fn course(&self) -> &Course {
+        &self.course
+    }
+
+    /// The course, to be replaced by that of a command. Ends an upload that had begun.
+    pub const fn course_to_replace(&mut self) -> &mut Course {
+        self.kind = None;
+        &mut self.course
     }
 
     #[inline(never)]
@@ -163,15 +188,11 @@ impl Upload {
         }
     }
 
-    /// Whether a course is uploaded.
-    pub const fn is_course(&self) -> bool {
-        matches!(self.content, Content::Course(_))
-    }
-
     fn received(&self) -> usize {
-        match &self.content {
-            Content::Object { rows, .. } => rows.len(),
-            Content::Course(course) => course.points().len(),
+        match self.kind {
+            None => 0,
+            Some(Kind::Object) => self.rows.len(),
+            Some(Kind::Course) => self.course.points().len(),
         }
     }
 
@@ -182,60 +203,58 @@ impl Upload {
     /// # Errors
     /// An argument is missing, no number, or out of range, or it is not the next row; the upload is unchanged.
     pub fn add_row(&mut self, line: &str, words: &mut Words<'_>) -> Result<(), Error> {
-        let range = match self.content {
-            Content::Object { .. } => &ROW_INDEX_RANGE,
-            Content::Course(_) => &COURSE_POINT_INDEX_RANGE,
+        let kind = self.kind.ok_or(Error::Upload(UploadError::NotBegun))?;
+        let range = match kind {
+            Kind::Object => &ROW_INDEX_RANGE,
+            Kind::Course => &COURSE_POINT_INDEX_RANGE,
         };
         let index = read_whole_number_in_range(words, range)?;
         let received = self.received();
         let is_next = index == received && index < self.count;
         let may_be_repeated = index + 1 == received;
-        let not_next = Error::Upload(UploadError::NotNextRow(received));
+        let not_next = || Error::Upload(UploadError::NotNextRow(received));
         if !is_next && !may_be_repeated {
-            return Err(not_next);
+            return Err(not_next());
         }
-        let rows = match &mut self.content {
-            Content::Object { rows, .. } => rows,
-            Content::Course(course) => {
-                let point = read_course_point(words, course.temperatures())?;
+        let repeats = match kind {
+            Kind::Object => {
+                let row = read_relaxation(words)?;
+                if is_next {
+                    self.rows.push(row).map_err(|_| not_next())?;
+                }
+                self.rows.last() == Some(&row)
+            }
+            Kind::Course => {
+                let point = read_course_point(words, self.course.temperatures())?;
                 expect_end(words)?;
                 if is_next {
-                    course.push(point).map_err(Error::Course)?;
-                    self.add_to_checksum(line);
-                } else if course.points().last() != Some(&point) {
-                    return Err(not_next);
+                    self.course.push(point).map_err(Error::Course)?;
                 }
-                return Ok(());
+                self.course.points().last() == Some(&point)
             }
         };
-        let rate_1_s = read_fixed_point_in_range(words, &RATE_RANGE)?.to_num();
-        let gain_m2k_j =
-            M2_PER_MM2 * read_fixed_point_in_range(words, &GAIN_RANGE)?.to_num::<f64>();
-        expect_end(words)?;
-        let row = Relaxation {
-            rate_1_s,
-            gain_m2k_j,
-        };
         if is_next {
-            rows.push(row).map_err(|_| not_next)?;
             self.add_to_checksum(line);
-        } else if rows.last() != Some(&row) {
-            return Err(not_next);
+        } else if !repeats {
+            return Err(not_next());
         }
         Ok(())
     }
 
-    /// Ends the upload, and returns its object or course if the lines have this checksum, given in eight hexadecimal digits.
+    /// Ends the upload, and returns what it has completed if the lines have this checksum, given in eight hexadecimal digits.
     ///
     /// # Errors
     /// Rows are missing, the checksum is another one, or the device cannot follow such an object or course.
-    pub fn commit(self, checksum: &str) -> Result<UploadStep, Error> {
+    pub fn commit(&mut self, checksum: &str) -> Result<UploadStep, Error> {
         let failed = |error| Err(Error::Upload(error));
         let received = self.received();
+        let Some(kind) = self.kind.take() else {
+            return failed(UploadError::NotBegun);
+        };
         if received != self.count {
             return failed(UploadError::Incomplete(received, self.count));
         }
-        let actual = self.digest.finalize();
+        let actual = self.digest.clone().finalize();
         // `from_str_radix` accepts a leading `+`.
         let digits = checksum.len() == 8 && !checksum.starts_with('+');
         match u32::from_str_radix(checksum, 16) {
@@ -243,19 +262,29 @@ impl Upload {
             Ok(_) if digits => return failed(UploadError::Checksum(actual)),
             _ => return failed(UploadError::MalformedChecksum),
         }
-        match self.content {
-            Content::Object { direct_m2k_w, rows } => {
+        match kind {
+            Kind::Object => {
                 let impedance = Impedance {
-                    direct_m2k_w,
-                    relaxations: &rows,
+                    direct_m2k_w: self.direct_m2k_w,
+                    relaxations: &self.rows,
                 };
                 let body = Body::new(&impedance, SKIN.effusivity(), TICK_S);
                 body.map(UploadStep::Object).map_err(Error::Body)
             }
-            Content::Course(mut course) => {
-                course.check_whole().map_err(Error::Course)?;
-                Ok(UploadStep::Course(course))
+            Kind::Course => {
+                self.course.check_whole().map_err(Error::Course)?;
+                Ok(UploadStep::Course)
             }
         }
     }
+}
+
+fn read_relaxation(words: &mut Words<'_>) -> Result<Relaxation, Error> {
+    let rate_1_s = read_fixed_point_in_range(words, &RATE_RANGE)?.to_num();
+    let gain_m2k_j = M2_PER_MM2 * read_fixed_point_in_range(words, &GAIN_RANGE)?.to_num::<f64>();
+    expect_end(words)?;
+    Ok(Relaxation {
+        rate_1_s,
+        gain_m2k_j,
+    })
 }

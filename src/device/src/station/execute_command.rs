@@ -71,7 +71,7 @@ impl Station {
             }
             Command::Arm => self.execute_arm_by_self_test_if_off()?,
             Command::Hold { target, rate_k_s } => self.execute_hold(target, rate_k_s)?,
-            Command::LoadCourse(course) => self.execute_load_course(course)?,
+            Command::LoadCourse(part) => self.execute_load_course(part)?,
             Command::Play(ref order) => self.execute_play(order)?,
             Command::AssumeSkin(skin) => self.execute_assume_skin(skin),
             Command::Start => self.execute_start_presentation()?,

@@ -11,8 +11,8 @@ use crate::reference::Reference;
 use crate::safety::Setpoint;
 use crate::safety::limits::{SETPOINT_MAX, SETPOINT_MIN};
 use crate::stimulus::{
-    Course, CourseEnd, CourseStart, CourseTemperatures, FOLLOWING_ERROR_LIMITED, Hold, PlayOrder,
-    Player, STEP_APPROACH_SHIFT, Stimulus, StimulusTemperatures,
+    Course, CourseEnd, CoursePart, CourseStart, CourseTemperatures, FOLLOWING_ERROR_LIMITED, Hold,
+    PlayOrder, Player, STEP_APPROACH_SHIFT, Stimulus, StimulusTemperatures,
 };
 
 impl Station {
@@ -45,12 +45,15 @@ impl Station {
     }
 
     #[inline(never)]
-    pub(super) fn execute_load_course(&mut self, course: Option<&Course>) -> Result<(), Refused> {
+    pub(super) fn execute_load_course(
+        &mut self,
+        part: Option<CoursePart<'_>>,
+    ) -> Result<(), Refused> {
         if let State::Tripped(fault) = self.state {
             return Err(Refused::Tripped(fault));
         }
-        if let Some(course) = course {
-            self.courses.load(course);
+        if let Some(part) = part {
+            self.courses.load_part(&part);
         }
         Ok(())
     }

@@ -96,6 +96,7 @@ impl State {
     /// The transition table: the state to which `event` leads from this state, with the initial data of the new state;
     /// `None` if the event has no effect here. docs/safety.md shows the same table, and a unit test compares the two.
     #[must_use]
+    #[inline(always)]
     pub fn state_after(&self, event: Event<'_>) -> Option<Self> {
         Some(match (self, event) {
             (Self::Tripped(_), Event::Clear) => Self::Off,

@@ -53,6 +53,17 @@ pub struct CoursePoint {
     pub temperature: Celsius,
 }
 
+/// Points of a [`CoursePart`]. Copying them takes about a microsecond.
+const PART_POINTS: usize = 32;
+
+/// A few points of a course, so that copying the course does not lock out the control tick for long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoursePart<'a> {
+    course: &'a Course,
+    /// Index of the part's first point.
+    first: usize,
+}
+
 /// Why a point or a course is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CourseError {
@@ -96,6 +107,38 @@ impl Course {
             largest: Celsius::MIN,
             equivalent: EquivalentTime::ZERO,
         }
+    }
+
+    /// Removes all points. In place, where a new course would be a kilobyte on the stack.
+    pub fn restart(&mut self, temperatures: CourseTemperatures) {
+        self.points.clear();
+        self.temperatures = temperatures;
+        self.smallest = Celsius::MAX;
+        self.largest = Celsius::MIN;
+        self.equivalent = EquivalentTime::ZERO;
+    }
+
+    /// The course in parts, for [`Self::copy_part`].
+    pub fn parts(&self) -> impl Iterator<Item = CoursePart<'_>> {
+        let part = |first| CoursePart {
+            course: self,
+            first,
+        };
+        (0..self.points.len()).step_by(PART_POINTS).map(part)
+    }
+
+    /// Copies a part of another course, after the parts before it. Returns whether this course is then the whole other one.
+    pub fn copy_part(&mut self, part: &CoursePart<'_>) -> bool {
+        let &CoursePart { course, first } = part;
+        self.points.truncate(first);
+        let points = course.points.chunks(PART_POINTS).nth(first / PART_POINTS);
+        let follows = self.points.len() == first
+            && points.is_some_and(|points| self.points.extend_from_slice(points).is_ok());
+        self.temperatures = course.temperatures;
+        self.smallest = course.smallest;
+        self.largest = course.largest;
+        self.equivalent = course.equivalent;
+        follows && self.points.len() == course.points.len()
     }
 
     /// Adds a point.

@@ -1,12 +1,12 @@
 //! The courses of a finger: the one that plays and the one that was loaded last.
 
-use super::Course;
+use super::{Course, CoursePart};
 
 /// Two buffers: a course is loaded into the one that does not play, so loading never changes a course that plays.
 #[derive(Clone, Debug, Default)]
 pub struct CourseMemory {
     courses: [Course; 2],
-    /// Whether a course was loaded since the start.
+    /// Whether a course was loaded, as a whole, since the start.
     loaded: bool,
     /// Whether the course that was loaded last is the second one.
     loaded_second: bool,
@@ -15,11 +15,11 @@ pub struct CourseMemory {
 }
 
 impl CourseMemory {
-    /// Loads a course, which replaces one that was loaded before and does not play.
-    pub fn load(&mut self, course: &Course) {
+    /// Loads a part of a course, the first one first. The course replaces one that was loaded before and does not play; until
+    /// its last part, none is loaded.
+    pub fn load_part(&mut self, part: &CoursePart<'_>) {
         self.loaded_second = !self.playing_second;
-        self.loaded = true;
-        self.courses[usize::from(self.loaded_second)].clone_from(course);
+        self.loaded = self.courses[usize::from(self.loaded_second)].copy_part(part);
     }
 
     /// The course that was loaded last.

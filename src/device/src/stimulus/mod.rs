@@ -15,7 +15,7 @@ mod ramp;
 
 pub use course::{
     COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, Course, CourseError,
-    CoursePoint, CourseTemperatures,
+    CoursePart, CoursePoint, CourseTemperatures,
 };
 pub use course_memory::CourseMemory;
 pub use hold::Hold;
