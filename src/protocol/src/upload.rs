@@ -200,7 +200,7 @@ impl Upload {
                 let point = read_course_point(words, course.temperatures())?;
                 expect_end(words)?;
                 if is_next {
-                    course.push(point).map_err(Error::Course)?;
+                    (course.push(point)).map_err(|error| Error::CoursePoint(index, error))?;
                     self.add_to_checksum(line);
                 } else if course.points().last() != Some(&point) {
                     return Err(not_next);
