@@ -4,6 +4,8 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
+use contact_model::fixed_point::Celsius;
+
 use super::courses::{Bench, FIRST};
 use super::objects::checksum;
 use crate::device::Device;
@@ -370,4 +372,31 @@ fn a_pulse_is_refused_for_each_of_its_numbers() {
     }
     assert_eq!(bench.send("play now"), NO_COURSE);
     assert_eq!(bench.state(), "armed");
+}
+
+/// What no order can check beforehand: the skin changes while the course waits.
+#[test]
+fn a_relative_course_that_a_warmer_skin_takes_beyond_the_range_is_limited_to_it() {
+    let mut bench = Bench::armed();
+    assert_eq!(bench.upload("relative", &[(0.0, 0.0), (0.1, 5.0)]), "ok");
+    bench.send_ok(&["skin 34", "play landing", "skin 41"]);
+    assert_eq!(bench.steps(50)[49], 41.0);
+    bench.touching = true;
+    let setpoints = bench.steps(200);
+    assert_eq!(setpoints[199], 42.0);
+    assert!(setpoints.iter().all(|setpoint_c| *setpoint_c <= 42.0));
+    assert!(bench.step().limited);
+}
+
+/// The display of the bench does not move.
+#[test]
+fn a_set_point_that_the_display_does_not_follow_is_reported_as_limited() {
+    let mut bench = Bench::armed();
+    assert_eq!(bench.upload("absolute", &[(0.0, 30.0), (0.1, 31.0)]), "ok");
+    bench.send_ok(&["play now"]);
+    bench.steps(100);
+    let telemetry = bench.step();
+    assert_eq!(telemetry.setpoint, Some(Celsius::lit("31")));
+    assert!(telemetry.limited);
+    assert!(bench.send("state").contains(" setpoint_c=31.00 limited "));
 }

@@ -20,7 +20,7 @@ pub(super) struct Bench {
     pub(super) device: Device<1>,
     pub(super) handler: CommandHandler<1>,
     tick: u16,
-    touching: bool,
+    pub(super) touching: bool,
     current: u16,
     outputs: Vec<BoardOutputs>,
     events: Vec<String>,
