@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 
+use thermal_client::client::upload_course;
 use thermal_client::course::Course;
 use thermal_device::reference::ContactModel;
+use thermal_device::stimulus::CourseTemperatures;
 use thermal_protocol::LINE_MAX_BYTES;
 
 use crate::scene::{FaultKind, Scene, custom_line};
@@ -22,6 +24,10 @@ const HEARTBEAT_MS: usize = 500;
 const BLANK: &[u8] = b"\n";
 /// Sent every half millisecond by a flooding host: as much as the serial line carries.
 const FLOOD: &[u8] = b"state\nstate\nstate\nstate\nstate\nstate\nstate\nstate\n";
+/// Half milliseconds between two lines of a host that uploads and plays courses: a device has answered the first by then.
+const PLAYING_HALF_MS: u64 = 4;
+/// The courses that it plays in turn: time, s, and temperature, °C, of their points.
+const PLAYED: [[(f64, f64); 2]; 2] = [[(0.0, 42.0), (1.0, 40.0)], [(0.0, 15.0), (1.0, 17.0)]];
 /// Bytes that are not valid lines.
 const GARBAGE: &[u8] = b"\x00\xff\xfe\x80arm\x01\n\xc3\x28 start\n";
 
@@ -36,6 +42,47 @@ pub struct Host {
     /// Time ranges since the start of the device, ms, in which the host floods the line, and in which it is silent.
     floods: Vec<Range<u64>>,
     silences: Vec<Range<u64>>,
+    playing: PlayingHost,
+}
+
+/// A host that uploads and plays courses without pause.
+#[derive(Clone, Debug)]
+struct PlayingHost {
+    /// Time ranges since the start of the device, ms.
+    times: Vec<Range<u64>>,
+    /// Its lines, which it sends again and again.
+    lines: Vec<Vec<u8>>,
+    next: usize,
+    /// Half millisecond since the start of the device from which on the next line may be sent.
+    free_half_ms: u64,
+}
+
+impl PlayingHost {
+    fn new(times: Vec<Range<u64>>) -> Self {
+        let lines = PLAYED.iter().flat_map(|points| {
+            let upload = upload_course(CourseTemperatures::Absolute, points).into_iter();
+            upload
+                .map(|command| format!("{command}\n").into_bytes())
+                .chain([b"play now\n".to_vec()])
+        });
+        Self {
+            times,
+            lines: lines.collect(),
+            next: 0,
+            free_half_ms: 0,
+        }
+    }
+
+    /// The line sent at a half millisecond since the start of the device, if any.
+    fn send(&mut self, half_ms: u64) -> Option<&[u8]> {
+        if !within(&self.times, half_ms / 2) || half_ms < self.free_half_ms {
+            return None;
+        }
+        self.free_half_ms = half_ms + PLAYING_HALF_MS;
+        let line = self.lines.get(self.next);
+        self.next = (self.next + 1) % self.lines.len();
+        line.map(Vec::as_slice)
+    }
 }
 
 /// The lines by which an operator chooses the object of a scene: its material, its temperature and, if it is no half-space,
@@ -137,6 +184,7 @@ impl Host {
             .skip(1);
         let heartbeats = heartbeats.map(|ms| (ms, BLANK.to_vec()));
         let (floods, silences) = (times(FaultKind::HostFlood), times(FaultKind::HostSilent));
+        let playing = PlayingHost::new(times(FaultKind::HostPlays));
         let mut queue: Vec<_> = (lines.chain(garbage).chain(heartbeats))
             .filter(|(ms, _)| !within(&silences, *ms))
             .collect();
@@ -148,6 +196,7 @@ impl Host {
             next: 0,
             floods,
             silences,
+            playing,
         }
     }
 
@@ -163,8 +212,11 @@ impl Host {
         let Some((_, bytes)) = next.filter(|(ms, bytes)| half_ms >= 2 * ms + sending_half(bytes))
         else {
             let now_ms = half_ms / 2;
-            let floods = within(&self.floods, now_ms) && !within(&self.silences, now_ms);
-            return floods.then_some(FLOOD);
+            if within(&self.silences, now_ms) {
+                return None;
+            }
+            let floods = within(&self.floods, now_ms);
+            return (floods.then_some(FLOOD)).or_else(|| self.playing.send(half_ms));
         };
         self.next += 1;
         Some(bytes)

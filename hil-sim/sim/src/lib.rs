@@ -22,6 +22,7 @@ mod scene_recording;
 pub mod serve;
 pub mod simulated_link;
 pub mod trace;
+mod trigger_edges;
 pub mod upload;
 mod world;
 

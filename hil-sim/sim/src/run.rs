@@ -10,6 +10,7 @@ use crate::host::SET_UP_FROM_MS;
 use crate::processor::{Injection, MachineFault, NotInjected};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
+use crate::trigger_edges::trigger_edges_us;
 
 pub use crate::scene_recording::{Exchange, Outcome};
 
@@ -88,7 +89,7 @@ pub fn run_with<E: Engine>(
     let mut scene_run = SceneRun {
         recording,
         injections,
-        triggers_s: &scene.triggers_s,
+        scene,
         engine,
         received: LineSplitter::default(),
     };
@@ -150,7 +151,7 @@ pub(crate) fn inject_due<'a, E: Engine>(
 struct SceneRun<'a, E> {
     recording: SceneRecording<'a>,
     injections: Vec<&'a Injection>,
-    triggers_s: &'a [f64],
+    scene: &'a Scene,
     engine: &'a mut E,
     received: LineSplitter,
 }
@@ -163,12 +164,10 @@ impl<E: Engine> SceneRun<'_, E> {
 
     /// Raises the trigger input at the scene's times within a half millisecond.
     fn trigger(&mut self, half_ms: u64) -> Result<(), E::Stop> {
-        let zero_ms = self.recording.zero_ms;
-        let mut offsets: Vec<_> = (self.triggers_s.iter())
-            .filter_map(|t_s| offset_in_half_ms(*t_s, zero_ms, half_ms))
-            .collect();
-        offsets.sort_unstable();
-        (offsets.into_iter()).try_for_each(|after_us| self.engine.trigger(after_us))
+        let from_us = (HALF_MS_US * half_ms) as i64 - 1000 * self.recording.zero_ms as i64;
+        let edges_us = trigger_edges_us(self.scene, &(from_us..from_us + HALF_MS_US as i64));
+        let mut offsets_us = edges_us.iter().map(|us| (us - from_us) as u32);
+        offsets_us.try_for_each(|after_us| self.engine.trigger(after_us))
     }
 
     /// Sends the bytes of the host at a half millisecond since the start.

@@ -125,8 +125,10 @@ pub enum Error {
     UnknownCourseEnd(QuotedWordExcerpt),
     /// The word after the number of points of a course, quoted here, is neither `absolute` nor `relative`.
     UnknownCourseTemperatures(QuotedWordExcerpt),
-    /// A point or a course is refused, for this reason.
+    /// A course is refused, for this reason.
     Course(CourseError),
+    /// The point of a course in the row with this index is refused, for this reason; the upload goes on.
+    CoursePoint(usize, CourseError),
     /// The word after `set`, quoted here, is none of `steps`, `correction` and `tile`.
     UnknownSetting(QuotedWordExcerpt),
     /// The line lacks the word with this name. The name is `command` if the line has no command, and
@@ -265,6 +267,10 @@ impl fmt::Display for Error {
                 write_word_not_in_list(f, "temperatures", word, &known)
             }
             Self::Course(error) => write_course_error(f, error),
+            Self::CoursePoint(row, error) => {
+                write!(f, "row {row}: ")?;
+                write_course_error(f, error)
+            }
             Self::Missing(argument) => write!(f, "{argument} missing"),
             Self::Extra(word) => write!(f, "unexpected {word} after the command"),
             Self::NotANumber(range, word) | Self::NotMillimetres(range, word)
@@ -406,11 +412,13 @@ fn write_course_error(f: &mut fmt::Formatter<'_>, error: &CourseError) -> fmt::R
             write!(f, "too many points; at most {COURSE_POINTS_MAX}")
         }
         CourseError::TooFewPoints => f.write_str("a course has at least 2 points"),
-        CourseError::TimeGoesBack(before_ms) => {
-            let before_s = Rounded(f64::from(*before_ms) / 1e3, 3);
-            write!(f, "time goes back: the point before is at {before_s} s")
+        CourseError::TimeGoesBack(ms, before_ms) => write!(
+            f,
+            "time goes back: {ms} ms after {before_ms} ms; {COURSE_DURATION_MAX_MS} ms at most"
+        ),
+        CourseError::TooLong(ms) => {
+            write!(f, "too long: {ms} ms; {COURSE_DURATION_MAX_MS} ms at most")
         }
-        CourseError::TooLong => write!(f, "too long; at most {} s", COURSE_DURATION_MAX_MS / 1000),
         CourseError::OutOfRange => f.write_str("temperature out of range"),
         CourseError::TooFast(rate_k_s) => write!(
             f,

@@ -228,7 +228,7 @@ impl Upload {
                 let point = read_course_point(words, self.course.temperatures())?;
                 expect_end(words)?;
                 if is_next {
-                    self.course.push(point).map_err(Error::Course)?;
+                    (self.course.push(point)).map_err(|error| Error::CoursePoint(index, error))?;
                 }
                 self.course.points().last() == Some(&point)
             }

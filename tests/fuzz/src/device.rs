@@ -11,9 +11,9 @@ use thermal_display::device::command::{self, Command, Status, WithSourceFinger};
 use thermal_display::device::drive::{BoardOutputs, ComparatorTest, Drive};
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
-use thermal_display::device::{Device, FingerIndex, StateName};
+use thermal_display::device::{Device, FingerIndex, StateName, TriggerEdge};
 use thermal_display::protocol::{
-    CommandHandler, Error, LineReader, OutgoingLine, wrap_as_telemetry_line,
+    CommandHandler, Error, LineReader, OutgoingLine, UnaskedLine, wrap_as_telemetry_line,
 };
 use thermal_display::settings::Settings;
 
@@ -116,6 +116,13 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
         }
     }
 
+    /// An edge at the trigger input, which all fingers are told of; it changes no state's name.
+    pub fn trigger(&mut self, edge: TriggerEdge) {
+        let before = self.states();
+        self.device.note_trigger_edge(edge);
+        assert_eq!(self.states(), before, "by {edge:?}");
+    }
+
     /// Restarts the host time-out.
     pub fn note_host_activity(&mut self) {
         self.device.note_host_activity();
@@ -146,6 +153,10 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
                 (15.0..=42.0).contains(&setpoint_c),
                 "set-point {setpoint_c} C"
             );
+        }
+        while let Some(event) = self.device.take_finger_event(finger) {
+            let event = event.map_content(UnaskedLine);
+            check_text(&self.to_host(&event), TELEMETRY_MAX);
         }
         if let Some(telemetry) = self.device.finger_telemetry_if_due(finger) {
             let demand_a: f64 = telemetry.content.demand.to_num();

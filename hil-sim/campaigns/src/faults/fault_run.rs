@@ -44,7 +44,7 @@ fn fault_free_run(
             .iter()
             .any(|sign| sign.needs_fault_free_run());
     match fault_case.fault {
-        InjectedFault::Hardware(broken) if needed => {
+        InjectedFault::Hardware(broken) if needed || fault_case.unchanged => {
             fault_free
                 .faults
                 .retain(|fault| fault.fault.kind != broken.kind);

@@ -166,8 +166,12 @@ impl Engine for OneFingerBoard {
 
     fn trigger(&mut self, after_us: u32) -> Result<(), Stop> {
         // Half a microsecond later, so that the count of microseconds at the edge is not in doubt.
-        let at_ps = self.boundary_ps() + u64::from(after_us) * MICROSECOND_PS + MICROSECOND_PS / 2;
-        self.machine.run_until_ps(at_ps)?;
+        let low_ps = self.boundary_ps() + u64::from(after_us) * MICROSECOND_PS;
+        if self.machine.wiring().trigger {
+            self.machine.run_until_ps(low_ps)?;
+            self.machine.wiring_mut().trigger = false;
+        }
+        self.machine.run_until_ps(low_ps + MICROSECOND_PS / 2)?;
         self.machine.wiring_mut().trigger = true;
         Ok(())
     }

@@ -25,6 +25,7 @@ use crate::processor::{Injection, MachineFault, NotInjected};
 use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
+use crate::trigger_edges::trigger_edges_us;
 use thermal_plant::bridge::BridgeOutputs;
 
 /// Number of fingers of the device.
@@ -114,10 +115,11 @@ pub fn run<H: FiveFingerEngine>(
     let end_ms = last(|finger| finger.end_ms);
     let last_ms = end_ms + DRAIN_MS;
     let injections = injections(scenes, zero_ms, end_ms)?;
-    let triggers_s = scenes.iter().flat_map(|scene| &scene.triggers_s);
-    let triggers_ms: Vec<_> = triggers_s
-        .map(|t_s| (t_s * 1e3).round() as u64 + zero_ms)
-        .collect();
+    let is_triggered = |ms: u64| {
+        let at_us = 1000 * (ms as i64 - zero_ms as i64);
+        let rounded_to_ms = at_us - 500..at_us + 500;
+        (scenes.iter()).any(|scene| !trigger_edges_us(scene, &rounded_to_ms).is_empty())
+    };
     let mut received = LineSplitter::default();
     for ms in 0..=last_ms {
         if ms == zero_ms {
@@ -126,7 +128,7 @@ pub fn run<H: FiveFingerEngine>(
         for (_, fault) in injections.iter().filter(|(at_ms, _)| *at_ms == ms) {
             engine.inject(fault)?;
         }
-        if triggers_ms.contains(&ms) {
+        if is_triggered(ms) {
             engine.trigger().map_err(RunError::Stop)?;
         }
         for index in 0..FINGERS {

@@ -69,10 +69,10 @@ pub struct CoursePart<'a> {
 pub enum CourseError {
     /// There is no room for more than [`COURSE_POINTS_MAX`] points.
     TooManyPoints,
-    /// The point is not later than the one before, whose time, ms, this is.
-    TimeGoesBack(u32),
-    /// The point is later than [`COURSE_DURATION_MAX_MS`].
-    TooLong,
+    /// The point at the first of these times, ms, is not later than the one before, at the second.
+    TimeGoesBack(u32, u32),
+    /// The point, at this time, ms, is later than [`COURSE_DURATION_MAX_MS`].
+    TooLong(u32),
     /// The point's temperature is out of range.
     OutOfRange,
     /// From the point before to this one the temperature changes by this rate, K/s, which is more than
@@ -148,14 +148,14 @@ impl Course {
     pub fn push(&mut self, point: CoursePoint) -> Result<(), CourseError> {
         let (min, max) = self.temperatures.range();
         if point.time_ms > COURSE_DURATION_MAX_MS {
-            return Err(CourseError::TooLong);
+            return Err(CourseError::TooLong(point.time_ms));
         }
         if !(min..=max).contains(&point.temperature) {
             return Err(CourseError::OutOfRange);
         }
         if let Some(before) = self.points.last() {
             if point.time_ms <= before.time_ms {
-                return Err(CourseError::TimeGoesBack(before.time_ms));
+                return Err(CourseError::TimeGoesBack(point.time_ms, before.time_ms));
             }
             let way = point.temperature.abs_diff(before.temperature).to_bits();
             let duration_ms = point.time_ms - before.time_ms;

@@ -23,9 +23,9 @@ fn points_that_do_not_fit_are_refused_and_leave_the_course_as_it_was() {
     course.push(point(100, 31.0)).expect("fits");
     let before = course.clone();
     for (wrong, error) in [
-        (point(100, 31.0), CourseError::TimeGoesBack(100)),
-        (point(99, 31.0), CourseError::TimeGoesBack(100)),
-        (point(3_600_001, 31.0), CourseError::TooLong),
+        (point(100, 31.0), CourseError::TimeGoesBack(100, 100)),
+        (point(99, 31.0), CourseError::TimeGoesBack(99, 100)),
+        (point(3_600_001, 31.0), CourseError::TooLong(3_600_001)),
         (point(200, 42.01), CourseError::OutOfRange),
         (point(200, 14.99), CourseError::OutOfRange),
         (point(101, 32.0), CourseError::TooFast(1000)),
