@@ -61,7 +61,7 @@ mod tests {
     #[test]
     fn a_sound_input_has_the_edges_of_the_scene_to_a_microsecond() {
         assert_eq!(edges("", 0..2_000_000), [1_000_000, 1_500_000]);
-        assert_eq!(edges("", 1_000_001..1_500_000), []);
+        assert!(edges("", 1_000_001..1_500_000).is_empty());
     }
 
     #[test]
