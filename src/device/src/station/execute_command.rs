@@ -232,7 +232,7 @@ impl Station {
             .readings
             .sink
             .map_err(|_| Refused::NeedsArmed("tune"))?;
-        self.identified = super::IdentificationResult::default();
+        self.identified.outcome = None;
         self.state = State::Armed(ArmedTask::Identify(
             Identification::begin_at_sink_temperature(sink),
         ));

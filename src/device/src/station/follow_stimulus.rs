@@ -37,7 +37,7 @@ impl Station {
             (State::Stimulus(_), Some(last)) if !last.limited => last.setpoint.celsius(),
             _ => (self.last.readings.display).unwrap_or_else(|_| target.celsius()),
         };
-        self.apply_event(Event::Stimulate(&Stimulus::Hold(Hold::new(
+        self.apply_known_event(Event::Stimulate(&Stimulus::Hold(Hold::new(
             start, target, rate_k_s,
         ))));
         self.identified.outcome = None;
@@ -77,7 +77,7 @@ impl Station {
             return Err(Refused::CourseDose(dose));
         }
         self.courses.play_loaded();
-        self.apply_event(Event::Stimulate(&Stimulus::Wait(*order)));
+        self.apply_known_event(Event::Stimulate(&Stimulus::Wait(*order)));
         self.identified.outcome = None;
         if order.start == CourseStart::Now {
             self.begin_course(0, self.tick.wrapping_add(1));

@@ -6,7 +6,9 @@ use crate::safety::{Fault, SelfTest};
 use crate::stimulus::Stimulus;
 
 /// State of one finger's station, with the data that exist only in that state.
+// Tags of words, also in the contents: after a tag of a byte the compiler moves the contents by bytes.
 #[derive(Clone, Debug)]
+#[repr(u32)]
 pub enum State {
     /// The bridge is off: after a start of the program without a trip, after `clear`, or after `abort` of the
     /// self-test. `arm` leads to the self-test.
@@ -34,6 +36,7 @@ pub enum State {
 
 /// What the display does while the station is armed, with the data that each task needs.
 #[derive(Clone, Debug)]
+#[repr(u32)]
 pub enum ArmedTask {
     /// Stay at the temperature of the finger's skin, so that the finger feels no object. That temperature is the
     /// filtered reading of the skin's thermistor, kept constant from landing until 2 s after lifting, and for 2 s after

@@ -29,10 +29,11 @@ impl Hold {
         let target = target.celsius();
         let way = u64::from(target.abs_diff(start).to_bits()) * u64::from(TICK_HZ);
         let ticks = way.div_ceil(u64::from(rate_k_s.to_bits().max(1).unsigned_abs()));
-        let now = Ramp::new(start, target, ticks as u32);
-        let mut ahead = now;
-        ahead.skip(STIMULUS_LEAD_TICKS);
-        Self { now, ahead }
+        let ramp = Ramp::new(start, target, ticks as u32);
+        Self {
+            now: ramp,
+            ahead: ramp,
+        }
     }
 
     /// Stays at this temperature, °C.
@@ -46,7 +47,11 @@ impl Hold {
     }
 
     /// Moves on by one tick, and returns where the set-point is then.
-    pub const fn next_temperatures(&mut self) -> StimulusTemperatures {
+    pub fn next_temperatures(&mut self) -> StimulusTemperatures {
+        // In the first tick, and not in the command, which locks out the tick of the next finger.
+        if self.ahead.ticks_left() == self.now.ticks_left() {
+            self.ahead.skip(STIMULUS_LEAD_TICKS);
+        }
         self.now.advance();
         self.ahead.advance();
         StimulusTemperatures {

@@ -37,6 +37,7 @@ pub const STEP_APPROACH_SHIFT: u32 = 3;
 
 /// What the display does in the state stimulus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
 pub enum Stimulus {
     /// The set-point moves to a temperature and stays there.
     Hold(Hold),
