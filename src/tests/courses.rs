@@ -272,7 +272,9 @@ fn a_relative_course_adds_the_skin_and_an_assumed_skin_replaces_the_sensor() {
 #[test]
 fn a_course_is_loaded_while_another_plays_and_a_broken_upload_leaves_the_old_one() {
     let mut bench = Bench::armed();
-    assert_eq!(bench.upload("absolute", &[(0.0, 30.0), (0.2, 32.0)]), "ok");
+    // The second segment begins after the upload.
+    let points = [(0.0, 30.0), (0.15, 31.5), (0.2, 32.0)];
+    assert_eq!(bench.upload("absolute", &points), "ok");
     bench.send_ok(&["play now"]);
     bench.steps(100);
     assert_eq!(bench.upload("absolute", &[(0.0, 20.0), (0.2, 22.0)]), "ok");
