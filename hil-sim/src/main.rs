@@ -8,7 +8,7 @@ use clap::Parser;
 
 use cli::{
     Failure, commission, display, erfcx, faults, fidelity, five_fingers, infrared, model, object,
-    parameters, play, roughness, run, serve, thesis,
+    parameters, play, roughness, run, serve, thesis, tracking,
 };
 #[cfg(feature = "emulator")]
 use cli::{embedded_tests, profile};
@@ -52,6 +52,8 @@ enum Cli {
     Parameters(parameters::Arguments),
     /// How close the skin on the display comes to the skin on the real material, law by law
     Fidelity(fidelity::Arguments),
+    /// How closely the display follows steps, ramps, pulses and a recorded course, and how fast the tile is
+    Tracking(tracking::Arguments),
     /// The fault-injection matrix: every single fault, at moments of many scenes
     Faults(faults::Arguments),
     /// Recompute the thesis's tables and model figures and lay them beside what it states
@@ -79,6 +81,7 @@ fn main() -> ExitCode {
         Cli::Roughness(arguments) => roughness::run(&arguments),
         Cli::Parameters(arguments) => parameters::run(&arguments),
         Cli::Fidelity(arguments) => fidelity::run(&arguments),
+        Cli::Tracking(arguments) => tracking::run(&arguments),
         Cli::Faults(arguments) => faults::run(&arguments),
         Cli::Thesis(arguments) => thesis::run(&arguments),
     };

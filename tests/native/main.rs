@@ -9,4 +9,5 @@ mod hold_stability;
 mod processor_faults;
 mod range_limits;
 mod settings_storage;
+mod voltage_feedforward;
 mod weak_module;

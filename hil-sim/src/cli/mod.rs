@@ -23,5 +23,6 @@ pub mod roughness;
 pub mod run;
 pub mod serve;
 pub mod thesis;
+pub mod tracking;
 
 pub use thermal_sim::Failure;

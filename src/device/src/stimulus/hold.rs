@@ -86,7 +86,7 @@ mod tests {
                     // The rate is rounded to 2^-22 K/s, and the duration up to a tick.
                     let rounding_k = 1e-6 + 1e-5 * way_k.abs() + 1.01e-3 * rate_k_s;
                     for (celsius, tick) in
-                        [(temperatures.now, tick), (temperatures.ahead, tick + 12)]
+                        [(temperatures.now, tick), (temperatures.ahead, tick + 14)]
                     {
                         let error_k = (celsius.to_num::<f64>() - at(tick)).abs();
                         assert!(error_k <= rounding_k, "{rate_k_s} {tick}: {error_k}");
