@@ -83,6 +83,10 @@ enum Kind {
 }
 
 /// What a line of an upload has completed.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no allocator; a step lives for one line"
+)]
 #[derive(Debug)]
 pub enum UploadStep {
     /// Nothing yet: the begin of an object, or a row.
