@@ -9,5 +9,6 @@ mod hold_stability;
 mod processor_faults;
 mod range_limits;
 mod settings_storage;
+mod tracking;
 mod voltage_feedforward;
 mod weak_module;

@@ -168,7 +168,10 @@ impl TrackingCase {
             let error_k = row.display_c - wanted_c;
             let counted_k = if self.stimulus.is_step {
                 // Beyond the target: above the upper one, or below the lower one.
-                let up = wanted_c > course.points()[0].celsius;
+                let [from, to, ..] = course.points() else {
+                    anyhow::bail!("a step has two temperatures");
+                };
+                let up = wanted_c > 0.5 * (from.celsius + to.celsius);
                 if up {
                     error_k.max(0.0)
                 } else {

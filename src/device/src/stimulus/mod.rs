@@ -31,10 +31,10 @@ pub const STIMULUS_LEAD_TICKS: u32 = 14;
 /// reported as `limited`: the tile cannot keep the rate.
 pub const FOLLOWING_ERROR_LIMITED: Celsius = Celsius::lit("0.1");
 
-/// Divisor, as a power of two, of the distance that the target is ahead of a display that lags behind a step: 2^3 = 8. The
-/// display then approaches the step with a time constant of 8 times 12 ms, so that the observer has time to unlearn the
+/// Divisor, as a power of two, of the distance that the target is ahead of a display that lags behind a step: 2^4 = 16. The
+/// display then approaches the step with a time constant of 16 times 12 ms, so that the observer has time to unlearn the
 /// error of the plate model at the current limit, which else carries the display beyond its set-point.
-pub const STEP_APPROACH_SHIFT: u32 = 3;
+pub const STEP_APPROACH_SHIFT: u32 = 4;
 
 /// What the display does in the state stimulus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
