@@ -227,7 +227,7 @@ impl Default for Settings {
                 legs_ohm: 1.061,
                 leads_ohm: 0.05,
                 seebeck_v_k: 0.0273,
-                dead_time_v: 0.214,
+                dead_time_v: 0.21,
                 ripple_a: 7.05,
                 dead_time_a: 0.24,
                 supply_v: 12.0,

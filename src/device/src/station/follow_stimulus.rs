@@ -160,8 +160,6 @@ impl Station {
         let State::Stimulus(stimulus) = &mut self.state else {
             return None;
         };
-        // A course follows its points as fast as the tile can; a `hold` approaches its step without passing it.
-        let approaches_step = matches!(stimulus, Stimulus::Hold(_) | Stimulus::Wait(_));
         let (temperatures, ended) = match stimulus {
             Stimulus::Hold(hold) => (hold.next_temperatures(), None),
             Stimulus::Wait(_) => {
@@ -174,6 +172,15 @@ impl Station {
             }
             Stimulus::Play(player) => player.next_temperatures(course.points()),
         };
+        let surface = estimate.previous_surface;
+        let lag = temperatures.now.saturating_sub(surface);
+        let lags = lag.abs() > FOLLOWING_ERROR_LIMITED;
+        // A course follows its points as fast as the tile can; a step is approached without passing it.
+        let approaches_step = match stimulus {
+            Stimulus::Hold(hold) => hold.approaches_end(lags),
+            Stimulus::Wait(_) => lags,
+            Stimulus::Play(_) => false,
+        };
         if ended.is_some() {
             self.events.note(DeviceEventKind::End, self.tick, 0);
         }
@@ -184,10 +191,7 @@ impl Station {
                 self.apply_event(Event::EndNeutral);
             }
         }
-        let surface = estimate.previous_surface;
-        let lag = temperatures.now.saturating_sub(surface);
-        let lags = lag.abs() > FOLLOWING_ERROR_LIMITED;
-        let target = if lags && approaches_step {
+        let target = if approaches_step {
             surface.saturating_add(lag >> STEP_APPROACH_SHIFT)
         } else {
             temperatures.ahead

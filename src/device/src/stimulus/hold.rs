@@ -12,6 +12,8 @@ use crate::safety::Setpoint;
 pub struct Hold {
     now: Ramp,
     ahead: Ramp,
+    /// Whether the display has been at the end of the way.
+    has_arrived: bool,
 }
 
 impl Hold {
@@ -33,6 +35,7 @@ impl Hold {
         Self {
             now: ramp,
             ahead: ramp,
+            has_arrived: true,
         }
     }
 
@@ -43,7 +46,17 @@ impl Hold {
         Self {
             now: ramp,
             ahead: ramp,
+            has_arrived: true,
         }
+    }
+
+    /// Whether the display approaches the end for the first time: the set-point is there, and the display, which `lags` or
+    /// not, has not been there. Later the display must be held with the whole gain of the control law; with less, a tile
+    /// that differs from its model would oscillate.
+    pub const fn approaches_end(&mut self, lags: bool) -> bool {
+        let is_at_end = self.now.ticks_left() == 0;
+        self.has_arrived |= is_at_end && !lags;
+        is_at_end && !self.has_arrived
     }
 
     /// Moves on by one tick, and returns where the set-point is then.
