@@ -35,7 +35,7 @@ impl Hold {
         Self {
             now: ramp,
             ahead: ramp,
-            has_arrived: true,
+            has_arrived: false,
         }
     }
 
