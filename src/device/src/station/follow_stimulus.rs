@@ -11,8 +11,8 @@ use crate::reference::Reference;
 use crate::safety::Setpoint;
 use crate::safety::limits::{SETPOINT_MAX, SETPOINT_MIN};
 use crate::stimulus::{
-    Course, CourseEnd, CoursePart, CourseStart, CourseTemperatures, FOLLOWING_ERROR_LIMITED, Hold,
-    PlayOrder, Player, STEP_APPROACH_SHIFT, Stimulus, StimulusTemperatures,
+    Approach, Course, CourseEnd, CoursePart, CourseStart, CourseTemperatures,
+    FOLLOWING_ERROR_LIMITED, Hold, PlayOrder, Player, Stimulus, StimulusTemperatures,
 };
 
 impl Station {
@@ -77,7 +77,10 @@ impl Station {
             return Err(Refused::CourseDose(dose));
         }
         self.courses.play_loaded();
-        self.apply_known_event(Event::Stimulate(&Stimulus::Wait(*order)));
+        self.apply_known_event(Event::Stimulate(&Stimulus::Wait(
+            *order,
+            Approach::Underway,
+        )));
         self.identified.outcome = None;
         if order.start == CourseStart::Now {
             self.begin_course(0, self.tick.wrapping_add(1));
@@ -121,13 +124,13 @@ impl Station {
     }
 
     fn waits_for(&self, start: CourseStart) -> bool {
-        matches!(&self.state, State::Stimulus(Stimulus::Wait(order)) if order.start == start)
+        matches!(&self.state, State::Stimulus(Stimulus::Wait(order, _)) if order.start == start)
     }
 
     /// Begins the course that waits, if one does, with `elapsed` ticks of it behind the next reference; `tick` is the one
     /// to which its time 0 belongs.
     fn begin_course(&mut self, elapsed: u32, tick: u32) {
-        if let State::Stimulus(Stimulus::Wait(order)) = self.state {
+        if let State::Stimulus(Stimulus::Wait(order, _)) = self.state {
             let course = self.courses.playing();
             let player = Player::new(course.points(), self.base_of(course), &order, elapsed);
             self.state = State::Stimulus(Stimulus::Play(player));
@@ -160,26 +163,15 @@ impl Station {
         let State::Stimulus(stimulus) = &mut self.state else {
             return None;
         };
+        let surface = estimate.previous_surface;
         let (temperatures, ended) = match stimulus {
-            Stimulus::Hold(hold) => (hold.next_temperatures(), None),
-            Stimulus::Wait(_) => {
-                let first = course.points().first()?.temperature.saturating_add(base);
-                let waiting = StimulusTemperatures {
-                    now: first,
-                    ahead: first,
-                };
-                (waiting, None)
+            Stimulus::Hold(hold) => (hold.next_temperatures(surface), None),
+            Stimulus::Wait(_, approach) => {
+                let now = course.points().first()?.temperature.saturating_add(base);
+                let target = approach.target(surface, now);
+                (StimulusTemperatures { now, target }, None)
             }
             Stimulus::Play(player) => player.next_temperatures(course.points()),
-        };
-        let surface = estimate.previous_surface;
-        let lag = temperatures.now.saturating_sub(surface);
-        let lags = lag.abs() > FOLLOWING_ERROR_LIMITED;
-        // A course follows its points as fast as the tile can; a step is approached without passing it.
-        let approaches_step = match stimulus {
-            Stimulus::Hold(hold) => hold.approaches_end(lags),
-            Stimulus::Wait(_) => lags,
-            Stimulus::Play(_) => false,
         };
         if ended.is_some() {
             self.events.note(DeviceEventKind::End, self.tick, 0);
@@ -191,13 +183,9 @@ impl Station {
                 self.apply_event(Event::EndNeutral);
             }
         }
-        let target = if approaches_step {
-            surface.saturating_add(lag >> STEP_APPROACH_SHIFT)
-        } else {
-            temperatures.ahead
-        };
-        let mut reference = Reference::limited_to_safe_range(temperatures.now, target);
-        reference.limited |= lags;
+        let StimulusTemperatures { now, target } = temperatures;
+        let mut reference = Reference::limited_to_safe_range(now, target);
+        reference.limited |= now.abs_diff(surface) > FOLLOWING_ERROR_LIMITED;
         Some(reference)
     }
 }

@@ -139,7 +139,7 @@ impl State {
     /// Whether a course plays or waits to begin. What would disturb it is refused, as while an object is presented.
     #[must_use]
     pub const fn is_presenting_course(&self) -> bool {
-        matches!(self, Self::Stimulus(Stimulus::Wait(_) | Stimulus::Play(_)))
+        matches!(self, Self::Stimulus(Stimulus::Wait(..) | Stimulus::Play(_)))
     }
 
     /// The fault that has tripped the station; `None` in every state other than tripped.

@@ -3,7 +3,7 @@
 use contact_model::fixed_point::Celsius;
 
 use super::ramp::Ramp;
-use super::{STIMULUS_LEAD_TICKS, StimulusTemperatures};
+use super::{Approach, STIMULUS_LEAD_TICKS, StimulusTemperatures};
 use crate::TICK_HZ;
 use crate::safety::Setpoint;
 
@@ -12,8 +12,7 @@ use crate::safety::Setpoint;
 pub struct Hold {
     now: Ramp,
     ahead: Ramp,
-    /// Whether the display has been at the end of the way.
-    has_arrived: bool,
+    approach: Approach,
 }
 
 impl Hold {
@@ -35,7 +34,7 @@ impl Hold {
         Self {
             now: ramp,
             ahead: ramp,
-            has_arrived: false,
+            approach: Approach::Underway,
         }
     }
 
@@ -46,31 +45,24 @@ impl Hold {
         Self {
             now: ramp,
             ahead: ramp,
-            has_arrived: true,
+            approach: Approach::Over,
         }
     }
 
-    /// Whether the display approaches the end for the first time: the set-point is there, and the display, which `lags` or
-    /// not, has not been there. Later the display must be held with the whole gain of the control law; with less, a tile
-    /// that differs from its model would oscillate.
-    pub const fn approaches_end(&mut self, lags: bool) -> bool {
-        let is_at_end = self.now.ticks_left() == 0;
-        self.has_arrived |= is_at_end && !lags;
-        is_at_end && !self.has_arrived
-    }
-
-    /// Moves on by one tick, and returns where the set-point is then.
-    pub fn next_temperatures(&mut self) -> StimulusTemperatures {
+    /// Moves on by one tick, and returns the temperatures of that tick for a display with this surface, °C.
+    pub fn next_temperatures(&mut self, surface: Celsius) -> StimulusTemperatures {
         // In the first tick, and not in the command, which locks out the tick of the next finger.
         if self.ahead.ticks_left() == self.now.ticks_left() {
             self.ahead.skip(STIMULUS_LEAD_TICKS);
         }
         self.now.advance();
         self.ahead.advance();
-        StimulusTemperatures {
-            now: self.now.celsius(),
-            ahead: self.ahead.celsius(),
-        }
+        let now = self.now.celsius();
+        let target = match self.now.ticks_left() {
+            0 => self.approach.target(surface, now),
+            _ => self.ahead.celsius(),
+        };
+        StimulusTemperatures { now, target }
     }
 }
 
@@ -95,17 +87,18 @@ mod tests {
                 };
                 let ticks = (1e3 * way_k.abs() / rate_k_s) as u32 + 50;
                 for tick in 1..ticks {
-                    let temperatures = hold.next_temperatures();
+                    let temperatures = hold.next_temperatures(Celsius::from_num(at(tick)));
                     // The rate is rounded to 2^-22 K/s, and the duration up to a tick.
                     let rounding_k = 1e-6 + 1e-5 * way_k.abs() + 1.01e-3 * rate_k_s;
                     for (celsius, tick) in
-                        [(temperatures.now, tick), (temperatures.ahead, tick + 14)]
+                        [(temperatures.now, tick), (temperatures.target, tick + 14)]
                     {
                         let error_k = (celsius.to_num::<f64>() - at(tick)).abs();
                         assert!(error_k <= rounding_k, "{rate_k_s} {tick}: {error_k}");
                     }
                 }
-                assert_eq!(hold.next_temperatures().now, setpoint(target_c).celsius());
+                let end = setpoint(target_c).celsius();
+                assert_eq!(hold.next_temperatures(end).now, end);
             }
         }
     }
@@ -113,8 +106,10 @@ mod tests {
     #[test]
     fn a_start_outside_the_range_is_moved_to_the_nearest_set_point() {
         let mut hold = Hold::new(Celsius::lit("42.6"), Setpoint::MAX, Hold::DEFAULT_RATE_K_S);
-        assert_eq!(hold.next_temperatures().now, Setpoint::MAX.celsius());
+        let first = hold.next_temperatures(Celsius::ZERO);
+        assert_eq!(first.now, Setpoint::MAX.celsius());
         let mut hold = Hold::new(Celsius::lit("-20"), Setpoint::MAX, Hold::DEFAULT_RATE_K_S);
-        assert!(hold.next_temperatures().now < Celsius::lit("15.01"));
+        let first = hold.next_temperatures(Celsius::ZERO);
+        assert!(first.now < Celsius::lit("15.01"));
     }
 }

@@ -6,6 +6,7 @@
 //! hold ------------------------------------> Hold --+-- Ramp: exact interpolation in integers
 //! ```
 
+mod approach;
 mod course;
 mod course_memory;
 mod dose_of_course;
@@ -13,6 +14,7 @@ mod hold;
 mod player;
 mod ramp;
 
+pub use approach::Approach;
 pub use course::{
     COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, Course, CourseError,
     CoursePart, CoursePoint, CourseTemperatures,
@@ -31,28 +33,23 @@ pub const STIMULUS_LEAD_TICKS: u32 = 14;
 /// reported as `limited`: the tile cannot keep the rate.
 pub const FOLLOWING_ERROR_LIMITED: Celsius = Celsius::lit("0.1");
 
-/// Divisor, as a power of two, of the distance that the target is ahead of a display that lags behind a step: 2^4 = 16. The
-/// display then approaches the step with a time constant of 16 times 12 ms, so that the observer has time to unlearn the
-/// error of the plate model at the current limit, which else carries the display beyond its set-point.
-pub const STEP_APPROACH_SHIFT: u32 = 4;
-
 /// What the display does in the state stimulus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Stimulus {
     /// The set-point moves to a temperature and stays there.
     Hold(Hold),
-    /// A course waits on its first point for what starts it.
-    Wait(PlayOrder),
+    /// A course waits on its first point, which the display approaches, for what starts it.
+    Wait(PlayOrder, Approach),
     /// A course plays.
     Play(Player),
 }
 
-/// Set-point of one tick, and where it will be when the control law has reached its target.
+/// Set-point of one tick, and the target of the control law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StimulusTemperatures {
     /// Temperature of this tick, °C.
     pub now: Celsius,
-    /// Temperature [`STIMULUS_LEAD_TICKS`] later, °C.
-    pub ahead: Celsius,
+    /// What the law aims at, °C: the set-point [`STIMULUS_LEAD_TICKS`] later, or a part of the way to a constant one.
+    pub target: Celsius,
 }

@@ -159,7 +159,7 @@ impl Player {
     ) -> (StimulusTemperatures, Option<CourseEnd>) {
         let temperatures = StimulusTemperatures {
             now: self.now.ramp.celsius().saturating_add(self.base),
-            ahead: self.ahead.ramp.celsius().saturating_add(self.base),
+            target: self.ahead.ramp.celsius().saturating_add(self.base),
         };
         let ended = self.now.is_at_end(points).then_some(self.end);
         self.now.advance(points, 1);

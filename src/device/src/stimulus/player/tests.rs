@@ -69,7 +69,7 @@ proptest! {
         for ms in elapsed..total_ms + 100 {
             let (temperatures, ended) = player.next_temperatures(&points);
             prop_assert_eq!(i128::from(temperatures.now.to_bits()), at(ms), "{} ms", ms);
-            prop_assert_eq!(i128::from(temperatures.ahead.to_bits()), at(ms + 14), "{} ms", ms);
+            prop_assert_eq!(i128::from(temperatures.target.to_bits()), at(ms + 14), "{} ms", ms);
             prop_assert_eq!(ended, (ms >= total_ms).then_some(CourseEnd::Neutral), "{} ms", ms);
         }
     }
