@@ -128,7 +128,7 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     client
         .ask(&PlainCommand::Store(StorageOrder::Forget))
         .unwrap();
-    assert!((client.ask(&QueryMargins).unwrap().gain_k_s_a - 2.91).abs() < 1e-9);
+    assert!((client.ask(&QueryMargins).unwrap().gain_k_s_a - 2.957).abs() < 1e-9);
 }
 
 #[test]

@@ -13,12 +13,12 @@ use super::{COOLANTS_C, ROOM_C};
 /// Temperatures between which the mean rate is measured, °C.
 const FROM_C: f64 = 28.0;
 const TO_C: f64 = 34.0;
-/// When the display goes to the cold end, from there to the warm one, and back, s.
-const ORDERS: [(f64, &str); 3] = [
-    (0.05, "hold 20 5"),
-    (10.0, "hold 41 100"),
-    (20.0, "hold 20 100"),
-];
+/// Lines that bring the display to the cold end and, when it is there, from there to the warm one and back, s. A course is
+/// followed as fast as the tile can, where a hold slows down before its end.
+const ORDERS: [(f64, &str); 2] = [(0.05, "hold 20 5"), (WARM_S, "pulse 20 41 100 9.79 100")];
+/// When the display starts for the warm end, and for the cold one, s.
+const WARM_S: f64 = 10.0;
+const COLD_S: f64 = 20.0;
 const END_S: f64 = 34.0;
 
 /// A tile whose sink is cooled to a temperature.
@@ -70,7 +70,6 @@ impl LimitCase {
             anyhow::bail!("{} at {} s", trip.fault, trip.t_s);
         }
         let rows = outcome.trace.rows();
-        let [_, (warm_s, _), (cool_s, _)] = ORDERS;
         let reaches = |from_s: f64, reached: &dyn Fn(&TraceRow) -> bool| {
             let mut later = rows.iter().filter(|row| row.t_s >= from_s);
             later.find(|row| reached(row)).map(|row| row.t_s)
@@ -83,12 +82,12 @@ impl LimitCase {
             touch: self.touch,
             coolant_c: self.coolant_c,
             heating_k_s: rate(
-                reaches(warm_s, &|row| row.display_c >= FROM_C),
-                reaches(warm_s, &|row| row.display_c >= TO_C),
+                reaches(WARM_S, &|row| row.display_c >= FROM_C),
+                reaches(WARM_S, &|row| row.display_c >= TO_C),
             ),
             cooling_k_s: rate(
-                reaches(cool_s, &|row| row.display_c <= TO_C),
-                reaches(cool_s, &|row| row.display_c <= FROM_C),
+                reaches(COLD_S, &|row| row.display_c <= TO_C),
+                reaches(COLD_S, &|row| row.display_c <= FROM_C),
             ),
         })
     }

@@ -76,10 +76,11 @@ impl Station {
         if dose.reaches_limit() {
             return Err(Refused::CourseDose(dose));
         }
+        let first = course.first_temperature().saturating_add(base);
         self.courses.play_loaded();
         self.apply_known_event(Event::Stimulate(&Stimulus::Wait(
             *order,
-            Approach::Underway,
+            Approach::to(first),
         )));
         self.identified.outcome = None;
         if order.start == CourseStart::Now {
@@ -167,8 +168,8 @@ impl Station {
         let (temperatures, ended) = match stimulus {
             Stimulus::Hold(hold) => (hold.next_temperatures(surface), None),
             Stimulus::Wait(_, approach) => {
-                let now = course.points().first()?.temperature.saturating_add(base);
-                let target = approach.target(surface, now);
+                let now = course.first_temperature().saturating_add(base);
+                let target = approach.next_target(surface, now);
                 (StimulusTemperatures { now, target }, None)
             }
             Stimulus::Play(player) => player.next_temperatures(course.points()),

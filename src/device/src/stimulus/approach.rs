@@ -2,34 +2,48 @@
 
 use contact_model::fixed_point::Celsius;
 
-/// Divisor, as a power of two, of the distance that the target is ahead of a display on its way: 2^5 = 32. The display then
-/// approaches the end with a time constant of 32 times the law's 12 ms, so that the observer has time to unlearn the error
-/// of the plate model at the current limit, which else carries the display beyond its set-point.
-const APPROACH_SHIFT: u32 = 5;
-/// Distance, K, of the display's surface from the end at which it has arrived.
-const ARRIVED_WITHIN: Celsius = Celsius::lit("0.02");
+/// Time constant, ticks of 1 ms, with which the target comes to the end. The observer needs this time to unlearn the error of
+/// the plate model at the current limit, which else carries the display beyond the end.
+const APPROACH_TICKS: i32 = 384;
+/// Largest distance, K, of the target from the display's surface: what the law, which reaches its target after 12 ms, drives
+/// with about the largest current.
+const AHEAD_MAX: Celsius = Celsius::lit("0.5");
+/// Distance, K, of the target from the end at which the approach is over.
+const NEAR: Celsius = Celsius::lit("0.01");
 
-/// Whether the display has been at a temperature that it is held at.
+/// A target of the control law on its way to a constant temperature. It waits for a display that cannot follow, and slows
+/// down before the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Approach {
-    /// It is on its way there.
-    Underway,
-    /// It has been there. From then on it is held with the whole gain of the control law; with the small one of the
-    /// approach, a tile that differs from its model would oscillate.
+    /// The target was at this temperature, °C.
+    Underway(Celsius),
+    /// The target has been at the end, and stays there whatever the display does.
     Over,
 }
 
 impl Approach {
-    /// Target of the control law, °C, for a display whose surface, °C, is to be at `end`, °C.
-    pub fn target(&mut self, surface: Celsius, end: Celsius) -> Celsius {
-        let distance = end.saturating_sub(surface);
-        if distance.abs() <= ARRIVED_WITHIN {
-            *self = Self::Over;
-        }
-        match self {
-            Self::Underway => surface.saturating_add(distance >> APPROACH_SHIFT),
-            Self::Over => end,
-        }
+    /// To `end`, °C.
+    #[must_use]
+    pub const fn to(end: Celsius) -> Self {
+        Self::Underway(end)
+    }
+
+    /// Moves on by one tick. Returns the target, °C, for a display whose surface, °C, is to be at `end`, °C.
+    pub fn next_target(&mut self, surface: Celsius, end: Celsius) -> Celsius {
+        let Self::Underway(last) = *self else {
+            return end;
+        };
+        let moved = last.saturating_add(end.saturating_sub(last) / APPROACH_TICKS);
+        let target = moved.clamp(
+            surface.saturating_sub(AHEAD_MAX),
+            surface.saturating_add(AHEAD_MAX),
+        );
+        *self = if target.abs_diff(end) <= NEAR {
+            Self::Over
+        } else {
+            Self::Underway(target)
+        };
+        target
     }
 }
 
@@ -38,13 +52,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_gain_is_small_until_the_display_has_been_at_the_end() {
-        let mut approach = Approach::Underway;
-        let end = Celsius::lit("30");
-        let mut target_at = |surface: &str| approach.target(surface.parse().expect("°C"), end);
-        assert_eq!(target_at("26"), Celsius::lit("26.125"));
-        assert_eq!(target_at("34"), Celsius::lit("33.875"));
-        assert_eq!(target_at("29.99"), end);
-        assert_eq!(target_at("26"), end);
+    fn the_target_waits_for_the_display_and_then_slows_down_once() {
+        let (end, start) = (Celsius::lit("30"), Celsius::lit("26"));
+        let mut approach = Approach::to(end);
+        for _ in 0..100 {
+            assert_eq!(approach.next_target(start, end), start + AHEAD_MAX);
+        }
+        let mut surface = start;
+        let mut previous = start;
+        let mut slow_ticks = 0;
+        while approach != Approach::Over {
+            // A display that moves by at most 20 mK a tick.
+            let target = approach.next_target(surface, end);
+            assert!(previous <= target && target <= end, "{target}");
+            slow_ticks += u32::from(target.saturating_sub(surface) < AHEAD_MAX);
+            previous = target;
+            surface = target.min(surface.saturating_add(Celsius::lit("0.02")));
+        }
+        assert!((384..3840).contains(&slow_ticks), "{slow_ticks}");
+        assert_eq!(approach.next_target(start, end), end);
     }
 }

@@ -220,6 +220,12 @@ impl Course {
         self.temperatures
     }
 
+    /// Temperature of the first point, °C; 0 for a course without points.
+    #[must_use]
+    pub fn first_temperature(&self) -> Celsius {
+        (self.points.first()).map_or(Celsius::ZERO, |point| point.temperature)
+    }
+
     /// Smallest and largest temperature of the points, °C, or K above the skin.
     #[must_use]
     pub const fn extremes(&self) -> (Celsius, Celsius) {

@@ -34,7 +34,7 @@ impl Hold {
         Self {
             now: ramp,
             ahead: ramp,
-            approach: Approach::Underway,
+            approach: Approach::to(target),
         }
     }
 
@@ -59,7 +59,7 @@ impl Hold {
         self.ahead.advance();
         let now = self.now.celsius();
         let target = match self.now.ticks_left() {
-            0 => self.approach.target(surface, now),
+            0 => self.approach.next_target(surface, now),
             _ => self.ahead.celsius(),
         };
         StimulusTemperatures { now, target }
