@@ -14,7 +14,7 @@ use thermal_sim::scene::Scene;
 use crate::display::Display;
 use crate::ideal_tile::skin_on_ideal_tile;
 use crate::recording::skin_on_object;
-use crate::touch::{STEP_S, Touch};
+use crate::touch::{STEP_S, SingleContact};
 
 /// The finger of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -103,7 +103,7 @@ impl Comparison {
     /// # Errors
     /// The scene has not one simple contact, or the plant does not accept a value.
     pub fn on_ideal_tile(scene: &Scene, display: Display) -> anyhow::Result<Self> {
-        let touch = Touch::of(scene)?;
+        let touch = SingleContact::of(scene)?;
         let context = || format!("{} on {}", display.name(), scene.object.name);
         let course = display.ideal_course(scene, &touch).with_context(context)?;
         let ideal = ideal_errors(&touch, &course).with_context(context)?;
@@ -135,7 +135,7 @@ impl Comparison {
         let ideal = Self::on_ideal_tile(scene, display)?;
         let context = || format!("{} on {}", display.name(), scene.object.name);
         let (told, course_error_k) =
-            (display.scene(scene, &Touch::of(scene)?)).with_context(context)?;
+            (display.scene(scene, &SingleContact::of(scene)?)).with_context(context)?;
         let (outcome, figures) = runner.run(&told).with_context(context)?;
         let comparison = Self {
             engine: Some(figures.engine),
@@ -165,7 +165,7 @@ impl Comparison {
 }
 
 /// Time since the landing, s, and skin error, K, of a course on an ideal tile.
-fn ideal_errors(touch: &Touch, course: &Course) -> anyhow::Result<Vec<(f64, f64)>> {
+fn ideal_errors(touch: &SingleContact, course: &Course) -> anyhow::Result<Vec<(f64, f64)>> {
     let shown_c = skin_on_ideal_tile(touch, course)?;
     let real_c = skin_on_object(touch)?;
     let pairs = shown_c.iter().zip(&real_c).enumerate();

@@ -10,7 +10,7 @@ use thermal_sim::scene::Scene;
 
 use crate::rc_ladder::RcLadder;
 use crate::recording::{skin_on_object, through_sensor};
-use crate::touch::Touch;
+use crate::touch::SingleContact;
 use crate::{closed_form, layered_finger};
 
 /// Time in which the device goes from Yamamoto's static temperature to the contact temperature, s. On a half-space the touch
@@ -110,7 +110,8 @@ impl Display {
     pub const fn source(self) -> &'static str {
         match self {
             Self::HoChapter4 => {
-                "Ho 2006, chapter 4: the contact temperature of two half-spaces (Eq. 3-1), held by a digital PI controller at 10 Hz"
+                "Ho 2006, chapter 4: the contact temperature of two half-spaces (Eq. 3-1), held by a digital PI controller at \
+                 10 Hz"
             }
             Self::HoChapter6 => {
                 "Ho 2006, chapter 6: half-spaces joined by a contact resistance; the display's temperature by Eq. 6-12. The \
@@ -140,7 +141,8 @@ impl Display {
                  blood and metabolic heat, in contact with the object"
             }
             Self::Ours => {
-                "this device: Eq. 6-12 by relaxations for the finger that it is told to assume, followed by a model of plate and finger"
+                "this device: Eq. 6-12 by relaxations for the finger that it is told to assume, followed by a model of plate and \
+                 finger"
             }
         }
     }
@@ -159,21 +161,24 @@ impl Display {
                 "the display's surface shows that temperature, and waits at skin temperature"
             }
             Self::Ino => {
-                "recorded on the simulated finger, without lag or noise, on the object of the scene; the display's surface shows it"
+                "recorded on the simulated finger, without lag or noise, on the object of the scene; the display's surface \
+                 shows it"
             }
             Self::Caldwell => {
-                "recorded on the simulated finger by a sensor of 1.33 s, three of which are 4 s; shown on the fingertip, not on the \
-                 back of the finger"
+                "recorded on the simulated finger by a sensor of 1.33 s, three of which are 4 s; shown on the fingertip, not on \
+                 the back of the finger"
             }
             Self::BenaliKhoudja => {
-                "10 equal cells each for finger and object, three diffusion lengths deep; Eq. 6-8 for the resistance; the display's \
-                 surface shows the predicted skin"
+                "10 equal cells each for finger and object, three diffusion lengths deep; Eq. 6-8 for the resistance; the \
+                 display's surface shows the predicted skin"
             }
             Self::LayeredBioHeat => {
                 "three layers with typical values, of which blood flows in two; no contact resistance, which the thesis says was \
                  rarely evaluated; the display's surface shows the predicted skin"
             }
-            Self::Ours => "nothing",
+            Self::Ours => {
+                "Eq. 6-8, and that it is told which finger touches: its layers without blood, or the half-space"
+            }
         }
     }
 
@@ -181,7 +186,7 @@ impl Display {
     ///
     /// # Errors
     /// The scene's plant does not accept a value.
-    pub fn ideal_course(self, scene: &Scene, touch: &Touch) -> Result<Course, ConfigError> {
+    pub fn ideal_course(self, scene: &Scene, touch: &SingleContact) -> Result<Course, ConfigError> {
         Ok(match self {
             Self::HoChapter4 | Self::Yamamoto => closed_form::constant(touch),
             Self::HoChapter6 => closed_form::with_resistance(touch),
@@ -203,7 +208,7 @@ impl Display {
     ///
     /// # Errors
     /// The scene's plant does not accept a value.
-    pub fn showing(self, scene: &Scene, touch: &Touch) -> Result<Showing, ConfigError> {
+    pub fn showing(self, scene: &Scene, touch: &SingleContact) -> Result<Showing, ConfigError> {
         let own = Showing::Mode {
             model: ContactModel::ContactResistance,
             law: scene.law.unwrap_or(Law::Model),
@@ -244,7 +249,11 @@ impl Display {
     ///
     /// # Errors
     /// The scene's plant does not accept a value.
-    pub fn scene(self, scene: &Scene, touch: &Touch) -> Result<(Scene, Option<f64>), ConfigError> {
+    pub fn scene(
+        self,
+        scene: &Scene,
+        touch: &SingleContact,
+    ) -> Result<(Scene, Option<f64>), ConfigError> {
         let mut scene = scene.clone();
         let error_k = match self.showing(&scene, touch)? {
             Showing::Mode { model, law, finger } => {

@@ -4,7 +4,7 @@ use thermal_client::course::Course;
 use thermal_plant::ConfigError;
 use thermal_plant::slab::{Grading, Slab, SlabBatch, steady_state};
 
-use crate::touch::{STEP_S, Touch};
+use crate::touch::{STEP_S, SingleContact};
 
 /// Parts of the first step, in which temperatures change most.
 const FIRST_PARTS: u32 = 128;
@@ -18,7 +18,7 @@ const PART: usize = 1;
 ///
 /// # Errors
 /// The scene's plant does not accept a value.
-pub fn skin_on_ideal_tile(touch: &Touch, course: &Course) -> Result<Vec<f64>, ConfigError> {
+pub fn skin_on_ideal_tile(touch: &SingleContact, course: &Course) -> Result<Vec<f64>, ConfigError> {
     touch.plant.check()?;
     let params = &touch.plant.params;
     let finger = &params.finger;

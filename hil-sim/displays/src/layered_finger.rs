@@ -7,7 +7,7 @@ use thermal_plant::{ConfigError, Params, PlantConfig};
 
 use crate::closed_form;
 use crate::recording::touch_object;
-use crate::touch::Touch;
+use crate::touch::SingleContact;
 
 /// Contact law and factor on the contact resistance with which nearly none is left: 1e-7 m² K/W.
 const NEARLY_PERFECT: ContactLaw = ContactLaw {
@@ -20,7 +20,7 @@ const RESISTANCE_FACTOR: f64 = 0.01;
 ///
 /// # Errors
 /// The scene's plant does not accept a value.
-pub fn bio_heat(touch: &Touch) -> Result<Course, ConfigError> {
+pub fn bio_heat(touch: &SingleContact) -> Result<Course, ConfigError> {
     let finger = FingerParams {
         vessels: None,
         resistance_factor: RESISTANCE_FACTOR,
@@ -42,7 +42,7 @@ pub fn bio_heat(touch: &Touch) -> Result<Course, ConfigError> {
 ///
 /// # Errors
 /// The scene's plant does not accept a value.
-pub fn mean_finger(touch: &Touch) -> Result<Course, ConfigError> {
+pub fn mean_finger(touch: &SingleContact) -> Result<Course, ConfigError> {
     let mut finger = FingerParams {
         vessels: None,
         ..FingerParams::layered()
@@ -64,7 +64,7 @@ pub fn mean_finger(touch: &Touch) -> Result<Course, ConfigError> {
 }
 
 /// The touch's plant with a nominal device and another finger and contact.
-fn with_finger(touch: &Touch, finger: FingerParams, contact: ContactLaw) -> PlantConfig {
+fn with_finger(touch: &SingleContact, finger: FingerParams, contact: ContactLaw) -> PlantConfig {
     PlantConfig {
         params: Params {
             finger,

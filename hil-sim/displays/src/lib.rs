@@ -16,4 +16,4 @@ pub use display::{Display, Showing, YAMAMOTO_RAMP_S};
 pub use ideal_tile::skin_on_ideal_tile;
 pub use rc_ladder::RcLadder;
 pub use report::{chart, page, table};
-pub use touch::{NoTouch, Touch};
+pub use touch::{NoSingleContact, SingleContact};

@@ -12,7 +12,7 @@ use contact_model::reference::contact_resistance;
 use thermal_client::course::Course;
 use thermal_plant::slab::{Slab, SlabBatch};
 
-use crate::touch::{STEP_S, Touch};
+use crate::touch::{STEP_S, SingleContact};
 
 /// Depth of a ladder in diffusion lengths `sqrt(alpha t)` of the contact.
 const DEPTH: f64 = 3.0;
@@ -27,10 +27,9 @@ pub struct RcLadder {
 }
 
 impl RcLadder {
-    /// Surface temperature of the skin, °C (`from_surface_c` of the course: at the landing itself that of the first instant, when
-    /// only the resistors divide the difference).
+    /// Surface temperature of the skin, °C. At the landing only the resistors divide the difference of skin and object.
     #[must_use]
-    pub fn skin(&self, touch: &Touch) -> Course {
+    pub fn skin(&self, touch: &SingleContact) -> Course {
         let resistance_m2k_w: f64 = contact_resistance(
             &SKIN.surface,
             &touch.object.surface,

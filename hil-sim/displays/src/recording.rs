@@ -4,13 +4,13 @@ use thermal_client::course::Course;
 use thermal_plant::bridge::BridgeOutputs;
 use thermal_plant::{ConfigError, Plant};
 
-use crate::touch::Touch;
+use crate::touch::SingleContact;
 
 /// Surface of the scene's skin on the real object, °C, at the landing and after each step of 1 ms.
 ///
 /// # Errors
 /// The scene's plant does not accept a value.
-pub fn skin_on_object(touch: &Touch) -> Result<Vec<f64>, ConfigError> {
+pub fn skin_on_object(touch: &SingleContact) -> Result<Vec<f64>, ConfigError> {
     let mut skin_c = Vec::new();
     touch_object(&touch.plant, touch, |plant| {
         skin_c.push(plant.skin_real_c())
@@ -24,7 +24,7 @@ pub fn skin_on_object(touch: &Touch) -> Result<Vec<f64>, ConfigError> {
 /// The plant does not accept a value.
 pub(crate) fn touch_object(
     config: &thermal_plant::PlantConfig,
-    touch: &Touch,
+    touch: &SingleContact,
     mut observe: impl FnMut(&Plant),
 ) -> Result<(), ConfigError> {
     let mut plant = Plant::new(config)?;
@@ -38,7 +38,7 @@ pub(crate) fn touch_object(
 }
 
 /// The recording as it was measured: by a sensor of a time constant, s (0 for none).
-pub(crate) fn through_sensor(touch: &Touch, skin_c: &[f64], lag_s: f64) -> Course {
+pub(crate) fn through_sensor(touch: &SingleContact, skin_c: &[f64], lag_s: f64) -> Course {
     let share = if lag_s > 0.0 {
         1.0 - (-crate::touch::STEP_S / lag_s).exp()
     } else {

@@ -10,7 +10,7 @@ pub(crate) const STEP_S: f64 = thermal_plant::STEP_S;
 
 /// A finger that lands on an object at once and stays under a constant force.
 #[derive(Clone, Debug)]
-pub struct Touch {
+pub struct SingleContact {
     /// Time of the landing in the scene, s.
     pub landing_s: f64,
     /// Duration of the contact, s.
@@ -37,18 +37,18 @@ pub struct Touch {
     "an earlier display is computed for one contact: one [[force]] above 0 without ramp_s on an object that is there from the \
      start, and at most one more, of 0, that ends it"
 )]
-pub struct NoTouch;
+pub struct NoSingleContact;
 
-impl Touch {
+impl SingleContact {
     /// The contact of a scene.
     ///
     /// # Errors
     /// The scene has none, more than one, or one that changes.
-    pub fn of(scene: &Scene) -> Result<Self, NoTouch> {
+    pub fn of(scene: &Scene) -> Result<Self, NoSingleContact> {
         let (landing, lift_s) = match scene.forces.as_slice() {
             [landing] => (landing, scene.duration_s),
             [landing, lift] if lift.force_n == 0.0 && lift.ramp_s == 0.0 => (landing, lift.t_s),
-            _ => return Err(NoTouch),
+            _ => return Err(NoSingleContact),
         };
         let &Force {
             t_s,
@@ -56,7 +56,7 @@ impl Touch {
             ramp_s,
         } = landing;
         if force_n <= 0.0 || ramp_s != 0.0 || scene.object.appears_t_s > 0.0 {
-            return Err(NoTouch);
+            return Err(NoSingleContact);
         }
         let contact_s = lift_s - t_s;
         let tile = &scene.params.tile;

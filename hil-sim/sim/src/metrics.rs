@@ -179,7 +179,7 @@ pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
     let evaluations = || {
         rows.iter()
             .filter_map(|row| row.device.as_ref())
-            .map(|device| u64::from(device.evaluations))
+            .filter_map(|device| device.evaluations.map(u64::from))
     };
     let skins = || rows.iter().map(|row| row.skin_c);
     let mut exchanges = outcome.exchanges();

@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use earlier_displays::{
-    Comparison, Display, Report, Showing, Tissue, Touch, chart, page, scene, table,
+    Comparison, Display, Report, Showing, SingleContact, Tissue, chart, page, scene, table,
 };
 use serde::Serialize;
 use thermal_campaigns::parallel_map;
@@ -174,8 +174,8 @@ fn write(folder: &Path, report: &Report) -> anyhow::Result<()> {
     output::write(folder, SVG, svg)
 }
 
-fn touch(scene: &Scene, path: &Path) -> Result<Touch, Failure> {
-    Touch::of(scene).map_err(|error| Failure::input(anyhow!("{}: {error}", path.display())))
+fn touch(scene: &Scene, path: &Path) -> Result<SingleContact, Failure> {
+    SingleContact::of(scene).map_err(|error| Failure::input(anyhow!("{}: {error}", path.display())))
 }
 
 fn runner(arguments: &Arguments, without: EngineKind) -> Result<Box<dyn SceneRunner>, Failure> {

@@ -7,7 +7,8 @@ use clap::Args;
 use thermal_campaigns::fidelity::{Percentiles, PlantDraw};
 use thermal_campaigns::parallel_map;
 use thermal_campaigns::tracking::{
-    self, LimitCase, SENSOR_LAGS_S, Stimulus, Touch, TrackingBox, TrackingCase, TrackingReport,
+    self, LimitCase, SENSOR_LAGS_S, Stimulus, TouchingFinger, TrackingBox, TrackingCase,
+    TrackingReport,
 };
 use thermal_sim::SceneRunner;
 
@@ -57,7 +58,7 @@ fn measure(arguments: &Arguments, device: &dyn SceneRunner) -> anyhow::Result<Tr
     let stimuli = Stimulus::all();
     let mut cases = Vec::new();
     for stimulus in &stimuli {
-        for touch in Touch::ALL {
+        for touch in TouchingFinger::ALL {
             cases.extend(SENSOR_LAGS_S.map(|lag_s| TrackingCase::nominal(stimulus, touch, lag_s)));
         }
     }
@@ -66,7 +67,7 @@ fn measure(arguments: &Arguments, device: &dyn SceneRunner) -> anyhow::Result<Tr
     let results = parallel_map(&cases, threads, run, || bar.inc(1))?;
     bar.finish_and_clear();
     let by_touch: Vec<_> = results.chunks(SENSOR_LAGS_S.len()).collect();
-    let by_stimulus = by_touch.chunks(Touch::ALL.len());
+    let by_stimulus = by_touch.chunks(TouchingFinger::ALL.len());
     let results = by_stimulus.map(|touches| touches.iter().map(|lags| lags.to_vec()).collect());
 
     let limits = LimitCase::all();
@@ -101,7 +102,7 @@ fn boxed(
         let results = stimuli.iter().map(|stimulus| {
             let case = TrackingCase {
                 stimulus: stimulus.clone(),
-                touch: Touch::Thesis,
+                touch: TouchingFinger::Thesis,
                 plant: draw.plant.clone(),
                 seed: draw.seed,
             };

@@ -14,9 +14,9 @@ use thermal_device::stimulus::{CourseEnd, CourseStart, PlayOrder};
 use super::target::AnyClient;
 use super::{Failure, Target, print};
 
-/// Time between two looks at the state while the self-test runs, and their number: 5 s.
-const LOOK: Duration = Duration::from_millis(100);
-const LOOKS: u32 = 50;
+/// Interval at which the state is asked for while the self-test runs, and how many times it is at most: 5 s.
+const STATE_POLL_INTERVAL: Duration = Duration::from_millis(100);
+const STATE_POLLS_MAX: u32 = 50;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -28,7 +28,7 @@ pub struct Arguments {
     /// When it begins; until then the display waits on its first point
     #[arg(long, value_parser = start, default_value = "landing")]
     at: CourseStart,
-    /// How often it is played
+    /// Number of times it is played
     #[arg(long, value_name = "N", default_value_t = 1)]
     repeats: u16,
     /// Play it even if the device's points are more than 5 mK off
@@ -94,14 +94,14 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
 /// Arms the device, and waits for the end of its self-test.
 fn arm(client: &mut AnyClient<'_>, finger: Option<u8>) -> Result<(), Failure> {
     (client.ask_finger(finger, &PlainCommand::Arm)).map_err(Failure::run)?;
-    for _ in 0..LOOKS {
+    for _ in 0..STATE_POLLS_MAX {
         let status = client
             .ask_finger(finger, &QueryState)
             .map_err(Failure::run)?;
         match status.state {
             StateName::Armed => return Ok(()),
             StateName::Tripped(_) => break,
-            _ => client.wait(LOOK).map_err(Failure::run)?,
+            _ => client.wait(STATE_POLL_INTERVAL).map_err(Failure::run)?,
         }
     }
     Err(Failure::run(anyhow!(

@@ -13,16 +13,17 @@ use super::{FORCE_N, ROOM_C, Stimulus};
 /// Times in the scene, s: the host moves the display to the first temperature, a finger lands, and the stimulus starts.
 const PREPARE_S: f64 = 0.02;
 const LANDING_S: f64 = 1.0;
-const ORDER_S: f64 = 6.0;
+const PLAY_LINE_S: f64 = 6.0;
 const START_S: f64 = 8.0;
 /// Time since the start from which errors count, s.
-const AFTER_S: f64 = 0.05;
-const LINE_S: f64 = 0.01;
+const COUNTED_FROM_S: f64 = 0.05;
+/// Interval of the host's lines, s.
+const LINE_INTERVAL_S: f64 = 0.01;
 
 /// What touches the display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Touch {
+pub enum TouchingFinger {
     /// Nothing.
     Bare,
     /// The thesis's homogeneous finger, which the device assumes.
@@ -31,7 +32,7 @@ pub enum Touch {
     Layered,
 }
 
-impl Touch {
+impl TouchingFinger {
     /// All, in the order of the table.
     pub const ALL: [Self; 3] = [Self::Bare, Self::Thesis, Self::Layered];
 
@@ -64,7 +65,7 @@ pub struct TrackingCase {
     /// What the display follows.
     pub stimulus: Stimulus,
     /// What touches it.
-    pub touch: Touch,
+    pub touch: TouchingFinger,
     /// Plant parameters that are not nominal, by key.
     pub plant: Vec<(String, f64)>,
     /// Seed of the converter.
@@ -94,7 +95,7 @@ pub(super) fn scene_text(
 impl TrackingCase {
     /// On the nominal plant with display thermistors of a lag, s.
     #[must_use]
-    pub fn nominal(stimulus: &Stimulus, touch: Touch, sensor_lag_s: f64) -> Self {
+    pub fn nominal(stimulus: &Stimulus, touch: TouchingFinger, sensor_lag_s: f64) -> Self {
         let keys = ["sensors.display.lag_s", "sensors.check.lag_s"];
         Self {
             stimulus: stimulus.clone(),
@@ -127,9 +128,12 @@ impl TrackingCase {
                 .collect();
             let lines = upload_course(CourseTemperatures::Absolute, &points);
             for (line, number) in lines.iter().zip(1..) {
-                at(PREPARE_S + LINE_S * f64::from(number), line.to_string());
+                at(
+                    PREPARE_S + LINE_INTERVAL_S * f64::from(number),
+                    line.to_string(),
+                );
             }
-            at(ORDER_S, "play trigger".into());
+            at(PLAY_LINE_S, "play trigger".into());
         }
         Ok(scene)
     }
@@ -161,7 +165,7 @@ impl TrackingCase {
             }
             let wanted_c = course.at(since_s);
             result.curve.push((since_s, wanted_c, row.display_c));
-            if since_s < AFTER_S {
+            if since_s < COUNTED_FROM_S {
                 continue;
             }
             result.limited |= row.device.as_ref().is_some_and(|device| device.limited);

@@ -7,7 +7,7 @@ use thermal_sim::SceneRunner;
 use thermal_sim::scene::{HostLine, Scene};
 use thermal_sim::trace::TraceRow;
 
-use super::case::{Touch, scene_text};
+use super::case::{TouchingFinger, scene_text};
 use super::{COOLANTS_C, ROOM_C};
 
 /// Temperatures between which the mean rate is measured, °C.
@@ -15,7 +15,7 @@ const FROM_C: f64 = 28.0;
 const TO_C: f64 = 34.0;
 /// Lines that bring the display to the cold end and, when it is there, from there to the warm one and back, s. A course is
 /// followed as fast as the tile can, where a hold slows down before its end.
-const ORDERS: [(f64, &str); 2] = [(0.05, "hold 20 5"), (WARM_S, "pulse 20 41 100 9.79 100")];
+const HOST_LINES: [(f64, &str); 2] = [(0.05, "hold 20 5"), (WARM_S, "pulse 20 41 100 9.79 100")];
 /// When the display starts for the warm end, and for the cold one, s.
 const WARM_S: f64 = 10.0;
 const COLD_S: f64 = 20.0;
@@ -25,7 +25,7 @@ const END_S: f64 = 34.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitCase {
     /// What touches the display.
-    pub touch: Touch,
+    pub touch: TouchingFinger,
     /// Temperature of what cools the sink, °C.
     pub coolant_c: f64,
 }
@@ -34,7 +34,7 @@ pub struct LimitCase {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TileLimits {
     /// What touches the display.
-    pub touch: Touch,
+    pub touch: TouchingFinger,
     /// Temperature of what cools the sink, °C.
     pub coolant_c: f64,
     /// K/s while heating.
@@ -47,7 +47,7 @@ impl LimitCase {
     /// Bare and under the thesis's finger, at each of [`COOLANTS_C`].
     #[must_use]
     pub fn all() -> Vec<Self> {
-        let touches = [Touch::Bare, Touch::Thesis].into_iter();
+        let touches = [TouchingFinger::Bare, TouchingFinger::Thesis].into_iter();
         let cases = touches.flat_map(|touch| COOLANTS_C.map(|coolant_c| Self { touch, coolant_c }));
         cases.collect()
     }
@@ -60,7 +60,7 @@ impl LimitCase {
         let plant = [("tile.coolant_k".to_owned(), self.coolant_c - ROOM_C)];
         let text = scene_text(END_S, 1, &self.touch.tables(1.0), &plant);
         let mut scene = Scene::parse(&text, Path::new("limits"))?;
-        let lines = ORDERS.map(|(t_s, line)| HostLine {
+        let lines = HOST_LINES.map(|(t_s, line)| HostLine {
             t_s,
             line: line.into(),
         });

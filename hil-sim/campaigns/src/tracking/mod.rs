@@ -10,7 +10,7 @@ mod plot;
 mod report;
 mod stimulus;
 
-pub use case::{Touch, TrackingCase, TrackingResult};
+pub use case::{TouchingFinger, TrackingCase, TrackingResult};
 pub use limits::{LimitCase, TileLimits};
 pub use plot::chart;
 pub use report::{TrackingBox, TrackingReport};

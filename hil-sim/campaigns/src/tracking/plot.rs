@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 use thermal_charts::{Curve, Legend, Panel, Stroke};
 
-use super::{SENSOR_LAGS_S, Touch, TrackingReport};
+use super::{SENSOR_LAGS_S, TouchingFinger, TrackingReport};
 
 const SIZE: (u32, u32) = (1100, 1000);
 /// Stimuli that are drawn, if they were run.
@@ -14,13 +14,13 @@ const SHOWN: [&str; 4] = [
     "display of copper",
 ];
 /// Largest difference under a finger that the device is made for, mK.
-const AIM_MK: f64 = 30.0;
+const DESIGN_ERROR_MK: f64 = 30.0;
 const COLORS: [RGBColor; SENSOR_LAGS_S.len()] = [
     RGBColor(0x2c, 0xa0, 0x2c),
     RGBColor(0x1f, 0x77, 0xb4),
     RGBColor(0xd6, 0x27, 0x28),
 ];
-const AIM: RGBColor = RGBColor(0x22, 0x22, 0x22);
+const DESIGN_ERROR_COLOR: RGBColor = RGBColor(0x22, 0x22, 0x22);
 /// Largest number of points of a curve.
 const POINTS: usize = 700;
 
@@ -29,7 +29,9 @@ const POINTS: usize = 700;
 /// # Errors
 /// The plot cannot be drawn.
 pub fn chart(report: &TrackingReport) -> anyhow::Result<String> {
-    let finger = Touch::ALL.iter().position(|touch| *touch == Touch::Thesis);
+    let finger = TouchingFinger::ALL
+        .iter()
+        .position(|touch| *touch == TouchingFinger::Thesis);
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
@@ -58,12 +60,12 @@ pub fn chart(report: &TrackingReport) -> anyhow::Result<String> {
                 let last = result.curve.last();
                 end_s = end_s.max(last.map_or(0.0, |(t_s, ..)| *t_s));
             }
-            for aim_mk in [AIM_MK, -AIM_MK] {
+            for error_mk in [DESIGN_ERROR_MK, -DESIGN_ERROR_MK] {
                 curves.push(Curve {
-                    name: format!("{aim_mk:+} mK"),
-                    color: AIM,
+                    name: format!("{error_mk:+} mK"),
+                    color: DESIGN_ERROR_COLOR,
                     stroke: Stroke::Dashed,
-                    points: [(0.0, aim_mk), (end_s, aim_mk)].into(),
+                    points: [(0.0, error_mk), (end_s, error_mk)].into(),
                 });
             }
             let x_name = format!("{shown}: time / s");

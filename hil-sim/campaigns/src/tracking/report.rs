@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::{SENSOR_LAGS_S, TileLimits, Touch, TrackingResult};
+use super::{SENSOR_LAGS_S, TileLimits, TouchingFinger, TrackingResult};
 use crate::fidelity::Percentiles;
 
 /// Errors of one stimulus over the devices of the box, mK.
@@ -27,7 +27,7 @@ pub struct TrackingReport {
     pub engine: &'static str,
     /// Names of the stimuli.
     pub stimuli: Vec<String>,
-    /// Results for each stimulus, by [`Touch::ALL`] and [`SENSOR_LAGS_S`].
+    /// Results for each stimulus, by [`TouchingFinger::ALL`] and [`SENSOR_LAGS_S`].
     pub results: Vec<Vec<Vec<TrackingResult>>>,
     /// Limits of the tile.
     pub limits: Vec<TileLimits>,
@@ -43,7 +43,7 @@ impl TrackingReport {
     pub fn tables(&self) -> String {
         let mut text = String::from("| mK |");
         // Writing to a String cannot fail.
-        for touch in Touch::ALL {
+        for touch in TouchingFinger::ALL {
             for lag_s in SENSOR_LAGS_S {
                 let _ = write!(text, " {}, {lag_s} s |", touch.name());
             }

@@ -3,12 +3,12 @@
 use contact_model::material::SKIN;
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::Contact;
-use earlier_displays::{Display, RcLadder, Showing, Tissue, Touch, scene};
+use earlier_displays::{Display, RcLadder, Showing, SingleContact, Tissue, scene};
 use thermal_client::course::Course;
 
-fn touch(material: &str, tissue: Tissue) -> (thermal_sim::scene::Scene, Touch) {
+fn touch(material: &str, tissue: Tissue) -> (thermal_sim::scene::Scene, SingleContact) {
     let scene = scene(material, tissue);
-    let touch = Touch::of(&scene).expect("one contact");
+    let touch = SingleContact::of(&scene).expect("one contact");
     (scene, touch)
 }
 
@@ -18,7 +18,7 @@ fn ideal(display: Display, material: &str, tissue: Tissue) -> Course {
 }
 
 /// The thesis's contact of skin and object under a pressure, Pa.
-fn contact(touch: &Touch, pressure_pa: f64) -> Contact<f64> {
+fn contact(touch: &SingleContact, pressure_pa: f64) -> Contact<f64> {
     Contact::new(
         (&SKIN, touch.skin_c),
         (&touch.object, touch.object_c),

@@ -3,14 +3,14 @@
 use contact_model::material::SKIN;
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, erfcx};
-use earlier_displays::{Display, Tissue, Touch, scene, skin_on_ideal_tile};
+use earlier_displays::{Display, SingleContact, Tissue, scene, skin_on_ideal_tile};
 use thermal_client::course::{Course, CoursePoint};
 
 #[test]
 fn the_course_of_eq_6_12_brings_the_skin_to_eq_6_5() {
     for material in ["copper", "granite", "abs", "foam"] {
         let scene = scene(material, Tissue::HalfSpace);
-        let touch = Touch::of(&scene).expect("one contact");
+        let touch = SingleContact::of(&scene).expect("one contact");
         let course = Display::HoChapter6
             .ideal_course(&scene, &touch)
             .expect("a plant");
@@ -37,7 +37,7 @@ fn skin_on_a_constant_surface_follows_the_error_function() {
     // A half-space with effusivity e behind a resistance R, on a surface that is 6 K colder:
     // the skin falls by 6 K (1 - erfcx(sqrt t / (R e))).
     let scene = scene("granite", Tissue::HalfSpace);
-    let touch = Touch::of(&scene).expect("one contact");
+    let touch = SingleContact::of(&scene).expect("one contact");
     let course = Course::new(vec![CoursePoint {
         t_s: 0.0,
         celsius: 28.0,

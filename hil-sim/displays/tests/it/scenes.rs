@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use earlier_displays::{NoTouch, Touch};
+use earlier_displays::{NoSingleContact, SingleContact};
 use thermal_sim::scene::Scene;
 
-fn touch(forces: &str) -> Result<Touch, NoTouch> {
+fn touch(forces: &str) -> Result<SingleContact, NoSingleContact> {
     let text = format!(
         "duration_s = 9.0\nskin_c = 33.0\nroom_c = 22.0\n[object]\nmaterial = \"abs\"\n{forces}"
     );
-    Touch::of(&Scene::parse(&text, Path::new("test")).expect("a scene"))
+    SingleContact::of(&Scene::parse(&text, Path::new("test")).expect("a scene"))
 }
 
 #[test]
@@ -35,6 +35,6 @@ fn a_scene_of_no_or_several_contacts_is_refused() {
             "{landing}[[force]]\nt_s = 4.0\nforce_n = 0.0\n[[force]]\nt_s = 6.0\nforce_n = 1.0\n"
         ),
     ] {
-        assert_eq!(touch(forces).err(), Some(NoTouch), "{forces}");
+        assert_eq!(touch(forces).err(), Some(NoSingleContact), "{forces}");
     }
 }

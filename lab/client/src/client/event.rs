@@ -11,7 +11,7 @@ use super::fields::in_table;
 pub struct ReceivedEvent {
     /// The finger that it names; `None` from a device with one finger.
     pub finger: Option<u8>,
-    /// Tick, µs after it, and what happened.
+    /// Tick, microseconds from the start of its first scan, and what happened.
     pub event: DeviceEvent,
     /// Time by the link's clock at which it was received.
     pub at: Duration,

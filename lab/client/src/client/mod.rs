@@ -22,7 +22,7 @@ use thermal_device::TelemetryFields;
 use thermal_protocol::{LINE_MAX_BYTES, line_checksum, strip_checksum};
 
 use crate::link::{Link, LinkError, ReceivedLine};
-use streams::TelemetryStreams;
+use streams::{Stream, TelemetryStreams};
 
 pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
@@ -45,10 +45,13 @@ pub use telemetry::{ReceivedTelemetry, Telemetry};
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
 /// Longest silence of the client while the device streams, half of what trips the device.
 const SILENCE_MAX: Duration = Duration::from_secs(1);
-/// How often a line that may be repeated is sent.
+/// Number of times a line that may be repeated is sent.
 const ATTEMPTS: u32 = 3;
 /// Bytes that a checksum adds to a line.
 const CHECKSUM_BYTES: usize = "*00".len();
+/// Time after the answer to a `stream` that changes the fields within which a tick may have been reported with the old ones.
+/// The answer overtakes the telemetry that waits, and a line with all fields takes a millisecond longer than it on the way.
+const FIELD_CHANGE_TIME: Duration = Duration::from_millis(10);
 /// Telemetry lines that are kept until they are fetched; then the oldest is dropped.
 const TELEMETRY_KEPT_MAX: usize = 100_000;
 
@@ -68,7 +71,8 @@ pub struct LineCounts {
     pub lost: u64,
     /// Lines that are neither telemetry nor an answer.
     pub damaged: u64,
-    /// Telemetry lines that came and were not fetched in time.
+    /// Telemetry lines that came and were not fetched in time, or that may still have had the fields of before a `stream`
+    /// that has changed them.
     pub dropped: u64,
 }
 
@@ -395,6 +399,10 @@ impl<L: Link> Client<L> {
             self.events.push_back(event);
             return None;
         }
+        if self.may_have_old_fields(finger, content, line.at) {
+            self.counts.dropped += 1;
+            return None;
+        }
         let fields = self.streams.fields(finger);
         let Some(telemetry) = Telemetry::parse_fields(content, fields) else {
             self.counts.damaged += 1;
@@ -416,6 +424,21 @@ impl<L: Link> Client<L> {
         None
     }
 
+    /// Whether a line is telemetry of a tick before a change of its fields, or so soon after it that this is not certain.
+    /// When it arrived does not tell, because lines wait while nobody receives them.
+    fn may_have_old_fields(&mut self, finger: Option<u8>, content: &str, at: Duration) -> bool {
+        let Some(changed_at) = self.streams.fields_changed_at(finger) else {
+            return false;
+        };
+        let Some(tick) = Telemetry::tick_of(content) else {
+            return false;
+        };
+        self.clock.observe(tick, at);
+        let new_from_s = (changed_at + FIELD_CHANGE_TIME).as_secs_f64();
+        let time = self.clock.time_of(tick);
+        time.is_some_and(|time| time.at_s - time.error_s <= new_from_s)
+    }
+
     /// Takes note of what an accepted line has changed that the client must know.
     fn note_accepted(&mut self, line: &str) {
         let (finger, line) = split_finger(line);
@@ -432,7 +455,11 @@ impl<L: Link> Client<L> {
                 if fields == TelemetryFields::NONE {
                     fields = TelemetryFields::ALL;
                 }
-                self.streams.set(finger, interval_ms as u32, fields);
+                let stream = Stream {
+                    interval_ms: interval_ms as u32,
+                    fields,
+                };
+                self.streams.set(finger, stream, self.link.now());
             }
             (Some("checksum"), Some(switch)) => self.checksums = switch == "on",
             (Some("save" | "forget"), None) => {

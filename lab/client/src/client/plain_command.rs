@@ -12,7 +12,7 @@ use thermal_device::control::Law;
 use thermal_device::events::DeviceEventKind;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
-use thermal_device::stimulus::{CourseEnd, CourseStart, CourseTemperatures, PlayOrder};
+use thermal_device::stimulus::{CourseEnd, CourseTemperatures, PlayOrder};
 use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
 use thermal_settings::CRC_32;
 
@@ -54,16 +54,12 @@ pub enum PlainCommand {
     Abort,
     /// Clear a fault that is no longer present.
     Clear,
-    /// Telemetry at this interval, ms, with all fields; 0 ends it.
-    Stream(u32),
-    /// Telemetry at this interval, ms, with these fields; with none, all.
-    StreamFields(u32, TelemetryFields),
+    /// Telemetry at this interval, ms, with these fields; an interval of 0 ends it.
+    Stream(u32, TelemetryFields),
     /// Checksums on the lines from the device from now on, or not.
     Checksum(bool),
-    /// Move the set-point to this temperature, °C, at 1 K/s, and hold it.
-    Hold(f64),
-    /// Move the set-point to this temperature, °C, at this rate, K/s, and hold it.
-    HoldAtRate(f64, f64),
+    /// Move the set-point to this temperature, °C, at this rate, K/s, or without one at the device's own, and hold it.
+    Hold(f64, Option<f64>),
     /// Play the loaded course.
     Play(PlayOrder),
     /// Load and play a course of four points.
@@ -129,6 +125,14 @@ pub const fn thermistor_word(thermistor: ThermistorId) -> &'static str {
     THERMISTOR_WORDS[thermistor as usize]
 }
 
+impl PlainCommand {
+    /// Telemetry at this interval, ms, with all fields; 0 ends it.
+    #[must_use]
+    pub const fn stream(interval_ms: u32) -> Self {
+        Self::Stream(interval_ms, TelemetryFields::ALL)
+    }
+}
+
 impl fmt::Display for PlainCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -158,19 +162,16 @@ impl fmt::Display for PlainCommand {
             }
             Self::AssumedFinger(finger) => write!(f, "finger {}", finger.name()),
             Self::Mode(mode) => {
-                let mut words = CONTACT_MODEL_WORDS.iter();
-                let word = words.find(|(_, known)| known == mode);
-                write!(f, "mode {}", word.map_or("", |(word, _)| *word))
+                write!(f, "mode {}", word_in(&CONTACT_MODEL_WORDS, mode))
             }
             Self::Law(law) => write!(f, "law {}", law.name()),
             Self::Arm => f.write_str("arm"),
             Self::Start => f.write_str("start"),
             Self::Abort => f.write_str("abort"),
             Self::Clear => f.write_str("clear"),
-            Self::Stream(interval_ms) => write!(f, "stream {interval_ms}"),
             Self::Checksum(on) => f.write_str(if *on { "checksum on" } else { "checksum off" }),
-            Self::Hold(celsius) => write!(f, "hold {celsius:.2}"),
-            Self::HoldAtRate(celsius, rate_k_s) => write!(f, "hold {celsius} {rate_k_s}"),
+            Self::Hold(celsius, None) => write!(f, "hold {celsius}"),
+            Self::Hold(celsius, Some(rate_k_s)) => write!(f, "hold {celsius} {rate_k_s}"),
             Self::Play(order) => {
                 f.write_str("play ")?;
                 write_order(f, order)
@@ -197,8 +198,11 @@ impl fmt::Display for PlainCommand {
                 let words: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
                 write!(f, "trigger-out {}", words.join(","))
             }
-            Self::StreamFields(interval_ms, fields) => {
+            Self::Stream(interval_ms, fields) => {
                 write!(f, "stream {interval_ms}")?;
+                if *fields == TelemetryFields::ALL {
+                    return Ok(());
+                }
                 let names = TelemetryFields::NAMES.iter().enumerate();
                 let mut chosen = names.filter(|(index, _)| fields.contains(*index));
                 chosen.try_for_each(|(_, name)| write!(f, " {name}"))
@@ -271,7 +275,7 @@ fn word_in<T: PartialEq>(table: &[(&'static str, T)], value: &T) -> &'static str
 }
 
 fn write_order(f: &mut fmt::Formatter<'_>, order: &PlayOrder) -> fmt::Result {
-    let start = word_in(&CourseStart::PROTOCOL_WORDS, &order.start);
+    let start = order.start.name();
     let end = word_in(&CourseEnd::PROTOCOL_WORDS, &order.end);
     write!(f, "{start} {} {end}", order.times)
 }

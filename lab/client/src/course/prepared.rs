@@ -16,7 +16,8 @@ pub struct Prepared {
 /// Why a course is not played without being asked for.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "with {COURSE_POINTS_MAX} points, which a device can hold, the course is {:.1} mK off; up to {:.0} mK are allowed without --coarse",
+    "with {COURSE_POINTS_MAX} points, which a device can hold, the course is {:.1} mK off; up to {:.0} mK are allowed without \
+     --coarse",
     1e3 * error_k, 1e3 * REDUCTION_ERROR_MAX_K
 )]
 pub struct TooCoarse {

@@ -227,7 +227,7 @@ fn with_checksums_damaged_answers_are_not_taken() {
 #[test]
 fn abort_is_sent_to_a_device_whose_answers_do_not_come_through() {
     let mut client = FakeDevice::client(|_| Vec::new());
-    client.ask(&PlainCommand::Hold(41.0)).unwrap_err();
+    client.ask(&PlainCommand::Hold(41.0, None)).unwrap_err();
     client.ask(&PlainCommand::Abort).unwrap_err();
     client
         .ask_finger(Some(2), &PlainCommand::Abort)
@@ -316,7 +316,7 @@ fn only_questions_and_numbered_lines_are_sent_again_after_a_damaged_line() {
 fn events_and_telemetry_of_chosen_fields_are_read() {
     let mut client = knows(&[("stream 5 setpoint demand", "ok"), ("events on", "ok")]);
     let fields = TelemetryFields::NONE.with(0).with(6);
-    client.ask(&PlainCommand::StreamFields(5, fields)).unwrap();
+    client.ask(&PlainCommand::Stream(5, fields)).unwrap();
     client.ask(&PlainCommand::Events(true)).unwrap();
     client.link().sends(1, "E 1000 437 trigger");
     client
@@ -334,8 +334,9 @@ fn events_and_telemetry_of_chosen_fields_are_read() {
     assert!(telemetry.limited && telemetry.state == StateName::Stimulus);
     assert_eq!(
         (telemetry.demand_a, telemetry.current_a),
-        (Some(-1.25), Some(0.0))
+        (Some(-1.25), None)
     );
+    assert_eq!(telemetry.evaluations, None);
     let event = client.take_event().unwrap().event;
     assert_eq!(
         (event.tick, event.microseconds, event.kind),

@@ -16,10 +16,8 @@ pub struct Hold {
 }
 
 impl Hold {
-    /// Rate of `hold` without one, K/s. At 1 K/s a proportional-integral loop on the slowest thermistors overshoots a
-    /// target of 42 °C by 0.7 K. A sudden step from skin temperature would lead to 44 °C and trip the station, whose limit
-    /// is 43 °C. At 1 K/s the two display thermistors also agree closely enough for the fault detectors, even with
-    /// different lags.
+    /// Rate of `hold` without one, K/s. Slow enough for every law and thermistor: the PI laws overshoot faster steps, and
+    /// near 42 °C may trip at 43 °C. At 1 K/s the two display thermistors also agree closely enough for the detectors.
     pub const DEFAULT_RATE_K_S: Celsius = Celsius::ONE;
 
     /// Moves from `start`, °C, clamped to 15 to 42 °C, to `target` at this rate, K/s, above zero. The last tick may be
