@@ -1,5 +1,6 @@
 //! Tests on the host, without an image: the native engine on the simulated plant, and hardware-free parts of the firmware.
 
+mod assumed_skin;
 mod contact_detection;
 mod control_law;
 mod display_modes;

@@ -1,6 +1,7 @@
 //! Estimates of what no thermistor measures: temperatures of the display's surface and of the module's legs, the skin's
 //! temperature under the finger, and the contact.
 
+mod assumed_skin;
 mod finger;
 mod force_means;
 mod plate_model;
@@ -42,8 +43,6 @@ pub struct Estimator {
     /// Estimator of the finger: the skin's temperature before contact, the force, and the skin's cooling by the
     /// display.
     pub finger: FingerEstimator,
-    /// Temperature of the skin, °C, that is assumed in place of the sensor's; `None` takes the sensor's.
-    pub assumed_skin: Option<Celsius>,
 }
 
 impl Estimator {
@@ -73,7 +72,6 @@ impl Estimator {
             previous_legs: (self.plate.leg_end_and_mean_temperatures())
                 .unwrap_or_else(|| LegTemperatures::between_display_and_sink(display, sink)),
         };
-        let skin = self.assumed_skin.unwrap_or(skin);
         self.finger
             .update_by_readings(skin, room, touch, landed_ticks);
         let heat = pair.map_or(Watt::ZERO, |pair| {
@@ -82,15 +80,6 @@ impl Estimator {
         self.plate
             .update_disturbance_and_correction(display, sink, heat);
         estimate
-    }
-
-    /// Assumes this temperature of the skin, °C, from now on, or what the sensor reads for `None`. The present estimate
-    /// changes at once to `present`, unless that is `None`.
-    pub const fn assume_skin(&mut self, assumed: Option<Celsius>, present: Option<Celsius>) {
-        self.assumed_skin = assumed;
-        if let Some(present) = present {
-            self.finger.set_skin_before_contact(present);
-        }
     }
 
     /// Discards all estimates of plate and finger; they start again from the next valid readings. Called in each tick

@@ -73,7 +73,10 @@ impl Station {
             Command::Hold { target, rate_k_s } => self.execute_hold(target, rate_k_s)?,
             Command::LoadCourse(part) => self.execute_load_course(part)?,
             Command::Play(ref order) => self.execute_play(order)?,
-            Command::AssumeSkin(skin) => self.execute_assume_skin(skin),
+            Command::AssumeSkin(skin) => {
+                self.estimator.finger.assume_skin(skin);
+                self.contact_restart_is_due = true;
+            }
             Command::Start => self.execute_start_presentation()?,
             // Never refused: the bridge is off afterwards.
             Command::Abort => {

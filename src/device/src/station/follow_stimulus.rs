@@ -89,17 +89,6 @@ impl Station {
         Ok(())
     }
 
-    pub(super) fn execute_assume_skin(&mut self, skin: Option<Celsius>) {
-        let present = match skin {
-            // During a contact the sensor does not show the skin before it, so the assumed one stays until lifting.
-            None if self.contact.touching() => None,
-            None => self.last.readings.skin.ok(),
-            skin => skin,
-        };
-        self.estimator.assume_skin(skin, present);
-        self.contact_restart_is_due = true;
-    }
-
     /// What is added to the temperatures of a course now, °C.
     fn base_of(&self, course: &Course) -> Celsius {
         let before_contact = self.estimator.finger.temperatures_before_contact();

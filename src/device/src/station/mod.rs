@@ -128,7 +128,6 @@ impl Station {
             estimator: Estimator {
                 plate: PlateObserver::new(&parameters.observer, limit),
                 finger: FingerEstimator::default(),
-                assumed_skin: None,
             },
             object: ChosenObject::new(&settings.display),
             reference: ReferenceGenerator::default(),
