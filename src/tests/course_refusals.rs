@@ -339,6 +339,18 @@ fn the_dose_of_a_relative_course_is_that_above_this_skin() {
 }
 
 #[test]
+fn a_relative_course_that_stays_below_39_c_gives_no_dose() {
+    let mut bench = Bench::armed();
+    let hour = [(0.0, 5.0), (3600.0, 5.0)];
+    assert_eq!(bench.upload("relative", &hour), "ok");
+    bench.send_ok(&["skin 33", "play landing 9"]);
+    bench.send_ok(&["skin 34"]);
+    // At 39 °C the dose begins: nine hours are 9 / 256 of an hour at 43 °C.
+    let refused = "err too hot for too long: CEM43 would be 2.11 min; below 0.50 min is allowed";
+    assert_eq!(bench.send("play landing 9"), refused);
+}
+
+#[test]
 fn a_pulse_is_refused_for_each_of_its_numbers() {
     let mut bench = Bench::armed();
     for (line, answer) in [

@@ -180,7 +180,8 @@ pub enum Command<'a> {
         rate_k_s: Celsius,
     },
     /// Load a part of a course, which with its last part replaces the one that was loaded before, but not one that plays.
-    /// `None` only asks whether loading is permitted. Refused while the station is tripped.
+    /// `None` only asks whether loading is permitted, and is refused while the station is tripped; to be sent before the first
+    /// part. The parts are never refused.
     LoadCourse(Option<CoursePart<'a>>),
     /// Play the course that was loaded last. Refused in off, self-test, ready and tripped, if no course is loaded, and if
     /// its temperatures above the present skin or its dose are too large.

@@ -101,7 +101,7 @@ impl WithSourceFinger<Telemetry> {
 #[derive(Clone, Debug, Default)]
 pub struct EventReporter {
     /// Whether the host wants events; off until it says so.
-    pub reports: bool,
+    reports: bool,
     /// Events that give a pulse at the trigger output.
     pub marked: EventKinds,
     pulse_ticks_left: u8,
@@ -114,6 +114,15 @@ pub struct EventReporter {
 }
 
 impl EventReporter {
+    /// Switches the reports on or off. Switched off, the events that were not fetched are dropped.
+    pub fn switch_reports(&mut self, on: bool) {
+        self.reports = on;
+        if !on {
+            self.kept = [None; EVENTS_KEPT_MAX];
+            self.first = self.end;
+        }
+    }
+
     /// Takes note of an event. It is dropped if nobody has fetched the ones before.
     #[inline(never)]
     pub fn note(&mut self, kind: DeviceEventKind, tick: u32, microseconds: u16) {
@@ -166,7 +175,7 @@ mod tests {
         let mut reporter = EventReporter::default();
         reporter.note(DeviceEventKind::Land, 1, 0);
         assert_eq!(reporter.take(), None);
-        reporter.reports = true;
+        reporter.switch_reports(true);
         for tick in 0..20 {
             reporter.note(DeviceEventKind::Trigger, tick, 7);
         }
@@ -179,6 +188,24 @@ mod tests {
             assert_eq!(reporter.take(), Some(event));
         }
         assert_eq!(reporter.take(), None);
+    }
+
+    #[test]
+    fn events_that_were_not_fetched_are_dropped_when_reports_are_switched_off() {
+        let mut reporter = EventReporter::default();
+        reporter.switch_reports(true);
+        for tick in 0..3 {
+            reporter.note(DeviceEventKind::Land, tick, 0);
+        }
+        assert!(reporter.take().is_some() && reporter.has_event());
+        reporter.switch_reports(false);
+        assert!(!reporter.has_event());
+        reporter.switch_reports(true);
+        assert_eq!(reporter.take(), None);
+        reporter.note(DeviceEventKind::Lift, 9, 0);
+        let kind = reporter.take().map(|event| event.kind);
+        assert_eq!(kind, Some(DeviceEventKind::Lift));
+        assert!(!reporter.has_event());
     }
 
     #[test]

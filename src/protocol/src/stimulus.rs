@@ -31,8 +31,8 @@ static SKIN_RANGE: Range = Range {
 static RELATIVE_TEMPERATURE_RANGE: Range = Range {
     name: "temperature",
     unit: "K",
-    min: -27.0,
-    max: 27.0,
+    min: SETPOINT_MIN_C - SETPOINT_MAX_C,
+    max: SETPOINT_MAX_C - SETPOINT_MIN_C,
 };
 static RATE_RANGE: Range = Range {
     name: "rate",

@@ -179,9 +179,11 @@ impl Upload {
         &self.course
     }
 
-    /// The course, to be replaced by that of a command. Ends an upload that had begun.
+    /// The course, to be replaced by that of a command. Ends an upload of a course that had begun.
     pub const fn course_to_replace(&mut self) -> &mut Course {
-        self.kind = None;
+        if let Some(Kind::Course) = self.kind {
+            self.kind = None;
+        }
         &mut self.course
     }
 

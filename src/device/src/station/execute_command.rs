@@ -25,7 +25,7 @@ impl Station {
             Command::Average(thermistor) => return self.thermistor_average(thermistor),
             Command::NormalEquation(row) => return self.normal_equation_row(row),
             Command::Law(Some(law)) => self.controller.select_law(law),
-            Command::ReportEvents(on) => self.events.reports = on,
+            Command::ReportEvents(on) => self.events.switch_reports(on),
             Command::TriggerOutput(kinds) => self.events.marked = kinds,
             Command::Stream {
                 interval_ms,

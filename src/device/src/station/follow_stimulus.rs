@@ -32,16 +32,21 @@ impl Station {
         rate_k_s: Celsius,
     ) -> Result<(), Refused> {
         self.require_driven("hold")?;
-        let start = match (&self.state, self.last.reference) {
+        let follows_stimulus =
+            self.stimulus_has_reference && matches!(self.state, State::Stimulus(_));
+        let start = match self.last.reference {
             // A display that keeps up with its set-point goes on from there, because a slow thermistor lags behind it.
-            (State::Stimulus(_), Some(last)) if !last.limited => last.setpoint.celsius(),
+            Some(last) if follows_stimulus && !last.limited => last.setpoint.celsius(),
             _ => (self.last.readings.display).unwrap_or_else(|_| target.celsius()),
         };
-        self.apply_known_event(Event::Stimulate(&Stimulus::Hold(Hold::new(
-            start, target, rate_k_s,
-        ))));
-        self.identified.outcome = None;
+        self.stimulate(&Stimulus::Hold(Hold::new(start, target, rate_k_s)));
         Ok(())
+    }
+
+    fn stimulate(&mut self, stimulus: &Stimulus) {
+        self.stimulus_has_reference &= matches!(self.state, State::Stimulus(_));
+        self.apply_known_event(Event::Stimulate(stimulus));
+        self.identified.outcome = None;
     }
 
     #[inline(never)]
@@ -49,11 +54,11 @@ impl Station {
         &mut self,
         part: Option<CoursePart<'_>>,
     ) -> Result<(), Refused> {
-        if let State::Tripped(fault) = self.state {
-            return Err(Refused::Tripped(fault));
-        }
-        if let Some(part) = part {
-            self.courses.load_part(&part);
+        match (part, &self.state) {
+            // Also if a fault has tripped the station since the first part, because loading drives nothing.
+            (Some(part), _) => self.courses.load_part(&part),
+            (None, State::Tripped(fault)) => return Err(Refused::Tripped(*fault)),
+            (None, _) => {}
         }
         Ok(())
     }
@@ -78,14 +83,7 @@ impl Station {
         }
         let first = course.first_temperature().saturating_add(base);
         self.courses.play_loaded();
-        self.apply_known_event(Event::Stimulate(&Stimulus::Wait(
-            *order,
-            Approach::to(first),
-        )));
-        self.identified.outcome = None;
-        if order.start == CourseStart::Now {
-            self.begin_course(0, self.tick.wrapping_add(1));
-        }
+        self.stimulate(&Stimulus::Wait(*order, Approach::to(first)));
         Ok(())
     }
 
@@ -119,8 +117,10 @@ impl Station {
         let coming_tick = self.tick.wrapping_add(1);
         let tick = coming_tick.wrapping_sub(edge.ticks_ago.into());
         (self.events).note(DeviceEventKind::Trigger, tick, edge.us);
-        if self.waits_for(CourseStart::Trigger) {
-            self.begin_course(0, coming_tick);
+        if let State::Stimulus(Stimulus::Wait(order, _)) = &mut self.state
+            && order.start == CourseStart::Trigger
+        {
+            order.start = CourseStart::Now;
         }
     }
 
@@ -129,7 +129,8 @@ impl Station {
     }
 
     /// Begins the course that waits, if one does, with `elapsed` ticks of it behind the next reference; `tick` is the one
-    /// to which its time 0 belongs.
+    /// to which its time 0 belongs. For a tick only: it moves the course on by up to 46 ticks, which a command must not
+    /// lock the next finger's tick out for.
     fn begin_course(&mut self, elapsed: u32, tick: u32) {
         if let State::Stimulus(Stimulus::Wait(order, _)) = self.state {
             let course = self.courses.playing();
@@ -159,6 +160,10 @@ impl Station {
         &mut self,
         estimate: &PlateEstimateBeforeReading,
     ) -> Option<Reference> {
+        if self.waits_for(CourseStart::Now) {
+            self.begin_course(0, self.tick);
+        }
+        self.stimulus_has_reference = true;
         let course = self.courses.playing();
         let base = self.base_of(course);
         let State::Stimulus(stimulus) = &mut self.state else {

@@ -4,6 +4,7 @@ use contact_model::fixed_point::Celsius;
 use heapless::Vec;
 
 use super::dose_of_course::{EquivalentTime, time_equivalent_to_largest};
+use crate::safety::PredictedDose;
 use crate::safety::limits::{DOSE_COUNTED_FROM, SETPOINT_MAX, SETPOINT_MIN};
 
 /// Largest number of points of a course.
@@ -14,10 +15,8 @@ pub const COURSE_DURATION_MAX_MS: u32 = 3_600_000;
 /// `limited` while the display lags behind it.
 pub const COURSE_RATE_MAX_K_S: u32 = 100;
 
-/// Smallest and largest temperature of a relative course, K: the width of the range of set-points. Constants of their own,
-/// because a literal in a function that also runs on the device would be parsed there, by 6 KB of code.
-const RELATIVE_MIN: Celsius = Celsius::lit("-27");
-const RELATIVE_MAX: Celsius = Celsius::lit("27");
+/// Largest temperature of a relative course, K, above or below the skin: the width of the range of set-points.
+const RELATIVE_MAX: Celsius = SETPOINT_MAX.saturating_sub(SETPOINT_MIN);
 
 /// What the temperatures of a course are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,7 +38,7 @@ impl CourseTemperatures {
     pub const fn range(self) -> (Celsius, Celsius) {
         match self {
             Self::Absolute => (SETPOINT_MIN, SETPOINT_MAX),
-            Self::Relative => (RELATIVE_MIN, RELATIVE_MAX),
+            Self::Relative => (RELATIVE_MAX.saturating_neg(), RELATIVE_MAX),
         }
     }
 }
@@ -86,7 +85,7 @@ pub enum CourseError {
 
 /// A course: its points are in order, in range, and not too steep. One that has passed [`Self::check_whole`] has at least two
 /// points, and by itself gives no dose that trips.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Course {
     points: Vec<CoursePoint, COURSE_POINTS_MAX>,
     temperatures: CourseTemperatures,
@@ -94,6 +93,12 @@ pub struct Course {
     largest: Celsius,
     /// Time at the largest temperature that gives the dose of the course; set by [`Self::check_whole`].
     equivalent: EquivalentTime,
+}
+
+impl Default for Course {
+    fn default() -> Self {
+        Self::new(CourseTemperatures::default())
+    }
 }
 
 impl Course {
@@ -202,10 +207,15 @@ impl Course {
         Ok(())
     }
 
-    /// Dose of the course if its temperatures are this much, °C, above what its points say. An upper bound.
+    /// Dose of the course if its temperatures are this much, °C, above what its points say. An upper bound: of a relative
+    /// course with a largest temperature of 39 to 42 °C it also counts what is below 39 °C, down to 3 K below that largest one.
     #[must_use]
-    pub fn dose(&self, base: Celsius) -> crate::safety::PredictedDose {
-        self.equivalent.at(self.largest.saturating_add(base))
+    pub fn dose(&self, base: Celsius) -> PredictedDose {
+        let largest = self.largest.saturating_add(base);
+        if largest < DOSE_COUNTED_FROM {
+            return PredictedDose::from_sum(0);
+        }
+        self.equivalent.at(largest)
     }
 
     /// The points.

@@ -8,7 +8,7 @@ use super::{CoursePoint, STIMULUS_LEAD_TICKS, StimulusTemperatures};
 /// What starts a course.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CourseStart {
-    /// The command `play` itself.
+    /// The tick after the command `play`.
     Now,
     /// The next edge at the trigger input; until then the display waits on the first point.
     Trigger,
@@ -77,7 +77,9 @@ impl Cursor {
     /// The start of a course. Before its first point it has the temperature of that point.
     fn new(points: &[CoursePoint], times: u16) -> Self {
         Self {
-            ramp: initial_segment(points),
+            ramp: points.first().map_or(Ramp::constant(Celsius::ZERO), |first| {
+                Ramp::new(first.temperature, first.temperature, first.time_ms)
+            }),
             point: 0,
             times_left: times.saturating_sub(1),
         }
@@ -116,14 +118,6 @@ impl Cursor {
             && self.times_left == 0
             && usize::from(self.point) + 1 >= points.len()
     }
-}
-
-fn initial_segment(points: &[CoursePoint]) -> Ramp {
-    let first = points
-        .first()
-        .map_or(Celsius::ZERO, |point| point.temperature);
-    let ticks = points.first().map_or(0, |point| point.time_ms);
-    Ramp::new(first, first, ticks)
 }
 
 /// A course that plays.
