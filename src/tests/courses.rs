@@ -14,7 +14,7 @@ use crate::device::drive::BoardOutputs;
 use crate::device::safety::Fault;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, FingerIndex, Telemetry};
-use crate::protocol::{CommandHandler, UnaskedLine};
+use crate::protocol::{CommandHandler, UnsolicitedLine};
 use crate::settings::Settings;
 
 pub(super) const FIRST: FingerIndex<1> = FingerIndex::FIRST;
@@ -94,7 +94,7 @@ impl Bench {
         };
         self.outputs.push(self.device.step_finger(FIRST, &samples));
         while let Some(event) = self.device.take_finger_event(FIRST) {
-            self.events.push(UnaskedLine(event.content).to_string());
+            self.events.push(UnsolicitedLine(event.content).to_string());
         }
         let telemetry = self.device.finger_telemetry_if_due(FIRST);
         let telemetry = telemetry.expect("streamed on every tick").content;
@@ -270,7 +270,7 @@ fn a_relative_course_adds_the_skin_and_an_assumed_skin_replaces_the_sensor() {
     assert_close(setpoints[0], 31.5);
     assert_close(setpoints[199], 34.5);
     bench.send_ok(&["skin 41.5"]);
-    let refused = "err above this skin the course reaches 42.50 C; 15 to 42 C";
+    let refused = "err with the present skin the course reaches 42.50 C; 15 to 42 C are allowed";
     assert_eq!(bench.send("play now"), refused);
     bench.send_ok(&["arm"]);
     assert_close(bench.steps(10)[9], 41.5);
@@ -422,13 +422,19 @@ fn the_host_chooses_the_fields_of_telemetry() {
     let mut bench = Bench::armed();
     bench.send_ok(&["hold 24", "stream 1 display setpoint"]);
     let telemetry = bench.step();
-    let line = UnaskedLine(crate::device::events::UnaskedReport::Telemetry(telemetry)).to_string();
+    let line = UnsolicitedLine(crate::device::events::UnsolicitedReport::Telemetry(
+        telemetry,
+    ))
+    .to_string();
     let words: Vec<_> = line.split(' ').collect();
     assert_eq!(words.len(), 6, "{line}");
     assert_eq!((words[0], words[2]), ("T", "stimulus"));
     bench.send_ok(&["stream 1"]);
     let telemetry = bench.step();
-    let line = UnaskedLine(crate::device::events::UnaskedReport::Telemetry(telemetry)).to_string();
+    let line = UnsolicitedLine(crate::device::events::UnsolicitedReport::Telemetry(
+        telemetry,
+    ))
+    .to_string();
     assert_eq!(line.split(' ').count(), 13, "{line}");
     let unknown = "err unknown field 'heat'; known: setpoint display sink skin room force demand current evaluations";
     assert_eq!(bench.send("stream 1 heat"), unknown);

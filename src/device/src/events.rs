@@ -18,9 +18,9 @@ pub enum DeviceEventKind {
     /// The finger has lifted.
     Lift,
     /// A course has started.
-    Start,
+    CourseStarted,
     /// A course has ended by itself, after its last repetition.
-    End,
+    CourseEnded,
     /// An edge at the trigger input.
     Trigger,
 }
@@ -30,8 +30,8 @@ impl DeviceEventKind {
     pub const PROTOCOL_WORDS: [(&'static str, Self); 5] = [
         ("land", Self::Land),
         ("lift", Self::Lift),
-        ("start", Self::Start),
-        ("end", Self::End),
+        ("start", Self::CourseStarted),
+        ("end", Self::CourseEnded),
         ("trigger", Self::Trigger),
     ];
 
@@ -41,8 +41,8 @@ impl DeviceEventKind {
         match self {
             Self::Land => "land",
             Self::Lift => "lift",
-            Self::Start => "start",
-            Self::End => "end",
+            Self::CourseStarted => "start",
+            Self::CourseEnded => "end",
             Self::Trigger => "trigger",
         }
     }
@@ -82,7 +82,7 @@ pub struct DeviceEvent {
 
 /// What a device sends to the host without being asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum UnaskedReport {
+pub enum UnsolicitedReport {
     /// Telemetry of a tick.
     Telemetry(Telemetry),
     /// An event.
@@ -92,8 +92,8 @@ pub enum UnaskedReport {
 impl WithSourceFinger<Telemetry> {
     /// The telemetry as one of the reports.
     #[must_use]
-    pub fn into_report(self) -> WithSourceFinger<UnaskedReport> {
-        self.map_content(UnaskedReport::Telemetry)
+    pub fn into_report(self) -> WithSourceFinger<UnsolicitedReport> {
+        self.map_content(UnsolicitedReport::Telemetry)
     }
 }
 
@@ -211,10 +211,13 @@ mod tests {
     #[test]
     fn a_marked_event_gives_a_pulse_of_10_ticks_and_another_one_none() {
         let mut reporter = EventReporter {
-            marked: EventKinds::NONE.with(DeviceEventKind::End),
+            marked: EventKinds::NONE.with(DeviceEventKind::CourseEnded),
             ..EventReporter::default()
         };
-        for (kind, ticks) in [(DeviceEventKind::Start, 0), (DeviceEventKind::End, 10)] {
+        for (kind, ticks) in [
+            (DeviceEventKind::CourseStarted, 0),
+            (DeviceEventKind::CourseEnded, 10),
+        ] {
             reporter.note(kind, 5, 0);
             let high = (0..30).filter(|_| reporter.next_trigger_output()).count();
             assert_eq!(high, ticks, "{kind:?}");

@@ -163,8 +163,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 (pulse.replace_course(self.upload.course_to_replace()))
                     .map_err(|error| rejected(Error::Course(error)))?;
                 let (_, loaded) = self.load_course(finger, &mut execute);
-                let played =
-                    Self::execute_in_stations(Command::Play(pulse.order), finger, execute);
+                let played = Self::execute_in_stations(Command::Play(pulse.order), finger, execute);
                 loaded.and(played)
             }
             Request::Upload => match self.continue_upload(finger, line).map_err(rejected)? {
@@ -221,10 +220,10 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         let number = finger.map(FingerIndex::index_u8);
         let (mut permitted, mut first_refusal) = (false, None);
         for one in FingerIndex::all().filter(|one| finger.is_none_or(|finger| finger == *one)) {
-            let parts = self.upload.course().parts().map(Some);
+            let chunks = self.upload.course().chunks().map(Some);
             let refusal = iter::once(None)
-                .chain(parts)
-                .find_map(|part| execute(Some(one), Command::LoadCourse(part)).err());
+                .chain(chunks)
+                .find_map(|chunk| execute(Some(one), Command::LoadCourse(chunk)).err());
             match refusal {
                 None => permitted = true,
                 Some(refused) => {

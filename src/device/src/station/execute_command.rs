@@ -222,7 +222,7 @@ impl Station {
         match self.state {
             State::Tripped(fault) => return Err(Refused::Tripped(fault)),
             State::Armed(_) | State::Stimulus(Stimulus::Hold(_)) => {}
-            _ => return Err(Refused::NeedsArmed("tune")),
+            _ => return Err(Refused::TuneNeedsArmed),
         }
         if self.contact.touching() {
             return Err(Refused::Touched);
@@ -231,7 +231,7 @@ impl Station {
             .last
             .readings
             .sink
-            .map_err(|_| Refused::NeedsArmed("tune"))?;
+            .map_err(|_| Refused::TuneNeedsArmed)?;
         self.identified.outcome = None;
         self.state = State::Armed(ArmedTask::Identify(
             Identification::begin_at_sink_temperature(sink),

@@ -11,8 +11,8 @@ use crate::reference::Reference;
 use crate::safety::Setpoint;
 use crate::safety::limits::{SETPOINT_MAX, SETPOINT_MIN};
 use crate::stimulus::{
-    Approach, Course, CourseEnd, CoursePart, CourseStart, CourseTemperatures,
-    FOLLOWING_ERROR_LIMITED, Hold, PlayOrder, Player, Stimulus, StimulusTemperatures,
+    Approach, Course, CourseChunk, CourseEnd, CourseStart, FOLLOWING_ERROR_REPORTED, Hold,
+    PlayOrder, Player, Stimulus, StimulusTemperatures, TemperatureKind,
 };
 
 impl Station {
@@ -20,7 +20,9 @@ impl Station {
     fn require_driven(&self, command: &'static str) -> Result<(), Refused> {
         match self.state {
             State::Tripped(fault) => Err(Refused::Tripped(fault)),
-            State::Off | State::SelfTest(_) | State::Ready => Err(Refused::NeedsArmed(command)),
+            State::Off | State::SelfTest(_) | State::Ready => {
+                Err(Refused::NeedsDrivenDisplay(command))
+            }
             _ => Ok(()),
         }
     }
@@ -52,11 +54,11 @@ impl Station {
     #[inline(never)]
     pub(super) fn execute_load_course(
         &mut self,
-        part: Option<CoursePart<'_>>,
+        chunk: Option<CourseChunk<'_>>,
     ) -> Result<(), Refused> {
-        match (part, &self.state) {
-            // Also if a fault has tripped the station since the first part, because loading drives nothing.
-            (Some(part), _) => self.courses.load_part(&part),
+        match (chunk, &self.state) {
+            // Also if a fault has tripped the station since the first chunk, because loading drives nothing.
+            (Some(chunk), _) => self.courses.load_chunk(&chunk),
             (None, State::Tripped(fault)) => return Err(Refused::Tripped(*fault)),
             (None, _) => {}
         }
@@ -77,7 +79,7 @@ impl Station {
         }
         let dose = course
             .dose(base)
-            .times_after(order.times, self.detectors.dose());
+            .repeated_on_top_of(order.play_count, self.detectors.dose());
         if dose.reaches_limit() {
             return Err(Refused::CourseDose(dose));
         }
@@ -101,13 +103,11 @@ impl Station {
     /// What is added to the temperatures of a course now, °C.
     fn base_of(&self, course: &Course) -> Celsius {
         let before_contact = self.estimator.finger.temperatures_before_contact();
-        match (course.temperatures(), before_contact) {
-            (CourseTemperatures::Relative, Some(before_contact)) => before_contact.skin,
+        match (course.temperature_kind(), before_contact) {
+            (TemperatureKind::AboveSkin, Some(before_contact)) => before_contact.skin,
             // No estimate of the skin: the station has no valid readings, and the bridge is off.
-            (CourseTemperatures::Relative, None) => {
-                self.last.readings.skin.ok().unwrap_or_default()
-            }
-            (CourseTemperatures::Absolute, _) => Celsius::ZERO,
+            (TemperatureKind::AboveSkin, None) => self.last.readings.skin.ok().unwrap_or_default(),
+            (TemperatureKind::Absolute, _) => Celsius::ZERO,
         }
     }
 
@@ -136,7 +136,7 @@ impl Station {
             let course = self.courses.playing();
             let player = Player::new(course.points(), self.base_of(course), &order, elapsed);
             self.state = State::Stimulus(Stimulus::Play(player));
-            self.events.note(DeviceEventKind::Start, tick, 0);
+            self.events.note(DeviceEventKind::CourseStarted, tick, 0);
         }
     }
 
@@ -180,7 +180,7 @@ impl Station {
             Stimulus::Play(player) => player.next_temperatures(course.points()),
         };
         if ended.is_some() {
-            self.events.note(DeviceEventKind::End, self.tick, 0);
+            self.events.note(DeviceEventKind::CourseEnded, self.tick, 0);
         }
         match ended {
             None => {}
@@ -191,7 +191,7 @@ impl Station {
         }
         let StimulusTemperatures { now, target } = temperatures;
         let mut reference = Reference::limited_to_safe_range(now, target);
-        reference.limited |= now.abs_diff(surface) > FOLLOWING_ERROR_LIMITED;
+        reference.limited |= now.abs_diff(surface) > FOLLOWING_ERROR_REPORTED;
         Some(reference)
     }
 }

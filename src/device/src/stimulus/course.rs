@@ -20,25 +20,25 @@ const RELATIVE_MAX: Celsius = SETPOINT_MAX.saturating_sub(SETPOINT_MIN);
 
 /// What the temperatures of a course are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CourseTemperatures {
+pub enum TemperatureKind {
     /// °C.
     #[default]
     Absolute,
     /// K above the skin before contact.
-    Relative,
+    AboveSkin,
 }
 
-impl CourseTemperatures {
+impl TemperatureKind {
     /// Both, with their words in the protocol.
     pub const PROTOCOL_WORDS: [(&'static str, Self); 2] =
-        [("absolute", Self::Absolute), ("relative", Self::Relative)];
+        [("absolute", Self::Absolute), ("relative", Self::AboveSkin)];
 
     /// Smallest and largest temperature of a point, °C or K.
     #[must_use]
     pub const fn range(self) -> (Celsius, Celsius) {
         match self {
             Self::Absolute => (SETPOINT_MIN, SETPOINT_MAX),
-            Self::Relative => (RELATIVE_MAX.saturating_neg(), RELATIVE_MAX),
+            Self::AboveSkin => (RELATIVE_MAX.saturating_neg(), RELATIVE_MAX),
         }
     }
 }
@@ -52,14 +52,14 @@ pub struct CoursePoint {
     pub temperature: Celsius,
 }
 
-/// Points of a [`CoursePart`]. Copying them takes about a microsecond.
-const PART_POINTS: usize = 32;
+/// Points of a [`CourseChunk`]. Copying them takes about a microsecond.
+const CHUNK_POINTS: usize = 32;
 
 /// A few points of a course, so that copying the course does not lock out the control tick for long.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoursePart<'a> {
+pub struct CourseChunk<'a> {
     course: &'a Course,
-    /// Index of the part's first point.
+    /// Index of the chunk's first point.
     first: usize,
 }
 
@@ -88,7 +88,7 @@ pub enum CourseError {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Course {
     points: Vec<CoursePoint, COURSE_POINTS_MAX>,
-    temperatures: CourseTemperatures,
+    kind: TemperatureKind,
     smallest: Celsius,
     largest: Celsius,
     /// Time at the largest temperature that gives the dose of the course; set by [`Self::check_whole`].
@@ -97,17 +97,17 @@ pub struct Course {
 
 impl Default for Course {
     fn default() -> Self {
-        Self::new(CourseTemperatures::default())
+        Self::new(TemperatureKind::default())
     }
 }
 
 impl Course {
     /// A course without points yet.
     #[must_use]
-    pub const fn new(temperatures: CourseTemperatures) -> Self {
+    pub const fn new(kind: TemperatureKind) -> Self {
         Self {
             points: Vec::new(),
-            temperatures,
+            kind,
             smallest: Celsius::MAX,
             largest: Celsius::MIN,
             equivalent: EquivalentTime::ZERO,
@@ -115,31 +115,31 @@ impl Course {
     }
 
     /// Removes all points. In place, where a new course would be a kilobyte on the stack.
-    pub fn restart(&mut self, temperatures: CourseTemperatures) {
+    pub fn clear(&mut self, kind: TemperatureKind) {
         self.points.clear();
-        self.temperatures = temperatures;
+        self.kind = kind;
         self.smallest = Celsius::MAX;
         self.largest = Celsius::MIN;
         self.equivalent = EquivalentTime::ZERO;
     }
 
-    /// The course in parts, for [`Self::copy_part`].
-    pub fn parts(&self) -> impl Iterator<Item = CoursePart<'_>> {
-        let part = |first| CoursePart {
+    /// The course in chunks, for [`Self::copy_chunk`].
+    pub fn chunks(&self) -> impl Iterator<Item = CourseChunk<'_>> {
+        let chunk = |first| CourseChunk {
             course: self,
             first,
         };
-        (0..self.points.len()).step_by(PART_POINTS).map(part)
+        (0..self.points.len()).step_by(CHUNK_POINTS).map(chunk)
     }
 
-    /// Copies a part of another course, after the parts before it. Returns whether this course is then the whole other one.
-    pub fn copy_part(&mut self, part: &CoursePart<'_>) -> bool {
-        let &CoursePart { course, first } = part;
+    /// Copies a chunk of another course, after the chunks before it. Returns whether this course is then the whole other one.
+    pub fn copy_chunk(&mut self, chunk: &CourseChunk<'_>) -> bool {
+        let &CourseChunk { course, first } = chunk;
         self.points.truncate(first);
-        let points = course.points.chunks(PART_POINTS).nth(first / PART_POINTS);
+        let points = course.points.chunks(CHUNK_POINTS).nth(first / CHUNK_POINTS);
         let follows = self.points.len() == first
             && points.is_some_and(|points| self.points.extend_from_slice(points).is_ok());
-        self.temperatures = course.temperatures;
+        self.kind = course.kind;
         self.smallest = course.smallest;
         self.largest = course.largest;
         self.equivalent = course.equivalent;
@@ -151,7 +151,7 @@ impl Course {
     /// # Errors
     /// The point does not fit behind the ones before; the course is unchanged.
     pub fn push(&mut self, point: CoursePoint) -> Result<(), CourseError> {
-        let (min, max) = self.temperatures.range();
+        let (min, max) = self.kind.range();
         if point.time_ms > COURSE_DURATION_MAX_MS {
             return Err(CourseError::TooLong(point.time_ms));
         }
@@ -190,15 +190,15 @@ impl Course {
         if self.points.len() < 2 {
             return Err(CourseError::TooFewPoints);
         }
-        let counted_from = match self.temperatures {
-            CourseTemperatures::Absolute => DOSE_COUNTED_FROM,
+        let counted_from = match self.kind {
+            TemperatureKind::Absolute => DOSE_COUNTED_FROM,
             // No set-point is above 42 °C, so what is 3 K below the largest temperature is never counted.
-            CourseTemperatures::Relative => self
+            TemperatureKind::AboveSkin => self
                 .largest
                 .saturating_sub(SETPOINT_MAX.saturating_sub(DOSE_COUNTED_FROM)),
         };
         self.equivalent = time_equivalent_to_largest(&self.points, self.largest, counted_from);
-        if self.temperatures == CourseTemperatures::Absolute {
+        if self.kind == TemperatureKind::Absolute {
             let dose = self.dose(Celsius::ZERO);
             if dose.reaches_limit() {
                 return Err(CourseError::TooHotForTooLong(dose.milliseconds_at_43()));
@@ -226,8 +226,8 @@ impl Course {
 
     /// What the temperatures of the points are.
     #[must_use]
-    pub const fn temperatures(&self) -> CourseTemperatures {
-        self.temperatures
+    pub const fn temperature_kind(&self) -> TemperatureKind {
+        self.kind
     }
 
     /// Temperature of the first point, °C; 0 for a course without points.

@@ -57,7 +57,7 @@ pub struct PlayOrder {
     /// What starts it.
     pub start: CourseStart,
     /// How many times it is played, 1 or more.
-    pub times: u16,
+    pub play_count: u16,
     /// What follows.
     pub end: CourseEnd,
 }
@@ -77,9 +77,11 @@ impl Cursor {
     /// The start of a course. Before its first point it has the temperature of that point.
     fn new(points: &[CoursePoint], times: u16) -> Self {
         Self {
-            ramp: points.first().map_or(Ramp::constant(Celsius::ZERO), |first| {
-                Ramp::new(first.temperature, first.temperature, first.time_ms)
-            }),
+            ramp: points
+                .first()
+                .map_or(Ramp::constant(Celsius::ZERO), |first| {
+                    Ramp::new(first.temperature, first.temperature, first.time_ms)
+                }),
             point: 0,
             times_left: times.saturating_sub(1),
         }
@@ -134,7 +136,7 @@ impl Player {
     /// Plays these points, which have `elapsed` ticks of the course behind them in the first tick.
     #[must_use]
     pub fn new(points: &[CoursePoint], base: Celsius, order: &PlayOrder, elapsed: u32) -> Self {
-        let mut now = Cursor::new(points, order.times);
+        let mut now = Cursor::new(points, order.play_count);
         now.advance(points, elapsed);
         let mut ahead = now;
         ahead.advance(points, STIMULUS_LEAD_TICKS);
