@@ -4,7 +4,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use heapless::spsc::Producer;
 use thermal_display::device::command::WithSourceFinger;
-use thermal_display::device::events::UnaskedReport;
+use thermal_display::device::events::UnsolicitedReport;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::{DigitalInputs, Samples};
 use thermal_display::device::{DeviceInPlace, FingerIndex};
@@ -25,7 +25,7 @@ pub struct ControlLoop {
     pub trigger_input: TriggerInput,
     pub trigger_output: TriggerOutput,
     pub trip_cause_recorder: TripCauseRecorder,
-    pub telemetry: Producer<'static, WithSourceFinger<UnaskedReport>>,
+    pub telemetry: Producer<'static, WithSourceFinger<UnsolicitedReport>>,
     pub window_watchdog: WindowWatchdog,
     pub chip_monitor: ChipMonitor,
 }

@@ -35,7 +35,7 @@ fn every_wrong_course_is_refused_with_its_reason() {
         ),
         (
             &[begin, "upload row 0 1 30", "upload row 1 0.5 30"],
-            "err row 1: time goes back: 500 ms after 1000 ms; 3600000 ms at most",
+            "err row 1: time 500 ms is not after 1000 ms, that of the row before",
         ),
         (
             &[begin, "upload row 0 0 42.1"],
@@ -132,7 +132,7 @@ fn stimuli_need_a_driven_display_and_no_fault() {
     for (line, command) in [("hold 30", "hold"), ("play now", "play")] {
         assert_eq!(
             bench.send(line),
-            format!("err {command} needs the state armed")
+            format!("err {command} needs a driven display: arm first")
         );
     }
     // Loading needs no display.
@@ -185,7 +185,7 @@ fn points_that_are_too_many_not_later_or_out_of_turn_are_refused_and_the_upload_
     for (line, answer) in [
         (
             "upload row 1 0.5 30",
-            "err row 1: time goes back: 500 ms after 500 ms; 3600000 ms at most",
+            "err row 1: time 500 ms is not after 500 ms, that of the row before",
         ),
         ("upload row 2 1 30", "err not the next row, which is 1"),
         (
@@ -311,7 +311,9 @@ fn a_relative_course_that_leaves_the_range_above_or_below_this_skin_is_refused()
         for order in ["play now", "play trigger", "play landing 3 neutral"] {
             assert_eq!(
                 bench.send(order),
-                format!("err above this skin the course reaches {reached_c} C; 15 to 42 C")
+                format!(
+                    "err with the present skin the course reaches {reached_c} C; 15 to 42 C are allowed"
+                )
             );
         }
     }
@@ -319,8 +321,8 @@ fn a_relative_course_that_leaves_the_range_above_or_below_this_skin_is_refused()
     bench.send_ok(&["skin sensor"]);
     assert_eq!(bench.upload("relative", &[(0.0, 0.0), (0.2, 9.0)]), "ok");
     let answer = bench.send("play now");
-    let reached_c: f64 = (answer.strip_prefix("err above this skin the course reaches "))
-        .and_then(|rest| rest.strip_suffix(" C; 15 to 42 C"))
+    let reached_c: f64 = (answer.strip_prefix("err with the present skin the course reaches "))
+        .and_then(|rest| rest.strip_suffix(" C; 15 to 42 C are allowed"))
         .and_then(|number| number.parse().ok())
         .expect(&answer);
     assert!((42.5..43.5).contains(&reached_c), "{answer}");
@@ -336,6 +338,18 @@ fn the_dose_of_a_relative_course_is_that_above_this_skin() {
     let refused = "err too hot for too long: CEM43 would be 0.67 min; below 0.50 min is allowed";
     assert_eq!(bench.send("play landing"), refused);
     bench.send_ok(&["skin 32", "play landing"]);
+}
+
+#[test]
+fn a_relative_course_that_stays_below_39_c_gives_no_dose() {
+    let mut bench = Bench::armed();
+    let hour = [(0.0, 5.0), (3600.0, 5.0)];
+    assert_eq!(bench.upload("relative", &hour), "ok");
+    bench.send_ok(&["skin 33", "play landing 9"]);
+    bench.send_ok(&["skin 34"]);
+    // At 39 °C the dose begins: nine hours are 9 / 256 of an hour at 43 °C.
+    let refused = "err too hot for too long: CEM43 would be 2.11 min; below 0.50 min is allowed";
+    assert_eq!(bench.send("play landing 9"), refused);
 }
 
 #[test]

@@ -4,13 +4,17 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
+use contact_model::fixed_point::Celsius;
+
 use super::device::{arm, samples};
 use super::objects::checksum;
 use crate::device::TriggerEdge;
+use crate::device::command::Command;
 use crate::device::drive::BoardOutputs;
+use crate::device::safety::Fault;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, FingerIndex, Telemetry};
-use crate::protocol::{CommandHandler, UnaskedLine};
+use crate::protocol::{CommandHandler, UnsolicitedLine};
 use crate::settings::Settings;
 
 pub(super) const FIRST: FingerIndex<1> = FingerIndex::FIRST;
@@ -64,12 +68,7 @@ impl Bench {
     }
 
     pub(super) fn upload(&mut self, kind: &str, points: &[(f64, f64)]) -> String {
-        let mut lines: Vec<_> = [format!("upload begin course {} {kind}", points.len())].into();
-        let rows = points.iter().enumerate();
-        lines.extend(
-            rows.map(|(index, (t_s, celsius))| format!("upload row {index} {t_s} {celsius}")),
-        );
-        let commit = format!("upload commit {:08x}", checksum(&lines));
+        let (lines, commit) = upload_lines(kind, points);
         for line in &lines {
             let answer = self.send(line);
             if answer != "ok" {
@@ -95,7 +94,7 @@ impl Bench {
         };
         self.outputs.push(self.device.step_finger(FIRST, &samples));
         while let Some(event) = self.device.take_finger_event(FIRST) {
-            self.events.push(UnaskedLine(event.content).to_string());
+            self.events.push(UnsolicitedLine(event.content).to_string());
         }
         let telemetry = self.device.finger_telemetry_if_due(FIRST);
         let telemetry = telemetry.expect("streamed on every tick").content;
@@ -115,6 +114,15 @@ impl Bench {
         let word = answer.split_ascii_whitespace().nth(1).expect("a state");
         word.trim_start_matches("state=").into()
     }
+}
+
+/// Lines that upload a course, and the commit.
+pub(super) fn upload_lines(kind: &str, points: &[(f64, f64)]) -> (Vec<String>, String) {
+    let mut lines: Vec<_> = [format!("upload begin course {} {kind}", points.len())].into();
+    let rows = points.iter().enumerate();
+    lines.extend(rows.map(|(index, (t_s, celsius))| format!("upload row {index} {t_s} {celsius}")));
+    let commit = format!("upload commit {:08x}", checksum(&lines));
+    (lines, commit)
 }
 
 fn assert_close(actual_c: f64, expected_c: f64) {
@@ -262,7 +270,7 @@ fn a_relative_course_adds_the_skin_and_an_assumed_skin_replaces_the_sensor() {
     assert_close(setpoints[0], 31.5);
     assert_close(setpoints[199], 34.5);
     bench.send_ok(&["skin 41.5"]);
-    let refused = "err above this skin the course reaches 42.50 C; 15 to 42 C";
+    let refused = "err with the present skin the course reaches 42.50 C; 15 to 42 C are allowed";
     assert_eq!(bench.send("play now"), refused);
     bench.send_ok(&["arm"]);
     assert_close(bench.steps(10)[9], 41.5);
@@ -285,6 +293,109 @@ fn a_course_is_loaded_while_another_plays_and_a_broken_upload_leaves_the_old_one
     assert_eq!(wrong, "err 1 of 2 rows; nothing is changed, upload again");
     bench.send_ok(&["play now"]);
     assert_close(bench.steps(101)[100], 21.0);
+}
+
+#[test]
+fn a_course_is_loaded_although_a_fault_trips_the_station_meanwhile() {
+    let mut bench = Bench::armed();
+    let points: Vec<_> = (0..100)
+        .map(|point| (0.1 * f64::from(point), 20.0 + 0.1 * f64::from(point)))
+        .collect();
+    let (lines, commit) = upload_lines("absolute", &points);
+    for line in &lines {
+        bench.send_ok(&[line]);
+    }
+    let (device, mut parts) = (&mut bench.device, 0);
+    let answer = bench.handler.answer(&commit, |finger, command| {
+        parts += u8::from(matches!(command, Command::LoadCourse(Some(_))));
+        if parts == 2 {
+            device.trip_all(Fault::Stack);
+        }
+        device.execute(finger, command)
+    });
+    assert_eq!((answer.is_ok(), parts), (true, 4));
+    assert_eq!(bench.state(), "tripped");
+    bench.send_ok(&["clear"]);
+    bench.arm();
+    bench.send_ok(&["play now"]);
+    let setpoints = bench.steps(9901);
+    assert_close(setpoints[0], 20.0);
+    assert_close(setpoints[9900], 29.9);
+}
+
+#[test]
+fn a_pulse_and_a_course_for_all_fingers_are_executed_by_those_that_are_not_tripped() {
+    let settings = Settings::default();
+    let mut device = Device::<2>::new(&settings);
+    let mut handler = CommandHandler::<2>::new(settings);
+    let second = FingerIndex::new(1).expect("a finger");
+    device.trip_all(Fault::Stack);
+    let mut send = |device: &mut Device<2>, line: &str| {
+        let answer = handler.answer(line, |finger, command| device.execute(finger, command));
+        answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
+    };
+    assert_eq!(send(&mut device, "@1 clear"), "@1 ok");
+    arm(&mut device, second);
+    let refused = "@0 err tripped by stack; clear it first";
+    assert_eq!(send(&mut device, "pulse 30 31 10 0.05 5"), refused);
+    assert!(send(&mut device, "@1 state").contains("state=stimulus"));
+    let (lines, commit) = upload_lines("absolute", &[(0.0, 20.0), (1.0, 21.0)]);
+    assert_eq!(send(&mut device, &lines[0]), refused);
+    assert_eq!(send(&mut device, &lines[1]), "ok");
+    assert_eq!(send(&mut device, &lines[2]), "ok");
+    assert_eq!(send(&mut device, &commit), refused);
+    assert_eq!(send(&mut device, "@1 play now"), "@1 ok");
+    device.step_finger(second, &samples(0));
+    assert!(send(&mut device, "@1 state").contains("setpoint_c=20.00"));
+}
+
+#[test]
+fn a_pulse_leaves_the_upload_of_an_object_and_ends_that_of_a_course() {
+    let mut bench = Bench::armed();
+    let [begin, row] = ["upload begin object 1 0.5", "upload row 0 2 40"];
+    let commit = format!(
+        "upload commit {:08x}",
+        checksum(&[begin, row].map(String::from))
+    );
+    bench.send_ok(&["material copper", begin, "pulse 30 31 10 0.05 5", row]);
+    bench.send_ok(&[&commit]);
+    assert!(bench.send("state").contains("body=upload"));
+    bench.send_ok(&["upload begin course 2 absolute", "pulse 30 31 10 0.05 5"]);
+    assert!(
+        bench
+            .send("upload row 0 0 30")
+            .starts_with("err no upload has begun")
+    );
+}
+
+/// The preset of foam is some kelvins above the display of the bench, which stays at room temperature.
+#[test]
+fn a_hold_right_after_another_stimulus_does_not_begin_at_the_set_point_of_the_object() {
+    for stimulus in ["play landing", "hold 30"] {
+        let mut bench = Bench::armed();
+        bench.send_ok(&["material foam", "start"]);
+        assert_eq!(bench.upload("absolute", &[(0.0, 30.0), (0.1, 31.0)]), "ok");
+        let presented = bench.step();
+        let display = presented.display.expect("a reading");
+        let preset = presented.setpoint.expect("a preset");
+        assert!(preset.abs_diff(display) > Celsius::ONE && !presented.limited);
+        bench.send_ok(&[stimulus, "hold 28 1"]);
+        let setpoint = bench.step().setpoint.expect("driven");
+        assert!(setpoint.abs_diff(display) < Celsius::lit("0.01"));
+    }
+}
+
+#[test]
+fn a_course_that_another_command_replaces_before_its_first_tick_has_not_started() {
+    let mut bench = Bench::armed();
+    assert_eq!(bench.upload("absolute", &[(0.0, 30.0), (0.1, 31.0)]), "ok");
+    bench.send_ok(&["play now", "hold 24"]);
+    bench.steps(3);
+    assert_eq!(bench.events, [""; 0]);
+    let tick = bench.step().tick;
+    bench.send_ok(&["play now"]);
+    bench.steps(1);
+    assert_eq!(bench.events, [format!("E {} 0 start", tick + 1)]);
 }
 
 #[test]
@@ -311,13 +422,19 @@ fn the_host_chooses_the_fields_of_telemetry() {
     let mut bench = Bench::armed();
     bench.send_ok(&["hold 24", "stream 1 display setpoint"]);
     let telemetry = bench.step();
-    let line = UnaskedLine(crate::device::events::UnaskedReport::Telemetry(telemetry)).to_string();
+    let line = UnsolicitedLine(crate::device::events::UnsolicitedReport::Telemetry(
+        telemetry,
+    ))
+    .to_string();
     let words: Vec<_> = line.split(' ').collect();
     assert_eq!(words.len(), 6, "{line}");
     assert_eq!((words[0], words[2]), ("T", "stimulus"));
     bench.send_ok(&["stream 1"]);
     let telemetry = bench.step();
-    let line = UnaskedLine(crate::device::events::UnaskedReport::Telemetry(telemetry)).to_string();
+    let line = UnsolicitedLine(crate::device::events::UnsolicitedReport::Telemetry(
+        telemetry,
+    ))
+    .to_string();
     assert_eq!(line.split(' ').count(), 13, "{line}");
     let unknown = "err unknown field 'heat'; known: setpoint display sink skin room force demand current evaluations";
     assert_eq!(bench.send("stream 1 heat"), unknown);

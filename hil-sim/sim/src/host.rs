@@ -5,7 +5,7 @@ use std::ops::Range;
 use thermal_client::client::upload_course;
 use thermal_client::course::Course;
 use thermal_device::reference::ContactModel;
-use thermal_device::stimulus::CourseTemperatures;
+use thermal_device::stimulus::TemperatureKind;
 use thermal_protocol::LINE_MAX_BYTES;
 
 use crate::scene::{FaultKind, Scene, custom_line};
@@ -60,7 +60,7 @@ struct PlayingHost {
 impl PlayingHost {
     fn new(times: Vec<Range<u64>>) -> Self {
         let lines = PLAYED.iter().flat_map(|points| {
-            let upload = upload_course(CourseTemperatures::Absolute, points).into_iter();
+            let upload = upload_course(TemperatureKind::Absolute, points).into_iter();
             upload
                 .map(|command| format!("{command}\n").into_bytes())
                 .chain([b"play now\n".to_vec()])

@@ -68,7 +68,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let mut commands = played.points.upload_commands();
     commands.push(PlainCommand::Play(PlayOrder {
         start: arguments.at,
-        times: arguments.repeats,
+        play_count: arguments.repeats,
         end: CourseEnd::Hold,
     }));
     target.with_client(|client| {

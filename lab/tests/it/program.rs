@@ -56,7 +56,7 @@ fn a_course_is_loaded_and_waits_for_the_landing() {
     let refused = run(&play);
     assert_eq!(refused.status.code(), Some(1));
     assert!(
-        text(&refused.stderr).contains("play needs the state armed"),
+        text(&refused.stderr).contains("play needs a driven display: arm first"),
         "{}",
         text(&refused.stderr)
     );

@@ -67,7 +67,7 @@ use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 use thermal_display::device::command::WithSourceFinger;
-use thermal_display::device::events::UnaskedReport;
+use thermal_display::device::events::UnsolicitedReport;
 use thermal_display::device::safety::{Fault, TripCause};
 use thermal_display::device::{DeviceInPlace, FingerIndex, Station};
 use thermal_display::line_queue::LineQueue;
@@ -114,7 +114,7 @@ pub struct StaticMemory {
     frames: [OutgoingLine; serial::FRAME_COUNT],
     frame_queues: serial::FullAndEmptyFrameQueues,
     line_queue: LineQueue,
-    telemetry: Queue<WithSourceFinger<UnaskedReport>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
+    telemetry: Queue<WithSourceFinger<UnsolicitedReport>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
     // Created in place, because moving it while sampling runs would delay the first tick. Not an `Option`, whose `None` is not
     // all zeros, so that the whole memory would be kept in flash, to be copied from there at the start.
     handler: MaybeUninit<CommandHandler<FINGERS>>,

@@ -16,7 +16,7 @@ use crate::identification::{AbortReason, NormalEquationRow};
 use crate::reference::ContactModel;
 use crate::safety::{Fault, PredictedDose, SelfTestReport, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, Samples, ThermistorAverage};
-use crate::stimulus::{CoursePart, PlayOrder};
+use crate::stimulus::{CourseChunk, PlayOrder};
 use crate::{StateName, TICK_S, TelemetryFields};
 
 /// Upper limit of [`ChosenMaterial::impedance_ratio`]. An object at this limit takes hardly any heat.
@@ -179,9 +179,10 @@ pub enum Command<'a> {
         /// Rate, K/s, above zero.
         rate_k_s: Celsius,
     },
-    /// Load a part of a course, which with its last part replaces the one that was loaded before, but not one that plays.
-    /// `None` only asks whether loading is permitted. Refused while the station is tripped.
-    LoadCourse(Option<CoursePart<'a>>),
+    /// Load a chunk of a course, which with its last chunk replaces the one that was loaded before, but not one that plays.
+    /// `None` only asks whether loading is permitted, and is refused while the station is tripped; to be sent before the first
+    /// chunk. The chunks are never refused.
+    LoadCourse(Option<CourseChunk<'a>>),
     /// Play the course that was loaded last. Refused in off, self-test, ready and tripped, if no course is loaded, and if
     /// its temperatures above the present skin or its dose are too large.
     Play(PlayOrder),
@@ -272,10 +273,12 @@ pub enum Refused {
     NoMaterial,
     /// `start` was sent while an object is already presented.
     AlreadyStarted,
-    /// The command with this name, `hold`, `play` or `tune`, was sent in a state that does not drive the display (in tripped
-    /// the reply is [`Self::Tripped`]); `tune` also while an object or a course is presented, or without a valid reading
-    /// of the sink.
-    NeedsArmed(&'static str),
+    /// The command with this name, `hold` or `play`, was sent in a state that does not drive the display (in tripped the reply is
+    /// [`Self::Tripped`]).
+    NeedsDrivenDisplay(&'static str),
+    /// `tune` was sent in a state that does not drive the display (in tripped the reply is [`Self::Tripped`]), while an object or
+    /// a course is presented, or without a valid reading of the sink.
+    TuneNeedsArmed,
     /// The command was [`Command::Average`], [`Command::Calibrate`] or [`Command::Retune`], and an object or a course is presented:
     /// the finger would feel the change, or disturb the average.
     Presenting,

@@ -5,7 +5,7 @@ use core::borrow::BorrowMut;
 
 use crate::command::{Command, Refused, Reply, WithSourceFinger};
 use crate::drive::BoardOutputs;
-use crate::events::UnaskedReport;
+use crate::events::UnsolicitedReport;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
@@ -155,11 +155,11 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     pub fn take_finger_event(
         &mut self,
         finger: FingerIndex<FINGERS>,
-    ) -> Option<WithSourceFinger<UnaskedReport>> {
+    ) -> Option<WithSourceFinger<UnsolicitedReport>> {
         let event = self.station_mut(finger).take_event()?;
         Some(WithSourceFinger {
             finger: finger.index_unless_single_finger(),
-            content: UnaskedReport::Event(event),
+            content: UnsolicitedReport::Event(event),
         })
     }
 

@@ -18,9 +18,9 @@ pub enum DeviceEventKind {
     /// The finger has lifted.
     Lift,
     /// A course has started.
-    Start,
+    CourseStarted,
     /// A course has ended by itself, after its last repetition.
-    End,
+    CourseEnded,
     /// An edge at the trigger input.
     Trigger,
 }
@@ -30,8 +30,8 @@ impl DeviceEventKind {
     pub const PROTOCOL_WORDS: [(&'static str, Self); 5] = [
         ("land", Self::Land),
         ("lift", Self::Lift),
-        ("start", Self::Start),
-        ("end", Self::End),
+        ("start", Self::CourseStarted),
+        ("end", Self::CourseEnded),
         ("trigger", Self::Trigger),
     ];
 
@@ -41,8 +41,8 @@ impl DeviceEventKind {
         match self {
             Self::Land => "land",
             Self::Lift => "lift",
-            Self::Start => "start",
-            Self::End => "end",
+            Self::CourseStarted => "start",
+            Self::CourseEnded => "end",
             Self::Trigger => "trigger",
         }
     }
@@ -82,7 +82,7 @@ pub struct DeviceEvent {
 
 /// What a device sends to the host without being asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum UnaskedReport {
+pub enum UnsolicitedReport {
     /// Telemetry of a tick.
     Telemetry(Telemetry),
     /// An event.
@@ -92,8 +92,8 @@ pub enum UnaskedReport {
 impl WithSourceFinger<Telemetry> {
     /// The telemetry as one of the reports.
     #[must_use]
-    pub fn into_report(self) -> WithSourceFinger<UnaskedReport> {
-        self.map_content(UnaskedReport::Telemetry)
+    pub fn into_report(self) -> WithSourceFinger<UnsolicitedReport> {
+        self.map_content(UnsolicitedReport::Telemetry)
     }
 }
 
@@ -101,7 +101,7 @@ impl WithSourceFinger<Telemetry> {
 #[derive(Clone, Debug, Default)]
 pub struct EventReporter {
     /// Whether the host wants events; off until it says so.
-    pub reports: bool,
+    reports: bool,
     /// Events that give a pulse at the trigger output.
     pub marked: EventKinds,
     pulse_ticks_left: u8,
@@ -114,6 +114,15 @@ pub struct EventReporter {
 }
 
 impl EventReporter {
+    /// Switches the reports on or off. Switched off, the events that were not fetched are dropped.
+    pub fn switch_reports(&mut self, on: bool) {
+        self.reports = on;
+        if !on {
+            self.kept = [None; EVENTS_KEPT_MAX];
+            self.first = self.end;
+        }
+    }
+
     /// Takes note of an event. It is dropped if nobody has fetched the ones before.
     #[inline(never)]
     pub fn note(&mut self, kind: DeviceEventKind, tick: u32, microseconds: u16) {
@@ -166,7 +175,7 @@ mod tests {
         let mut reporter = EventReporter::default();
         reporter.note(DeviceEventKind::Land, 1, 0);
         assert_eq!(reporter.take(), None);
-        reporter.reports = true;
+        reporter.switch_reports(true);
         for tick in 0..20 {
             reporter.note(DeviceEventKind::Trigger, tick, 7);
         }
@@ -182,12 +191,33 @@ mod tests {
     }
 
     #[test]
+    fn events_that_were_not_fetched_are_dropped_when_reports_are_switched_off() {
+        let mut reporter = EventReporter::default();
+        reporter.switch_reports(true);
+        for tick in 0..3 {
+            reporter.note(DeviceEventKind::Land, tick, 0);
+        }
+        assert!(reporter.take().is_some() && reporter.has_event());
+        reporter.switch_reports(false);
+        assert!(!reporter.has_event());
+        reporter.switch_reports(true);
+        assert_eq!(reporter.take(), None);
+        reporter.note(DeviceEventKind::Lift, 9, 0);
+        let kind = reporter.take().map(|event| event.kind);
+        assert_eq!(kind, Some(DeviceEventKind::Lift));
+        assert!(!reporter.has_event());
+    }
+
+    #[test]
     fn a_marked_event_gives_a_pulse_of_10_ticks_and_another_one_none() {
         let mut reporter = EventReporter {
-            marked: EventKinds::NONE.with(DeviceEventKind::End),
+            marked: EventKinds::NONE.with(DeviceEventKind::CourseEnded),
             ..EventReporter::default()
         };
-        for (kind, ticks) in [(DeviceEventKind::Start, 0), (DeviceEventKind::End, 10)] {
+        for (kind, ticks) in [
+            (DeviceEventKind::CourseStarted, 0),
+            (DeviceEventKind::CourseEnded, 10),
+        ] {
             reporter.note(kind, 5, 0);
             let high = (0..30).filter(|_| reporter.next_trigger_output()).count();
             assert_eq!(high, ticks, "{kind:?}");

@@ -1,6 +1,6 @@
 //! Execution of the host's lines for all fingers of a device.
 
-use core::{array, fmt};
+use core::{array, fmt, iter};
 
 use contact_model::fixed_point::Body;
 use contact_model::material::{Material, SKIN};
@@ -118,7 +118,9 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         const { assert!(FINGERS > 0 && FINGERS <= 10) };
         let stripped = match strip_checksum(line) {
-            Ok(content) if self.checksums && content.len() == line.len() => {
+            Ok(content)
+                if self.checksums && content.len() == line.len() && !is_abort::<FINGERS>(line) =>
+            {
                 Err(ChecksumError::Missing(line_checksum(line.as_bytes())))
             }
             stripped => stripped,
@@ -160,20 +162,20 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             Request::Pulse(pulse) => {
                 (pulse.replace_course(self.upload.course_to_replace()))
                     .map_err(|error| rejected(Error::Course(error)))?;
-                self.load_course(finger, &mut execute)?;
-                Self::execute_in_stations(Command::Play(pulse.order), finger, execute)
+                let (_, loaded) = self.load_course(finger, &mut execute);
+                let played = Self::execute_in_stations(Command::Play(pulse.order), finger, execute);
+                loaded.and(played)
             }
             Request::Upload => match self.continue_upload(finger, line).map_err(rejected)? {
                 UploadStep::Row => Ok(addressed(Reply::DONE)),
                 UploadStep::BeginCourse => {
-                    let permitted =
-                        Self::execute_in_stations(Command::LoadCourse(None), finger, execute);
-                    if permitted.is_err() {
+                    let (permitted, answer) = self.load_course(finger, &mut execute);
+                    if !permitted {
                         self.upload.end();
                     }
-                    permitted
+                    answer
                 }
-                UploadStep::Course => self.load_course(finger, &mut execute),
+                UploadStep::Course => self.load_course(finger, &mut execute).1,
                 UploadStep::Object(body) => {
                     let command = Command::Body(ObjectBody::Upload(body));
                     Self::execute_in_stations(command, finger, execute)
@@ -203,21 +205,40 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// Loads the course of the upload in the station of `finger`, or in all stations for `None`.
+    /// Loads the course of the upload in the station of `finger`, or in all stations for `None`. A course that has only begun
+    /// has no points, and changes nothing. Returns whether a station permits it, and the answer, which is the refusal of the
+    /// first station that does not.
     #[inline(never)]
     fn load_course(
         &self,
         finger: Option<FingerIndex<FINGERS>>,
         execute: &mut impl ExecuteOnStations<FINGERS>,
-    ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
-        let mut result = Ok(WithSourceFinger::from_whole_device(command::Reply::Done));
-        for part in self.upload.course().parts() {
-            result = execute(finger, Command::LoadCourse(Some(part)));
+    ) -> (
+        bool,
+        Result<WithSourceFinger<Reply>, WithSourceFinger<Error>>,
+    ) {
+        let number = finger.map(FingerIndex::index_u8);
+        let (mut permitted, mut first_refusal) = (false, None);
+        for one in FingerIndex::all().filter(|one| finger.is_none_or(|finger| finger == *one)) {
+            let chunks = self.upload.course().chunks().map(Some);
+            let refusal = iter::once(None)
+                .chain(chunks)
+                .find_map(|chunk| execute(Some(one), Command::LoadCourse(chunk)).err());
+            match refusal {
+                None => permitted = true,
+                Some(refused) => {
+                    first_refusal.get_or_insert(WithSourceFinger {
+                        finger: number.or(one.index_unless_single_finger()),
+                        content: Error::Refused(refused.content),
+                    });
+                }
+            }
         }
-        match result {
-            Ok(reply) => Ok(reply.map_content(Reply::Station)),
-            Err(refused) => Err(refused.map_content(Error::from)),
-        }
+        let done = WithSourceFinger {
+            finger: number,
+            content: Reply::DONE,
+        };
+        (permitted, first_refusal.map_or(Ok(done), Err))
     }
 
     /// Properties of the material that is chosen in the station of `finger` or, for `None`, in all stations.
@@ -265,10 +286,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 self.upload_owner = owner;
                 return self.upload.begin(line, &mut words);
             }
-            "row" | "commit" if !self.upload.has_begun() => {
-                return Err(Error::Upload(UploadError::NotBegun));
-            }
-            "row" | "commit" if self.upload_owner != owner => {
+            "row" | "commit" if self.upload.has_begun() && self.upload_owner != owner => {
                 let other = self.upload_owner.map(FingerIndex::index_u8);
                 return Err(Error::Upload(UploadError::OfAnother(other)));
             }
@@ -376,6 +394,12 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
         None
     }
+}
+
+/// Whether a line is `abort`, with or without the address of a finger. It is executed also without the checksum that other
+/// lines must have: it only switches bridges off, and an operator must be able to type it.
+fn is_abort<const FINGERS: usize>(line: &str) -> bool {
+    split_address::<FINGERS>(line).is_ok_and(|(_, command)| command.trim_ascii() == "abort")
 }
 
 /// Diffusion time of a slab, `thickness² / diffusivity`, s, above which it counts as a half-space: its back then changes the

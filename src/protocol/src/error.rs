@@ -17,7 +17,7 @@ use thermal_device::safety::PredictedDose;
 use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
 use thermal_device::stimulus::{
     COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, CourseEnd, CourseError,
-    CourseStart, CourseTemperatures,
+    CourseStart, TemperatureKind,
 };
 use thermal_settings::Range;
 
@@ -124,7 +124,7 @@ pub enum Error {
     /// The word after the times of a course, quoted here, is neither `hold` nor `neutral`.
     UnknownCourseEnd(QuotedWordExcerpt),
     /// The word after the number of points of a course, quoted here, is neither `absolute` nor `relative`.
-    UnknownCourseTemperatures(QuotedWordExcerpt),
+    UnknownTemperatureKind(QuotedWordExcerpt),
     /// A course is refused, for this reason.
     Course(CourseError),
     /// The point of a course in the row with this index is refused, for this reason; the upload goes on.
@@ -262,8 +262,8 @@ impl fmt::Display for Error {
                 let known = CourseEnd::PROTOCOL_WORDS.map(|(name, _)| name);
                 write_word_not_in_list(f, "end of a course", word, &known)
             }
-            Self::UnknownCourseTemperatures(word) => {
-                let known = CourseTemperatures::PROTOCOL_WORDS.map(|(name, _)| name);
+            Self::UnknownTemperatureKind(word) => {
+                let known = TemperatureKind::PROTOCOL_WORDS.map(|(name, _)| name);
                 write_word_not_in_list(f, "temperatures", word, &known)
             }
             Self::Course(error) => write_course_error(f, error),
@@ -414,7 +414,7 @@ fn write_course_error(f: &mut fmt::Formatter<'_>, error: &CourseError) -> fmt::R
         CourseError::TooFewPoints => f.write_str("a course has at least 2 points"),
         CourseError::TimeGoesBack(ms, before_ms) => write!(
             f,
-            "time goes back: {ms} ms after {before_ms} ms; {COURSE_DURATION_MAX_MS} ms at most"
+            "time {ms} ms is not after {before_ms} ms, that of the row before"
         ),
         CourseError::TooLong(ms) => {
             write!(f, "too long: {ms} ms; {COURSE_DURATION_MAX_MS} ms at most")
@@ -445,7 +445,10 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         Refused::Testing => "the self-test goes on; ask again in a second",
         Refused::NoMaterial => "start needs a material first",
         Refused::AlreadyStarted => "already started; arm takes the object away",
-        Refused::NeedsArmed(command) => return write!(f, "{command} needs the state armed"),
+        Refused::NeedsDrivenDisplay(command) => {
+            return write!(f, "{command} needs a driven display: arm first");
+        }
+        Refused::TuneNeedsArmed => "tune needs the state armed",
         Refused::Presenting => "not while an object or a course is presented: abort or arm first",
         Refused::NoCourse => "no course is loaded; upload begin course first",
         Refused::Touched => "tune needs a display without a finger on it",
@@ -461,7 +464,7 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
             let celsius = Rounded(celsius.to_num(), 2);
             return write!(
                 f,
-                "above this skin the course reaches {celsius} C; {min} to {max} C"
+                "with the present skin the course reaches {celsius} C; {min} to {max} C are allowed"
             );
         }
         Refused::CourseDose(dose) => return write_dose(f, dose.milliseconds_at_43()),

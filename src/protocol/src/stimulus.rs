@@ -6,7 +6,7 @@ use thermal_device::safety::Setpoint;
 use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
 use thermal_device::stimulus::{
     COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, Course, CourseEnd, CourseError,
-    CoursePoint, CourseStart, CourseTemperatures, Hold, PlayOrder,
+    CoursePoint, CourseStart, Hold, PlayOrder, TemperatureKind,
 };
 use thermal_settings::Range;
 
@@ -31,8 +31,8 @@ static SKIN_RANGE: Range = Range {
 static RELATIVE_TEMPERATURE_RANGE: Range = Range {
     name: "temperature",
     unit: "K",
-    min: -27.0,
-    max: 27.0,
+    min: SETPOINT_MIN_C - SETPOINT_MAX_C,
+    max: SETPOINT_MAX_C - SETPOINT_MIN_C,
 };
 static RATE_RANGE: Range = Range {
     name: "rate",
@@ -85,7 +85,7 @@ impl Pulse {
     /// # Errors
     /// The course is too long or too hot for too long.
     pub fn replace_course(&self, course: &mut Course) -> Result<(), CourseError> {
-        course.restart(CourseTemperatures::Absolute);
+        course.clear(TemperatureKind::Absolute);
         let mut time_ms = 0u32;
         for (temperature, duration_ms) in [
             (self.base, 0),
@@ -152,12 +152,12 @@ pub fn parse_play(words: &mut Words<'_>) -> Result<PlayOrder, Error> {
         .ok_or(Error::UnknownCourseStart(word.into()))?;
     let mut order = PlayOrder {
         start,
-        times: 1,
+        play_count: 1,
         end: CourseEnd::default(),
     };
     let is_number = |word: &str| !word.starts_with(|first: char| first.is_ascii_alphabetic());
     if words.clone().next().is_some_and(is_number) {
-        order.times = read_whole_number_in_range(words, &TIMES_RANGE)? as u16;
+        order.play_count = read_whole_number_in_range(words, &TIMES_RANGE)? as u16;
     }
     if let Some(word) = words.next() {
         (_, order.end) = table_entry_for_word_or_none(&CourseEnd::PROTOCOL_WORDS, word)
@@ -177,7 +177,7 @@ pub fn parse_pulse(words: &mut Words<'_>) -> Result<Pulse, Error> {
             Some(_) => parse_play(words)?,
             None => PlayOrder {
                 start: CourseStart::Now,
-                times: 1,
+                play_count: 1,
                 end: CourseEnd::default(),
             },
         },
@@ -196,20 +196,20 @@ pub fn parse_skin(words: &mut Words<'_>) -> Result<Option<Celsius>, Error> {
     }
 }
 
-pub fn read_course_temperatures(words: &mut Words<'_>) -> Result<CourseTemperatures, Error> {
+pub fn read_temperature_kind(words: &mut Words<'_>) -> Result<TemperatureKind, Error> {
     let word = word_or_empty(words);
-    let (_, temperatures) = table_entry_for_word_or_none(&CourseTemperatures::PROTOCOL_WORDS, word)
-        .ok_or(Error::UnknownCourseTemperatures(word.into()))?;
+    let (_, temperatures) = table_entry_for_word_or_none(&TemperatureKind::PROTOCOL_WORDS, word)
+        .ok_or(Error::UnknownTemperatureKind(word.into()))?;
     Ok(temperatures)
 }
 
 pub fn read_course_point(
     words: &mut Words<'_>,
-    temperatures: CourseTemperatures,
+    temperatures: TemperatureKind,
 ) -> Result<CoursePoint, Error> {
     let range = match temperatures {
-        CourseTemperatures::Absolute => &TEMPERATURE_RANGE,
-        CourseTemperatures::Relative => &RELATIVE_TEMPERATURE_RANGE,
+        TemperatureKind::Absolute => &TEMPERATURE_RANGE,
+        TemperatureKind::AboveSkin => &RELATIVE_TEMPERATURE_RANGE,
     };
     Ok(CoursePoint {
         time_ms: read_milliseconds(words)?,

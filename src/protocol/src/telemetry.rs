@@ -3,7 +3,7 @@
 use core::fmt;
 
 use thermal_device::command::WithSourceFinger;
-use thermal_device::events::UnaskedReport;
+use thermal_device::events::UnsolicitedReport;
 use thermal_device::{Telemetry, TelemetryFields};
 
 use crate::line_buffer::LineBuffer;
@@ -33,13 +33,13 @@ pub fn wrap_as_telemetry_line(
 /// A report that nobody has asked for; `Display` writes it as a line to the host, without a line ending: telemetry as
 /// [`TelemetryLine`], an event as `E tick us kind`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UnaskedLine(pub UnaskedReport);
+pub struct UnsolicitedLine(pub UnsolicitedReport);
 
-impl fmt::Display for UnaskedLine {
+impl fmt::Display for UnsolicitedLine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
-            UnaskedReport::Telemetry(telemetry) => TelemetryLine(telemetry).fmt(f),
-            UnaskedReport::Event(event) => {
+            UnsolicitedReport::Telemetry(telemetry) => TelemetryLine(telemetry).fmt(f),
+            UnsolicitedReport::Event(event) => {
                 let mut line = LineBuffer::new();
                 line.push_str_if_fits("E ");
                 line.push_integer(event.tick);

@@ -8,7 +8,7 @@ use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::SKIN;
 use heapless::Vec;
 use thermal_device::TICK_S;
-use thermal_device::stimulus::{Course, CourseTemperatures};
+use thermal_device::stimulus::{Course, TemperatureKind};
 use thermal_settings::{CRC_32, Crc32Digest, Range};
 
 use crate::Error;
@@ -16,7 +16,7 @@ use crate::arguments::{
     Words, expect_end, read_fixed_point_in_range, read_whole_number_in_range, read_word,
 };
 use crate::stimulus::{
-    COURSE_POINT_COUNT_RANGE, COURSE_POINT_INDEX_RANGE, read_course_point, read_course_temperatures,
+    COURSE_POINT_COUNT_RANGE, COURSE_POINT_INDEX_RANGE, read_course_point, read_temperature_kind,
 };
 
 /// Largest number of rows of an upload.
@@ -127,7 +127,7 @@ impl Upload {
             count: 0,
             direct_m2k_w: 0.0,
             rows: Vec::new(),
-            course: Course::new(CourseTemperatures::Absolute),
+            course: Course::new(TemperatureKind::Absolute),
             digest: CRC_32.digest(),
         }
     }
@@ -149,7 +149,7 @@ impl Upload {
             }
             "course" => {
                 self.count = read_whole_number_in_range(words, &COURSE_POINT_COUNT_RANGE)?;
-                self.course.restart(read_course_temperatures(words)?);
+                self.course.clear(read_temperature_kind(words)?);
                 Kind::Course
             }
             unknown => return Err(Error::UnknownUpload(unknown.into())),
@@ -179,9 +179,11 @@ impl Upload {
         &self.course
     }
 
-    /// The course, to be replaced by that of a command. Ends an upload that had begun.
+    /// The course, to be replaced by that of a command. Ends an upload of a course that had begun.
     pub const fn course_to_replace(&mut self) -> &mut Course {
-        self.kind = None;
+        if let Some(Kind::Course) = self.kind {
+            self.kind = None;
+        }
         &mut self.course
     }
 
@@ -229,7 +231,7 @@ impl Upload {
                 self.rows.last() == Some(&row)
             }
             Kind::Course => {
-                let point = read_course_point(words, self.course.temperatures())?;
+                let point = read_course_point(words, self.course.temperature_kind())?;
                 expect_end(words)?;
                 if is_next {
                     (self.course.push(point)).map_err(|error| Error::CoursePoint(index, error))?;

@@ -13,7 +13,7 @@ use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, FingerIndex, StateName, TriggerEdge};
 use thermal_display::protocol::{
-    CommandHandler, Error, LineReader, OutgoingLine, UnaskedLine, wrap_as_telemetry_line,
+    CommandHandler, Error, LineReader, OutgoingLine, UnsolicitedLine, wrap_as_telemetry_line,
 };
 use thermal_display::settings::Settings;
 
@@ -155,7 +155,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
             );
         }
         while let Some(event) = self.device.take_finger_event(finger) {
-            let event = event.map_content(UnaskedLine);
+            let event = event.map_content(UnsolicitedLine);
             check_text(&self.to_host(&event), TELEMETRY_MAX);
         }
         if let Some(telemetry) = self.device.finger_telemetry_if_due(finger) {

@@ -3,7 +3,7 @@
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use thermal_client::client::upload_course;
-use thermal_device::stimulus::{COURSE_RATE_MAX_K_S, CourseTemperatures};
+use thermal_device::stimulus::{COURSE_RATE_MAX_K_S, TemperatureKind};
 
 use super::scene_text;
 
@@ -26,9 +26,9 @@ const TRIGGER_AFTER_S: (f64, f64) = (0.1, 6.0);
 pub(super) fn course_tables(seed: u64, t_s: f64, end_s: f64) -> String {
     let mut draw = Xoshiro256PlusPlus::seed_from_u64(seed);
     let (temperatures, (low, high)) = if draw.random_bool(0.5) {
-        (CourseTemperatures::Absolute, ABSOLUTE_C)
+        (TemperatureKind::Absolute, ABSOLUTE_C)
     } else {
-        (CourseTemperatures::Relative, RELATIVE_K)
+        (TemperatureKind::AboveSkin, RELATIVE_K)
     };
     let mut points = vec![(0.0, draw.random_range(low..=high))];
     for _ in 1..draw.random_range(2..=POINTS_MAX) {

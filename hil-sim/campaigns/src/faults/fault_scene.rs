@@ -6,7 +6,7 @@ use serde::Serialize;
 use thermal_client::client::upload_course;
 use thermal_device::control::Law;
 use thermal_device::safety::Fault;
-use thermal_device::stimulus::CourseTemperatures;
+use thermal_device::stimulus::TemperatureKind;
 use thermal_sim::named_enum;
 
 use super::{Touch, scene_text};
@@ -198,7 +198,7 @@ impl FaultScene {
             Self::CourseLanding => "play landing 1000",
             _ => return Vec::new(),
         };
-        let upload = upload_course(CourseTemperatures::Absolute, &COURSE);
+        let upload = upload_course(TemperatureKind::Absolute, &COURSE);
         let upload = upload.iter().map(ToString::to_string);
         upload.chain([play.into()]).collect()
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 use thermal_client::client::upload_course;
-use thermal_device::stimulus::CourseTemperatures;
+use thermal_device::stimulus::TemperatureKind;
 use thermal_sim::SceneRunner;
 use thermal_sim::scene::{HostLine, Scene};
 
@@ -126,7 +126,7 @@ impl TrackingCase {
             let points: Vec<_> = (points.iter())
                 .map(|point| (point.t_s, point.celsius))
                 .collect();
-            let lines = upload_course(CourseTemperatures::Absolute, &points);
+            let lines = upload_course(TemperatureKind::Absolute, &points);
             for (line, number) in lines.iter().zip(1..) {
                 at(
                     PREPARE_S + LINE_INTERVAL_S * f64::from(number),

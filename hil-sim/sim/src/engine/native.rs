@@ -16,7 +16,7 @@ use thermal_device::{
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::comparator::ComparatorTest as PlantTest;
 use thermal_protocol::{
-    CommandHandler, Error, LineReader, OutgoingLine, Reply, UnaskedLine, wrap_as_telemetry_line,
+    CommandHandler, Error, LineReader, OutgoingLine, Reply, UnsolicitedLine, wrap_as_telemetry_line,
 };
 use thermal_settings::{Settings, StoredSettings, decode_settings_record};
 
@@ -241,7 +241,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         }
         finger.set_outputs(outputs);
         while let Some(event) = self.device.take_finger_event(index) {
-            self.send_line(&event.map_content(UnaskedLine));
+            self.send_line(&event.map_content(UnsolicitedLine));
         }
         if let Some(telemetry) = self.device.finger_telemetry_if_due(index) {
             self.send_line(&wrap_as_telemetry_line(telemetry));

@@ -12,7 +12,7 @@ use thermal_device::control::Law;
 use thermal_device::events::DeviceEventKind;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
-use thermal_device::stimulus::{CourseEnd, CourseTemperatures, PlayOrder};
+use thermal_device::stimulus::{CourseEnd, PlayOrder, TemperatureKind};
 use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
 use thermal_settings::CRC_32;
 
@@ -96,7 +96,7 @@ pub enum PlainCommand {
     /// A row of an upload by its index.
     UploadRow(usize, Relaxation),
     /// Begin the upload of a course: number of points, and what its temperatures are.
-    UploadCourse(usize, CourseTemperatures),
+    UploadCourse(usize, TemperatureKind),
     /// A point of a course by its index: time, s, and temperature, °C or K above the skin.
     UploadPoint(usize, f64, f64),
     /// End an upload with the checksum of its lines.
@@ -208,7 +208,7 @@ impl fmt::Display for PlainCommand {
                 chosen.try_for_each(|(_, name)| write!(f, " {name}"))
             }
             Self::UploadCourse(count, temperatures) => {
-                let word = word_in(&CourseTemperatures::PROTOCOL_WORDS, temperatures);
+                let word = word_in(&TemperatureKind::PROTOCOL_WORDS, temperatures);
                 write!(f, "upload begin course {count} {word}")
             }
             Self::UploadPoint(index, time_s, temperature) => {
@@ -259,7 +259,7 @@ pub fn upload(object: &Impedance<'_>) -> Vec<PlainCommand> {
 
 /// The commands that upload a course of points, s and °C (or K above the skin): begin, one row for each point, and commit.
 #[must_use]
-pub fn upload_course(temperatures: CourseTemperatures, points: &[(f64, f64)]) -> Vec<PlainCommand> {
+pub fn upload_course(temperatures: TemperatureKind, points: &[(f64, f64)]) -> Vec<PlainCommand> {
     let mut commands = vec![PlainCommand::UploadCourse(points.len(), temperatures)];
     let rows = points.iter().enumerate();
     commands.extend(
@@ -277,7 +277,7 @@ fn word_in<T: PartialEq>(table: &[(&'static str, T)], value: &T) -> &'static str
 fn write_order(f: &mut fmt::Formatter<'_>, order: &PlayOrder) -> fmt::Result {
     let start = order.start.name();
     let end = word_in(&CourseEnd::PROTOCOL_WORDS, &order.end);
-    write!(f, "{start} {} {end}", order.times)
+    write!(f, "{start} {} {end}", order.play_count)
 }
 
 /// The lines of an upload with their commit.

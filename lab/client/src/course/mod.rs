@@ -12,7 +12,7 @@ pub use prepared::{Prepared, TooCoarse};
 pub use read::{ALLOWED_C, CourseFileError, Selection, read_course};
 pub use reduce::{Reduced, reduce};
 
-use thermal_device::stimulus::CourseTemperatures;
+use thermal_device::stimulus::TemperatureKind;
 
 use crate::client::{PlainCommand, upload_course};
 
@@ -216,6 +216,6 @@ impl Course {
         let points: Vec<_> = (self.0.iter())
             .map(|point| (point.t_s, point.celsius))
             .collect();
-        upload_course(CourseTemperatures::Absolute, &points)
+        upload_course(TemperatureKind::Absolute, &points)
     }
 }

@@ -11,7 +11,7 @@ use thermal_client::client::{
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
 use thermal_device::events::DeviceEventKind;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
-use thermal_device::stimulus::CourseTemperatures;
+use thermal_device::stimulus::TemperatureKind;
 use thermal_device::{StateName, TelemetryFields};
 
 use crate::fake_device::{FakeDevice, answers, knows};
@@ -349,7 +349,7 @@ fn events_and_telemetry_of_chosen_fields_are_read() {
 #[test]
 fn a_course_is_uploaded_as_the_device_reads_it() {
     let points = [(0.0, 33.0), (2.0, 25.0), (12.0, 25.0)];
-    let lines: Vec<_> = upload_course(CourseTemperatures::Absolute, &points)
+    let lines: Vec<_> = upload_course(TemperatureKind::Absolute, &points)
         .iter()
         .map(ToString::to_string)
         .collect();

@@ -71,10 +71,9 @@ pub struct VoltageFeedforward {
     /// from zero to its largest value, as a fraction of the supply voltage, 1/A.
     dead_time_per_a: VoltagePerSupply,
     /// Part of the Seebeck voltage that short pulses apply against the current that it drives, `k / (R + k)`, from 0 to 1.
-    opposed_part: VoltagePerSupply,
-    /// Voltage that the ticks so far have applied too little against the current, as a fraction of the supply voltage; zero
-    /// unless ticks with and without pulses take turns.
-    owed: VoltagePerSupply,
+    counter_voltage_ratio: VoltagePerSupply,
+    /// Sum of needed minus applied voltage (first-order sigma-delta), per supply voltage; zero while pulses suffice.
+    voltage_deficit: VoltagePerSupply,
 }
 
 impl VoltageFeedforward {
@@ -94,8 +93,8 @@ impl VoltageFeedforward {
             ripple_a: to_fixed(module.ripple_a),
             dead_time_a: to_fixed(module.dead_time_a),
             dead_time_per_a: to_fixed(2.0 * dead_time / module.dead_time_a),
-            opposed_part: to_fixed(dead_time_ohm / (dead_time_ohm + path_ohm)),
-            owed: VoltagePerSupply::ZERO,
+            counter_voltage_ratio: to_fixed(dead_time_ohm / (dead_time_ohm + path_ohm)),
+            voltage_deficit: VoltagePerSupply::ZERO,
         }
     }
 
@@ -118,7 +117,7 @@ impl VoltageFeedforward {
             self.opposed_voltage(needed, seebeck)
         };
         if opposed.is_none() {
-            self.owed = VoltagePerSupply::ZERO;
+            self.voltage_deficit = VoltagePerSupply::ZERO;
         }
         let voltage = if let Some(opposed) = opposed {
             opposed
@@ -147,17 +146,17 @@ impl VoltageFeedforward {
         seebeck: VoltagePerSupply,
     ) -> Option<VoltagePerSupply> {
         let magnitude = |voltage: VoltagePerSupply| voltage.max(voltage.saturating_neg());
-        let part: VoltagePerSupply = product(magnitude(seebeck), self.opposed_part);
+        let part: VoltagePerSupply = product(magnitude(seebeck), self.counter_voltage_ratio);
         let shortest = part.min(self.dead_time);
         let wanted = magnitude(needed);
         if wanted >= shortest {
             return None;
         }
-        self.owed = self.owed.saturating_add(wanted);
-        if self.owed <= shortest >> 1u32 {
+        self.voltage_deficit = self.voltage_deficit.saturating_add(wanted);
+        if self.voltage_deficit <= shortest >> 1u32 {
             return Some(VoltagePerSupply::ZERO);
         }
-        self.owed = self.owed.saturating_sub(shortest);
+        self.voltage_deficit = self.voltage_deficit.saturating_sub(shortest);
         // A pulse of half a dead time, which the dead time lengthens to the same voltage as any other pulse so short.
         let pulse = self.dead_time >> 1u32;
         Some(if needed < 0 { -pulse } else { pulse })

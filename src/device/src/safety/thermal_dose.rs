@@ -52,7 +52,7 @@ impl PredictedDose {
 
     /// This dose several times, on top of one that was taken before.
     #[must_use]
-    pub const fn times_after(self, times: u16, before: &ThermalDose) -> Self {
+    pub const fn repeated_on_top_of(self, times: u16, before: &ThermalDose) -> Self {
         Self(
             self.0
                 .saturating_mul(times as u32)

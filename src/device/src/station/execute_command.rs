@@ -25,7 +25,7 @@ impl Station {
             Command::Average(thermistor) => return self.thermistor_average(thermistor),
             Command::NormalEquation(row) => return self.normal_equation_row(row),
             Command::Law(Some(law)) => self.controller.select_law(law),
-            Command::ReportEvents(on) => self.events.reports = on,
+            Command::ReportEvents(on) => self.events.switch_reports(on),
             Command::TriggerOutput(kinds) => self.events.marked = kinds,
             Command::Stream {
                 interval_ms,
@@ -225,7 +225,7 @@ impl Station {
         match self.state {
             State::Tripped(fault) => return Err(Refused::Tripped(fault)),
             State::Armed(_) | State::Stimulus(Stimulus::Hold(_)) => {}
-            _ => return Err(Refused::NeedsArmed("tune")),
+            _ => return Err(Refused::TuneNeedsArmed),
         }
         if self.contact.touching() {
             return Err(Refused::Touched);
@@ -234,7 +234,7 @@ impl Station {
             .last
             .readings
             .sink
-            .map_err(|_| Refused::NeedsArmed("tune"))?;
+            .map_err(|_| Refused::TuneNeedsArmed)?;
         self.identified.outcome = None;
         self.state = State::Armed(ArmedTask::Identify(
             Identification::begin_at_sink_temperature(sink),

@@ -11,8 +11,8 @@ use crate::reference::Reference;
 use crate::safety::Setpoint;
 use crate::safety::limits::{SETPOINT_MAX, SETPOINT_MIN};
 use crate::stimulus::{
-    Approach, Course, CourseEnd, CoursePart, CourseStart, CourseTemperatures,
-    FOLLOWING_ERROR_LIMITED, Hold, PlayOrder, Player, Stimulus, StimulusTemperatures,
+    Approach, Course, CourseChunk, CourseEnd, CourseStart, FOLLOWING_ERROR_REPORTED, Hold,
+    PlayOrder, Player, Stimulus, StimulusTemperatures, TemperatureKind,
 };
 
 impl Station {
@@ -20,7 +20,9 @@ impl Station {
     fn require_driven(&self, command: &'static str) -> Result<(), Refused> {
         match self.state {
             State::Tripped(fault) => Err(Refused::Tripped(fault)),
-            State::Off | State::SelfTest(_) | State::Ready => Err(Refused::NeedsArmed(command)),
+            State::Off | State::SelfTest(_) | State::Ready => {
+                Err(Refused::NeedsDrivenDisplay(command))
+            }
             _ => Ok(()),
         }
     }
@@ -32,28 +34,33 @@ impl Station {
         rate_k_s: Celsius,
     ) -> Result<(), Refused> {
         self.require_driven("hold")?;
-        let start = match (&self.state, self.last.reference) {
+        let follows_stimulus =
+            self.stimulus_has_reference && matches!(self.state, State::Stimulus(_));
+        let start = match self.last.reference {
             // A display that keeps up with its set-point goes on from there, because a slow thermistor lags behind it.
-            (State::Stimulus(_), Some(last)) if !last.limited => last.setpoint.celsius(),
+            Some(last) if follows_stimulus && !last.limited => last.setpoint.celsius(),
             _ => (self.last.readings.display).unwrap_or_else(|_| target.celsius()),
         };
-        self.apply_known_event(Event::Stimulate(&Stimulus::Hold(Hold::new(
-            start, target, rate_k_s,
-        ))));
-        self.identified.outcome = None;
+        self.stimulate(&Stimulus::Hold(Hold::new(start, target, rate_k_s)));
         Ok(())
+    }
+
+    fn stimulate(&mut self, stimulus: &Stimulus) {
+        self.stimulus_has_reference &= matches!(self.state, State::Stimulus(_));
+        self.apply_known_event(Event::Stimulate(stimulus));
+        self.identified.outcome = None;
     }
 
     #[inline(never)]
     pub(super) fn execute_load_course(
         &mut self,
-        part: Option<CoursePart<'_>>,
+        chunk: Option<CourseChunk<'_>>,
     ) -> Result<(), Refused> {
-        if let State::Tripped(fault) = self.state {
-            return Err(Refused::Tripped(fault));
-        }
-        if let Some(part) = part {
-            self.courses.load_part(&part);
+        match (chunk, &self.state) {
+            // Also if a fault has tripped the station since the first chunk, because loading drives nothing.
+            (Some(chunk), _) => self.courses.load_chunk(&chunk),
+            (None, State::Tripped(fault)) => return Err(Refused::Tripped(*fault)),
+            (None, _) => {}
         }
         Ok(())
     }
@@ -72,33 +79,24 @@ impl Station {
         }
         let dose = course
             .dose(base)
-            .times_after(order.times, self.detectors.dose());
+            .repeated_on_top_of(order.play_count, self.detectors.dose());
         if dose.reaches_limit() {
             return Err(Refused::CourseDose(dose));
         }
         let first = course.first_temperature().saturating_add(base);
         self.courses.play_loaded();
-        self.apply_known_event(Event::Stimulate(&Stimulus::Wait(
-            *order,
-            Approach::to(first),
-        )));
-        self.identified.outcome = None;
-        if order.start == CourseStart::Now {
-            self.begin_course(0, self.tick.wrapping_add(1));
-        }
+        self.stimulate(&Stimulus::Wait(*order, Approach::to(first)));
         Ok(())
     }
 
     /// What is added to the temperatures of a course now, °C.
     fn base_of(&self, course: &Course) -> Celsius {
         let before_contact = self.estimator.finger.temperatures_before_contact();
-        match (course.temperatures(), before_contact) {
-            (CourseTemperatures::Relative, Some(before_contact)) => before_contact.skin,
+        match (course.temperature_kind(), before_contact) {
+            (TemperatureKind::AboveSkin, Some(before_contact)) => before_contact.skin,
             // No estimate of the skin: the station has no valid readings, and the bridge is off.
-            (CourseTemperatures::Relative, None) => {
-                self.last.readings.skin.ok().unwrap_or_default()
-            }
-            (CourseTemperatures::Absolute, _) => Celsius::ZERO,
+            (TemperatureKind::AboveSkin, None) => self.last.readings.skin.ok().unwrap_or_default(),
+            (TemperatureKind::Absolute, _) => Celsius::ZERO,
         }
     }
 
@@ -108,8 +106,10 @@ impl Station {
         let coming_tick = self.tick.wrapping_add(1);
         let tick = coming_tick.wrapping_sub(edge.ticks_ago.into());
         (self.events).note(DeviceEventKind::Trigger, tick, edge.us);
-        if self.waits_for(CourseStart::Trigger) {
-            self.begin_course(0, coming_tick);
+        if let State::Stimulus(Stimulus::Wait(order, _)) = &mut self.state
+            && order.start == CourseStart::Trigger
+        {
+            order.start = CourseStart::Now;
         }
     }
 
@@ -118,13 +118,14 @@ impl Station {
     }
 
     /// Begins the course that waits, if one does, with `elapsed` ticks of it behind the next reference; `tick` is the one
-    /// to which its time 0 belongs.
+    /// to which its time 0 belongs. For a tick only: it moves the course on by up to 46 ticks, which a command must not
+    /// lock the next finger's tick out for.
     fn begin_course(&mut self, elapsed: u32, tick: u32) {
         if let State::Stimulus(Stimulus::Wait(order, _)) = self.state {
             let course = self.courses.playing();
             let player = Player::new(course.points(), self.base_of(course), &order, elapsed);
             self.state = State::Stimulus(Stimulus::Play(player));
-            self.events.note(DeviceEventKind::Start, tick, 0);
+            self.events.note(DeviceEventKind::CourseStarted, tick, 0);
         }
     }
 
@@ -148,6 +149,10 @@ impl Station {
         &mut self,
         estimate: &PlateEstimateBeforeReading,
     ) -> Option<Reference> {
+        if self.waits_for(CourseStart::Now) {
+            self.begin_course(0, self.tick);
+        }
+        self.stimulus_has_reference = true;
         let course = self.courses.playing();
         let base = self.base_of(course);
         let State::Stimulus(stimulus) = &mut self.state else {
@@ -164,7 +169,7 @@ impl Station {
             Stimulus::Play(player) => player.next_temperatures(course.points()),
         };
         if ended.is_some() {
-            self.events.note(DeviceEventKind::End, self.tick, 0);
+            self.events.note(DeviceEventKind::CourseEnded, self.tick, 0);
         }
         match ended {
             None => {}
@@ -175,7 +180,7 @@ impl Station {
         }
         let StimulusTemperatures { now, target } = temperatures;
         let mut reference = Reference::limited_to_safe_range(now, target);
-        reference.limited |= now.abs_diff(surface) > FOLLOWING_ERROR_LIMITED;
+        reference.limited |= now.abs_diff(surface) > FOLLOWING_ERROR_REPORTED;
         Some(reference)
     }
 }

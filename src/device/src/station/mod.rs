@@ -64,6 +64,8 @@ pub struct Station {
     self_test_report: SelfTestReport,
     identified: IdentificationResult,
     courses: CourseMemory,
+    /// Whether the last reference is one of the present state stimulus, if that is the state.
+    stimulus_has_reference: bool,
     /// Number of the last tick: ticks of 1 ms since the start of the program; wraps after 49 days.
     tick: u32,
     /// Ticks of 1 ms from one line of telemetry to the next; 0 while telemetry is off.
@@ -138,6 +140,7 @@ impl Station {
             self_test_report: SelfTestReport::default(),
             identified: IdentificationResult::default(),
             courses: CourseMemory::default(),
+            stimulus_has_reference: false,
             tick: 0,
             telemetry_ticks: 0,
             telemetry_fields: TelemetryFields::ALL,

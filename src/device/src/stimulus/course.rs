@@ -4,6 +4,7 @@ use contact_model::fixed_point::Celsius;
 use heapless::Vec;
 
 use super::dose_of_course::{EquivalentTime, time_equivalent_to_largest};
+use crate::safety::PredictedDose;
 use crate::safety::limits::{DOSE_COUNTED_FROM, SETPOINT_MAX, SETPOINT_MIN};
 
 /// Largest number of points of a course.
@@ -14,32 +15,30 @@ pub const COURSE_DURATION_MAX_MS: u32 = 3_600_000;
 /// `limited` while the display lags behind it.
 pub const COURSE_RATE_MAX_K_S: u32 = 100;
 
-/// Smallest and largest temperature of a relative course, K: the width of the range of set-points. Constants of their own,
-/// because a literal in a function that also runs on the device would be parsed there, by 6 KB of code.
-const RELATIVE_MIN: Celsius = Celsius::lit("-27");
-const RELATIVE_MAX: Celsius = Celsius::lit("27");
+/// Largest temperature of a relative course, K, above or below the skin: the width of the range of set-points.
+const RELATIVE_MAX: Celsius = SETPOINT_MAX.saturating_sub(SETPOINT_MIN);
 
 /// What the temperatures of a course are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CourseTemperatures {
+pub enum TemperatureKind {
     /// °C.
     #[default]
     Absolute,
     /// K above the skin before contact.
-    Relative,
+    AboveSkin,
 }
 
-impl CourseTemperatures {
+impl TemperatureKind {
     /// Both, with their words in the protocol.
     pub const PROTOCOL_WORDS: [(&'static str, Self); 2] =
-        [("absolute", Self::Absolute), ("relative", Self::Relative)];
+        [("absolute", Self::Absolute), ("relative", Self::AboveSkin)];
 
     /// Smallest and largest temperature of a point, °C or K.
     #[must_use]
     pub const fn range(self) -> (Celsius, Celsius) {
         match self {
             Self::Absolute => (SETPOINT_MIN, SETPOINT_MAX),
-            Self::Relative => (RELATIVE_MIN, RELATIVE_MAX),
+            Self::AboveSkin => (RELATIVE_MAX.saturating_neg(), RELATIVE_MAX),
         }
     }
 }
@@ -53,14 +52,14 @@ pub struct CoursePoint {
     pub temperature: Celsius,
 }
 
-/// Points of a [`CoursePart`]. Copying them takes about a microsecond.
-const PART_POINTS: usize = 32;
+/// Points of a [`CourseChunk`]. Copying them takes about a microsecond.
+const CHUNK_POINTS: usize = 32;
 
 /// A few points of a course, so that copying the course does not lock out the control tick for long.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoursePart<'a> {
+pub struct CourseChunk<'a> {
     course: &'a Course,
-    /// Index of the part's first point.
+    /// Index of the chunk's first point.
     first: usize,
 }
 
@@ -86,23 +85,29 @@ pub enum CourseError {
 
 /// A course: its points are in order, in range, and not too steep. One that has passed [`Self::check_whole`] has at least two
 /// points, and by itself gives no dose that trips.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Course {
     points: Vec<CoursePoint, COURSE_POINTS_MAX>,
-    temperatures: CourseTemperatures,
+    kind: TemperatureKind,
     smallest: Celsius,
     largest: Celsius,
     /// Time at the largest temperature that gives the dose of the course; set by [`Self::check_whole`].
     equivalent: EquivalentTime,
 }
 
+impl Default for Course {
+    fn default() -> Self {
+        Self::new(TemperatureKind::default())
+    }
+}
+
 impl Course {
     /// A course without points yet.
     #[must_use]
-    pub const fn new(temperatures: CourseTemperatures) -> Self {
+    pub const fn new(kind: TemperatureKind) -> Self {
         Self {
             points: Vec::new(),
-            temperatures,
+            kind,
             smallest: Celsius::MAX,
             largest: Celsius::MIN,
             equivalent: EquivalentTime::ZERO,
@@ -110,31 +115,31 @@ impl Course {
     }
 
     /// Removes all points. In place, where a new course would be a kilobyte on the stack.
-    pub fn restart(&mut self, temperatures: CourseTemperatures) {
+    pub fn clear(&mut self, kind: TemperatureKind) {
         self.points.clear();
-        self.temperatures = temperatures;
+        self.kind = kind;
         self.smallest = Celsius::MAX;
         self.largest = Celsius::MIN;
         self.equivalent = EquivalentTime::ZERO;
     }
 
-    /// The course in parts, for [`Self::copy_part`].
-    pub fn parts(&self) -> impl Iterator<Item = CoursePart<'_>> {
-        let part = |first| CoursePart {
+    /// The course in chunks, for [`Self::copy_chunk`].
+    pub fn chunks(&self) -> impl Iterator<Item = CourseChunk<'_>> {
+        let chunk = |first| CourseChunk {
             course: self,
             first,
         };
-        (0..self.points.len()).step_by(PART_POINTS).map(part)
+        (0..self.points.len()).step_by(CHUNK_POINTS).map(chunk)
     }
 
-    /// Copies a part of another course, after the parts before it. Returns whether this course is then the whole other one.
-    pub fn copy_part(&mut self, part: &CoursePart<'_>) -> bool {
-        let &CoursePart { course, first } = part;
+    /// Copies a chunk of another course, after the chunks before it. Returns whether this course is then the whole other one.
+    pub fn copy_chunk(&mut self, chunk: &CourseChunk<'_>) -> bool {
+        let &CourseChunk { course, first } = chunk;
         self.points.truncate(first);
-        let points = course.points.chunks(PART_POINTS).nth(first / PART_POINTS);
+        let points = course.points.chunks(CHUNK_POINTS).nth(first / CHUNK_POINTS);
         let follows = self.points.len() == first
             && points.is_some_and(|points| self.points.extend_from_slice(points).is_ok());
-        self.temperatures = course.temperatures;
+        self.kind = course.kind;
         self.smallest = course.smallest;
         self.largest = course.largest;
         self.equivalent = course.equivalent;
@@ -146,7 +151,7 @@ impl Course {
     /// # Errors
     /// The point does not fit behind the ones before; the course is unchanged.
     pub fn push(&mut self, point: CoursePoint) -> Result<(), CourseError> {
-        let (min, max) = self.temperatures.range();
+        let (min, max) = self.kind.range();
         if point.time_ms > COURSE_DURATION_MAX_MS {
             return Err(CourseError::TooLong(point.time_ms));
         }
@@ -185,15 +190,15 @@ impl Course {
         if self.points.len() < 2 {
             return Err(CourseError::TooFewPoints);
         }
-        let counted_from = match self.temperatures {
-            CourseTemperatures::Absolute => DOSE_COUNTED_FROM,
+        let counted_from = match self.kind {
+            TemperatureKind::Absolute => DOSE_COUNTED_FROM,
             // No set-point is above 42 °C, so what is 3 K below the largest temperature is never counted.
-            CourseTemperatures::Relative => self
+            TemperatureKind::AboveSkin => self
                 .largest
                 .saturating_sub(SETPOINT_MAX.saturating_sub(DOSE_COUNTED_FROM)),
         };
         self.equivalent = time_equivalent_to_largest(&self.points, self.largest, counted_from);
-        if self.temperatures == CourseTemperatures::Absolute {
+        if self.kind == TemperatureKind::Absolute {
             let dose = self.dose(Celsius::ZERO);
             if dose.reaches_limit() {
                 return Err(CourseError::TooHotForTooLong(dose.milliseconds_at_43()));
@@ -202,10 +207,15 @@ impl Course {
         Ok(())
     }
 
-    /// Dose of the course if its temperatures are this much, °C, above what its points say. An upper bound.
+    /// Dose of the course if its temperatures are this much, °C, above what its points say. An upper bound: of a relative
+    /// course with a largest temperature of 39 to 42 °C it also counts what is below 39 °C, down to 3 K below that largest one.
     #[must_use]
-    pub fn dose(&self, base: Celsius) -> crate::safety::PredictedDose {
-        self.equivalent.at(self.largest.saturating_add(base))
+    pub fn dose(&self, base: Celsius) -> PredictedDose {
+        let largest = self.largest.saturating_add(base);
+        if largest < DOSE_COUNTED_FROM {
+            return PredictedDose::from_sum(0);
+        }
+        self.equivalent.at(largest)
     }
 
     /// The points.
@@ -216,8 +226,8 @@ impl Course {
 
     /// What the temperatures of the points are.
     #[must_use]
-    pub const fn temperatures(&self) -> CourseTemperatures {
-        self.temperatures
+    pub const fn temperature_kind(&self) -> TemperatureKind {
+        self.kind
     }
 
     /// Temperature of the first point, °C; 0 for a course without points.

@@ -1,6 +1,6 @@
 //! The courses of a finger: the one that plays and the one that was loaded last.
 
-use super::{Course, CoursePart};
+use super::{Course, CourseChunk};
 
 /// Two buffers: a course is loaded into the one that does not play, so loading never changes a course that plays.
 #[derive(Clone, Debug, Default)]
@@ -15,11 +15,11 @@ pub struct CourseMemory {
 }
 
 impl CourseMemory {
-    /// Loads a part of a course, the first one first. The course replaces one that was loaded before and does not play; until
-    /// its last part, none is loaded.
-    pub fn load_part(&mut self, part: &CoursePart<'_>) {
+    /// Loads a chunk of a course, the first one first. The course replaces one that was loaded before and does not play; until
+    /// its last chunk, none is loaded.
+    pub fn load_chunk(&mut self, chunk: &CourseChunk<'_>) {
         self.loaded_second = !self.playing_second;
-        self.loaded = self.courses[usize::from(self.loaded_second)].copy_part(part);
+        self.loaded = self.courses[usize::from(self.loaded_second)].copy_chunk(chunk);
     }
 
     /// The course that was loaded last.

@@ -36,14 +36,14 @@ impl Hold {
         }
     }
 
-    /// Stays at this temperature, °C.
+    /// Stays at this temperature, °C, which a display that is off it approaches.
     #[must_use]
     pub const fn at(celsius: Celsius) -> Self {
         let ramp = Ramp::constant(celsius);
         Self {
             now: ramp,
             ahead: ramp,
-            approach: Approach::Over,
+            approach: Approach::to(celsius),
         }
     }
 
@@ -98,6 +98,19 @@ mod tests {
                 let end = setpoint(target_c).celsius();
                 assert_eq!(hold.next_temperatures(end).now, end);
             }
+        }
+    }
+
+    #[test]
+    fn the_end_of_a_course_is_approached_by_a_display_that_is_off_it() {
+        let end = Celsius::lit("31");
+        for (surface, target) in [("24", "24.5"), ("30.8", "31"), ("31", "31"), ("33", "32.5")] {
+            let temperatures = Hold::at(end).next_temperatures(Celsius::lit(surface));
+            let expected = StimulusTemperatures {
+                now: end,
+                target: Celsius::lit(target),
+            };
+            assert_eq!(temperatures, expected);
         }
     }
 

@@ -16,8 +16,8 @@ mod ramp;
 
 pub use approach::Approach;
 pub use course::{
-    COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, Course, CourseError,
-    CoursePart, CoursePoint, CourseTemperatures,
+    COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, Course, CourseChunk,
+    CourseError, CoursePoint, TemperatureKind,
 };
 pub use course_memory::CourseMemory;
 pub use hold::Hold;
@@ -31,7 +31,7 @@ use contact_model::fixed_point::Celsius;
 pub const STIMULUS_LEAD_TICKS: u32 = 14;
 /// Distance, K, of the display's surface from the set-point of a hold or a course from which on the set-point is
 /// reported as `limited`: the tile cannot keep the rate.
-pub const FOLLOWING_ERROR_LIMITED: Celsius = Celsius::lit("0.1");
+pub const FOLLOWING_ERROR_REPORTED: Celsius = Celsius::lit("0.1");
 
 /// What the display does in the state stimulus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use super::{CoursePoint, STIMULUS_LEAD_TICKS, StimulusTemperatures};
 /// What starts a course.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CourseStart {
-    /// The command `play` itself.
+    /// The tick after the command `play`.
     Now,
     /// The next edge at the trigger input; until then the display waits on the first point.
     Trigger,
@@ -57,7 +57,7 @@ pub struct PlayOrder {
     /// What starts it.
     pub start: CourseStart,
     /// How many times it is played, 1 or more.
-    pub times: u16,
+    pub play_count: u16,
     /// What follows.
     pub end: CourseEnd,
 }
@@ -77,7 +77,11 @@ impl Cursor {
     /// The start of a course. Before its first point it has the temperature of that point.
     fn new(points: &[CoursePoint], times: u16) -> Self {
         Self {
-            ramp: initial_segment(points),
+            ramp: points
+                .first()
+                .map_or(Ramp::constant(Celsius::ZERO), |first| {
+                    Ramp::new(first.temperature, first.temperature, first.time_ms)
+                }),
             point: 0,
             times_left: times.saturating_sub(1),
         }
@@ -118,14 +122,6 @@ impl Cursor {
     }
 }
 
-fn initial_segment(points: &[CoursePoint]) -> Ramp {
-    let first = points
-        .first()
-        .map_or(Celsius::ZERO, |point| point.temperature);
-    let ticks = points.first().map_or(0, |point| point.time_ms);
-    Ramp::new(first, first, ticks)
-}
-
 /// A course that plays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Player {
@@ -140,7 +136,7 @@ impl Player {
     /// Plays these points, which have `elapsed` ticks of the course behind them in the first tick.
     #[must_use]
     pub fn new(points: &[CoursePoint], base: Celsius, order: &PlayOrder, elapsed: u32) -> Self {
-        let mut now = Cursor::new(points, order.times);
+        let mut now = Cursor::new(points, order.play_count);
         now.advance(points, elapsed);
         let mut ahead = now;
         ahead.advance(points, STIMULUS_LEAD_TICKS);

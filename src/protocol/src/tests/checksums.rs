@@ -78,6 +78,27 @@ fn every_line_to_the_host_has_a_checksum_from_the_answer_to_on_until_the_answer_
 }
 
 #[test]
+fn abort_is_executed_without_a_checksum_and_nothing_else() {
+    let mut line = Line::<5>::new();
+    assert_eq!(line.send("checksum on"), "ok*04");
+    for (sent, answer) in [
+        ("abort", "ok"),
+        ("@2 abort", "@2 ok"),
+        (" abort ", "ok"),
+        ("@2  abort", "@2 ok"),
+        ("abort now", "err checksum missing"),
+        ("aborts", "err checksum missing"),
+        ("@7 abort", "err checksum missing"),
+        ("abort*00", "err checksum 00 is wrong"),
+        ("arm", "err checksum missing"),
+    ] {
+        let received = line.send(sent);
+        assert!(received.starts_with(answer), "{sent}: {received}");
+        assert_eq!(received.as_bytes()[received.len() - 3], b'*');
+    }
+}
+
+#[test]
 fn a_line_with_a_wrong_checksum_is_not_executed() {
     let mut line = Line::<1>::new();
     assert_eq!(line.send("law pi*43"), "ok");

@@ -163,7 +163,7 @@ fn what_does_not_fit_the_state_is_refused() {
     wait(&mut bench, 5);
     for (line, answer) in [
         ("tune", "err tune needs the state armed"),
-        ("hold 30", "err hold needs the state armed"),
+        ("hold 30", "err hold needs a driven display: arm first"),
         ("tune result", "err nothing was tuned since arm; tune first"),
         (
             "calibrate display 24",

@@ -7,7 +7,7 @@ fn point(time_ms: u32, celsius: f64) -> CoursePoint {
     }
 }
 
-fn course(temperatures: CourseTemperatures, points: &[(u32, f64)]) -> Result<Course, CourseError> {
+fn course(temperatures: TemperatureKind, points: &[(u32, f64)]) -> Result<Course, CourseError> {
     let mut course = Course::new(temperatures);
     for &(time_ms, celsius) in points {
         course.push(point(time_ms, celsius))?;
@@ -18,7 +18,7 @@ fn course(temperatures: CourseTemperatures, points: &[(u32, f64)]) -> Result<Cou
 
 #[test]
 fn points_that_do_not_fit_are_refused_and_leave_the_course_as_it_was() {
-    let mut course = Course::new(CourseTemperatures::Absolute);
+    let mut course = Course::new(TemperatureKind::Absolute);
     course.push(point(0, 30.0)).expect("fits");
     course.push(point(100, 31.0)).expect("fits");
     let before = course.clone();
@@ -43,7 +43,7 @@ fn points_that_do_not_fit_are_refused_and_leave_the_course_as_it_was() {
 fn a_course_has_2_to_128_points() {
     let of = |count: u32| {
         let points: std::vec::Vec<_> = (0..count).map(|n| (n * 10, 30.0)).collect();
-        course(CourseTemperatures::Absolute, &points).map(|course| course.points().len())
+        course(TemperatureKind::Absolute, &points).map(|course| course.points().len())
     };
     assert_eq!(of(0), Err(CourseError::TooFewPoints));
     assert_eq!(of(1), Err(CourseError::TooFewPoints));
@@ -55,7 +55,7 @@ fn a_course_has_2_to_128_points() {
 /// 42 °C counts a quarter: 120 s are the limit of 30 s.
 #[test]
 fn a_course_that_alone_trips_by_its_dose_is_refused_with_the_dose() {
-    let warm = |hold_ms| course(CourseTemperatures::Absolute, &[(0, 42.0), (hold_ms, 42.0)]);
+    let warm = |hold_ms| course(TemperatureKind::Absolute, &[(0, 42.0), (hold_ms, 42.0)]);
     assert!(warm(119_900).is_ok());
     let Err(CourseError::TooHotForTooLong(dose_ms)) = warm(160_000) else {
         panic!("accepted");
@@ -66,7 +66,7 @@ fn a_course_that_alone_trips_by_its_dose_is_refused_with_the_dose() {
 #[test]
 fn the_dose_of_a_relative_course_depends_on_the_skin() {
     let relative = [(0, 0.0), (8000, 8.0), (248_000, 8.0), (256_000, 0.0)];
-    let course = course(CourseTemperatures::Relative, &relative).expect("fits");
+    let course = course(TemperatureKind::AboveSkin, &relative).expect("fits");
     // 240 s at 8 K above the skin, and the ramps.
     for (skin_c, hold_dose_s) in [(34.0, 60.0), (33.0, 15.0), (32.0, 3.75)] {
         let dose_s = f64::from(course.dose(Celsius::from_num(skin_c)).milliseconds_at_43()) / 1e3;

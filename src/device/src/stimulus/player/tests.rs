@@ -7,7 +7,7 @@ use super::*;
 const fn order(times: u16, end: CourseEnd) -> PlayOrder {
     PlayOrder {
         start: CourseStart::Now,
-        times,
+        play_count: times,
         end,
     }
 }
