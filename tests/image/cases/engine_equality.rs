@@ -20,6 +20,21 @@ fn csv(outcome: &Outcome, name: &str) -> String {
     text
 }
 
+/// Times of the edges at the trigger input by the device's events, µs since its start.
+fn reported_edges_us(outcome: &Outcome) -> Vec<i64> {
+    let lines = outcome.events.iter().map(|(_, line)| line);
+    lines
+        .filter(|line| line.ends_with("trigger"))
+        .map(|line| {
+            let mut words = line.split(' ').skip(1).map(|word| word.parse::<i64>());
+            let (Some(Ok(tick)), Some(Ok(us))) = (words.next(), words.next()) else {
+                panic!("{line}");
+            };
+            1000 * tick + us
+        })
+        .collect()
+}
+
 #[test]
 fn native_and_image_write_the_same_trace_over_two_contacts() {
     let two = forces(&[(2.0, 2.0), (20.0, 0.0), (30.0, 0.5), (55.0, 0.0)]);
@@ -143,20 +158,39 @@ fn both_engines_play_a_course_from_the_same_trigger_and_report_the_same_events()
     let of = |kind: &str| events.iter().filter(|line| line.ends_with(kind)).count();
     assert_eq!((of("start"), of("end")), (2, 2), "{events:?}");
     // From edge to edge the events tell what the scene says, to a microsecond.
-    let reported_us: Vec<i64> = (events.iter().filter(|line| line.ends_with("trigger")))
-        .map(|line| {
-            let mut words = line.split(' ').skip(1).map(|word| word.parse::<i64>());
-            let (Some(Ok(tick)), Some(Ok(us))) = (words.next(), words.next()) else {
-                panic!("{line}");
-            };
-            1000 * tick + us
-        })
-        .collect();
+    let reported_us = reported_edges_us(&image);
     assert_eq!(reported_us.len(), edges_s.len(), "{events:?}");
     for (reported, scene) in reported_us.windows(2).zip(edges_s.windows(2)) {
         let interval_us = 1e6 * (scene[1] - scene[0]);
         assert!(((reported[1] - reported[0]) as f64 - interval_us).abs() < 0.5);
     }
+}
+
+/// Edges in each microsecond of a tick, and many about the one in which the tick reads the timer, while the host's lines delay
+/// ticks by a little.
+#[test]
+fn the_image_reports_an_edge_at_any_time_of_a_tick_to_a_microsecond() {
+    const FIRST_US: i64 = 500_000;
+    // The tick reads the timer some 963 us after its first scan, which starts 233 us before a millisecond of the scene.
+    const AROUND_READING_US: i64 = 700;
+    let all = (0..1000).map(|n| FIRST_US + 2001 * n);
+    let around_reading =
+        (0..1000).map(|n| FIRST_US + 2_100_000 + 3000 * n + AROUND_READING_US + n % 40);
+    let edges_us: Vec<i64> = all.chain(around_reading).collect();
+    let triggers: String = (edges_us.iter())
+        .map(|us| format!("[[trigger]]\nt_s = {:.6}\n", 1e-6 * *us as f64))
+        .collect();
+    let queries = (0..1000).map(|n| (0.5 + 5.3e-3 * f64::from(n), "law"));
+    let lines: Vec<_> = [(0.2, "events on")].into_iter().chain(queries).collect();
+    let scene = scene("copper", 6.0, "", &(triggers + &host(&lines)));
+    let reported_us = reported_edges_us(&on_image(&scene));
+    assert_eq!(reported_us.len(), edges_us.len());
+    let zero_us = reported_us[0] - edges_us[0];
+    let wrong: Vec<_> = (reported_us.iter().zip(&edges_us))
+        .map(|(reported_us, edge_us)| (reported_us % 1000, reported_us - zero_us - edge_us))
+        .filter(|(_, error_us)| *error_us != 0)
+        .collect();
+    assert!(wrong.is_empty(), "us of a tick, error in us: {wrong:?}");
 }
 
 /// The pulse at the output begins in the tick that starts or ends a course, or finds a lift; a landing is marked once it is
