@@ -83,7 +83,7 @@ impl Allowed {
 }
 
 /// Panics, all but one in libraries. Each switches the bridges off first, and ends in a reset by the watchdog.
-pub static PANICS: [Entry; 8] = [
+pub static PANICS: [Entry; 9] = [
     Entry {
         trees: &[TICK, REFILL],
         names: &["stm32f4xx_hal::dma::Transfer::next_transfer_common"],
@@ -139,11 +139,16 @@ pub static PANICS: [Entry; 8] = [
         ],
         why: "NaN: all numbers come from decimal text of a bounded range or are constants",
     },
+    Entry {
+        trees: &[HOST],
+        names: &["core::str::pattern::CharSearcher::next_match"],
+        why: "the position that the search for a byte finds lies in the text",
+    },
 ];
 
 /// Loops of the control path. Loops that repeat an exclusive access need no entry: they repeat once for each exception
 /// between its load and its store.
-pub static LOOPS: [Entry; 13] = [
+pub static LOOPS: [Entry; 12] = [
     Entry {
         trees: &[TICK, CONVERTER, REFILL],
         names: &["stm32f4xx_hal::dma::stream_disable"],
@@ -164,17 +169,12 @@ pub static LOOPS: [Entry; 13] = [
     },
     Entry {
         trees: &[TICK],
-        names: &["thermal_device::sense::thermistor_average::ThermistorAverages::add_tick"],
-        why: "5 thermistors",
-    },
-    Entry {
-        trees: &[TICK],
         names: &[
             "thermal_device::stimulus::player::Cursor::advance",
             "thermal_device::stimulus::player::Cursor::enter_segment",
             "thermal_device::stimulus::ramp::Ramp::skip",
         ],
-        why: "at most 44 ticks of a course: 32 since the landing and 12 ahead; each segment has at least one",
+        why: "at most 46 ticks of a course: 32 since the landing and 14 ahead; each segment has at least one",
     },
     Entry {
         trees: &[TICK],

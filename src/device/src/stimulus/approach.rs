@@ -34,10 +34,10 @@ impl Approach {
             return end;
         };
         let moved = last.saturating_add(end.saturating_sub(last) / APPROACH_TICKS);
-        let target = moved.clamp(
-            surface.saturating_sub(AHEAD_MAX),
-            surface.saturating_add(AHEAD_MAX),
-        );
+        // Not `clamp`, which panics if its limits are in the wrong order.
+        let target = moved
+            .max(surface.saturating_sub(AHEAD_MAX))
+            .min(surface.saturating_add(AHEAD_MAX));
         *self = if target.abs_diff(end) <= NEAR {
             Self::Over
         } else {
