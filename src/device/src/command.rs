@@ -129,6 +129,15 @@ impl AssumedFinger {
             Self::MeanOnPad => &FingerBody::MEAN_ON_PAD,
         }
     }
+
+    /// Whether its tissue has layers. All layered fingers have the same tissue.
+    #[must_use]
+    pub const fn is_layered(self) -> bool {
+        match self {
+            Self::Thesis => false,
+            Self::Mean | Self::MeanOnPad => true,
+        }
+    }
 }
 
 /// A command or query of the host to one finger's station. All values are within their ranges; whether the station's

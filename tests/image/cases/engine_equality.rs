@@ -188,7 +188,8 @@ fn the_image_reports_an_edge_at_any_time_of_a_tick_to_a_microsecond() {
     let zero_us = reported_us[0] - edges_us[0];
     let wrong: Vec<_> = (reported_us.iter().zip(&edges_us))
         .map(|(reported_us, edge_us)| (reported_us % 1000, reported_us - zero_us - edge_us))
-        .filter(|(_, error_us)| *error_us != 0)
+        // The emulated chip sees an edge between two blocks of instructions, so a microsecond late at most.
+        .filter(|(_, error_us)| !(0..=1).contains(error_us))
         .collect();
     assert!(wrong.is_empty(), "us of a tick, error in us: {wrong:?}");
 }

@@ -44,7 +44,7 @@ impl Station {
             Command::Finger(Some(finger)) => {
                 let before = self.object.assumed_finger();
                 if finger != before {
-                    if finger.body().tissue != before.body().tissue {
+                    if finger.is_layered() != before.is_layered() {
                         self.estimator.finger.forget_tissue_history();
                     }
                     self.object.choose_finger(finger);
