@@ -207,7 +207,7 @@ fn create_stations(
         if let Some(cause) = cause {
             (*first).trip(cause);
         }
-        for finger in 1..FINGERS {
+        for finger in (0..FINGERS).skip(1) {
             first.add(finger).write((*first).clone());
         }
     }

@@ -25,7 +25,7 @@ use super::wiring::FINGERS;
 const COUNT_HZ: u32 = 1_000_000;
 const COUNTS_PER_TICK: u16 = 1000;
 const COUNTS: u16 = 2 * COUNTS_PER_TICK;
-/// Count from which on an edge waits for the next tick of the first finger. That tick reads the timer at 950 with one
+/// Count from which on an edge waits for the next tick of the first finger. That tick reads the timer at 963 with one
 /// finger, and with five, whose first block ends earlier, at 200.
 const WAITS_FROM_US: u16 = if FINGERS == 1 { 900 } else { 150 };
 
