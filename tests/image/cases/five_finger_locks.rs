@@ -245,9 +245,9 @@ fn commands_lock_the_tick_out_briefly() {
         session.longest_lock
     });
     println!("{longest_locks:?}");
-    for (us, line) in &longest_locks {
-        assert_eq!(line, LONGEST, "the longest command, {us} us");
-    }
+    // With wait states, where the code lies decides between commands that are a few percent apart.
+    let [(us, line), ..] = &longest_locks;
+    assert_eq!(line, LONGEST, "the longest command, {us} us");
     let keys = ["", "_art", "_off"].map(|timing| format!("five_fingers.lock{timing}"));
     for ((us, _), key) in longest_locks.iter().zip(keys) {
         assert_figure(&key, *us);
@@ -260,7 +260,7 @@ const FLASH_TIMINGS: [FlashTiming; 3] = [
     FlashTiming::Unaccelerated,
 ];
 
-/// The command that locks longest, with each timing of the flash.
+/// The command that locks longest if the flash needs no wait states.
 const LONGEST: &str = "material copper";
 
 /// Sends the longest command at times 0.5 us apart over one turn, so that one of them begins to lock right before a finger's
