@@ -3,6 +3,8 @@
 
 mod bridge;
 mod commissioning;
+mod course_refusals;
+mod courses;
 mod device;
 mod line_queue;
 mod objects;

@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use cli::{
-    Failure, commission, erfcx, faults, fidelity, five_fingers, infrared, model, object,
-    parameters, roughness, run, serve, thesis,
+    Failure, commission, display, erfcx, faults, fidelity, five_fingers, infrared, model, object,
+    parameters, play, roughness, run, serve, thesis, tracking,
 };
 #[cfg(feature = "emulator")]
 use cli::{embedded_tests, profile};
@@ -19,6 +19,10 @@ use cli::{embedded_tests, profile};
 enum Cli {
     /// Run a scene
     Run(run::Arguments),
+    /// Play a course of temperature from a CSV file under a finger
+    Play(play::Arguments),
+    /// What earlier displays would have shown of an object, on the device and on an ideal tile
+    Display(display::Arguments),
     /// Be a device on a serial line or a TCP port, for other programs
     Serve(serve::Arguments),
     /// Measure how soon a client of a served device is told of a landing, in real time
@@ -48,6 +52,8 @@ enum Cli {
     Parameters(parameters::Arguments),
     /// How close the skin on the display comes to the skin on the real material, law by law
     Fidelity(fidelity::Arguments),
+    /// How closely the display follows steps, ramps, pulses and a recorded course, and how fast the tile is
+    Tracking(tracking::Arguments),
     /// The fault-injection matrix: every single fault, at moments of many scenes
     Faults(faults::Arguments),
     /// Recompute the thesis's tables and model figures and lay them beside what it states
@@ -57,6 +63,8 @@ enum Cli {
 fn main() -> ExitCode {
     let done = match Cli::parse() {
         Cli::Run(arguments) => run::run(&arguments),
+        Cli::Play(arguments) => play::run(&arguments),
+        Cli::Display(arguments) => display::run(&arguments),
         Cli::Serve(arguments) => serve::run(&arguments),
         #[cfg(unix)]
         Cli::ServeLatency(arguments) => serve::latency::run(&arguments),
@@ -73,6 +81,7 @@ fn main() -> ExitCode {
         Cli::Roughness(arguments) => roughness::run(&arguments),
         Cli::Parameters(arguments) => parameters::run(&arguments),
         Cli::Fidelity(arguments) => fidelity::run(&arguments),
+        Cli::Tracking(arguments) => tracking::run(&arguments),
         Cli::Faults(arguments) => faults::run(&arguments),
         Cli::Thesis(arguments) => thesis::run(&arguments),
     };

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use cli::{Failure, Target, bring_up, commission, info, log, ports, send};
+use cli::{Failure, Target, bring_up, commission, info, log, play, ports, send};
 
 /// The operator's side of a thermal display.
 #[derive(Parser)]
@@ -26,6 +26,8 @@ enum Command {
     Info(info::Arguments),
     /// Send lines to the device and print its answers
     Send(send::Arguments),
+    /// Play a course of temperature from a CSV file on the armed device
+    Play(play::Arguments),
     /// Write telemetry as CSV, until Ctrl-C or for some time
     Log(log::Arguments),
     /// Calibrate and tune a new device, step by step, and store the result
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
         Command::Ports(arguments) => ports::run(&arguments),
         Command::Info(arguments) => info::run(&target, &arguments),
         Command::Send(arguments) => send::run(&target, &arguments),
+        Command::Play(arguments) => play::run(&target, &arguments),
         Command::Log(arguments) => log::run(&target, &arguments),
         Command::Commission(arguments) => commission::run(&target, &arguments),
         Command::BringUp(arguments) => bring_up::run(&target, &arguments),

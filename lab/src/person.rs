@@ -129,12 +129,12 @@ fn device_reads_c<L: Link>(
     thermistor: ThermistorId,
 ) -> Result<Option<f64>, ClientError> {
     while client.next_telemetry(Duration::ZERO)?.is_some() {}
-    client.ask_finger(finger, &PlainCommand::Stream(TELEMETRY_MS))?;
+    client.ask_finger(finger, &PlainCommand::stream(TELEMETRY_MS))?;
     let mut line = client.next_telemetry(TELEMETRY_TIMEOUT)?;
     while line.is_some_and(|line| finger.is_some() && line.finger != finger) {
         line = client.next_telemetry(TELEMETRY_TIMEOUT)?;
     }
-    client.ask_finger(finger, &PlainCommand::Stream(WATCHED_STREAM_MS))?;
+    client.ask_finger(finger, &PlainCommand::stream(WATCHED_STREAM_MS))?;
     Ok(line.and_then(|line| match thermistor {
         ThermistorId::Display | ThermistorId::Check => line.telemetry.display_c,
         ThermistorId::Sink => line.telemetry.sink_c,

@@ -4,11 +4,11 @@ use core::fmt::Display;
 
 use heapless::spsc::Consumer;
 use thermal_display::commissioning::StorageOrder;
-use thermal_display::device::Telemetry;
 use thermal_display::device::command::WithSourceFinger;
+use thermal_display::device::events::UnsolicitedReport;
 use thermal_display::line_queue::LineConsumer;
 use thermal_display::protocol::{
-    BoardStatus, CommandHandler, Error, ExecuteOnStations, Reply, wrap_as_telemetry_line,
+    BoardStatus, CommandHandler, Error, ExecuteOnStations, Reply, UnsolicitedLine,
 };
 
 use super::{FINGERS, Outbox, board_status_now, restart_to_save};
@@ -17,7 +17,7 @@ use super::{FINGERS, Outbox, board_status_now, restart_to_save};
 /// the host.
 pub struct Console {
     pub lines: LineConsumer<'static>,
-    pub telemetry: Consumer<'static, WithSourceFinger<Telemetry>>,
+    pub telemetry: Consumer<'static, WithSourceFinger<UnsolicitedReport>>,
     pub outbox: Outbox,
     pub handler: &'static mut CommandHandler<FINGERS>,
     /// The answer to `save` or `forget` after the restart that either of them requests: whether the
@@ -74,7 +74,7 @@ impl Console {
                     }
                 }
             } else if let Some(telemetry) = self.telemetry.dequeue() {
-                self.send(&wrap_as_telemetry_line(telemetry));
+                self.send(&telemetry.map_content(UnsolicitedLine));
             } else {
                 break;
             }

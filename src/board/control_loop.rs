@@ -4,13 +4,15 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use heapless::spsc::Producer;
 use thermal_display::device::command::WithSourceFinger;
+use thermal_display::device::events::UnsolicitedReport;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::{DigitalInputs, Samples};
-use thermal_display::device::{DeviceInPlace, FingerIndex, Telemetry};
+use thermal_display::device::{DeviceInPlace, FingerIndex};
 
 use super::{
     ChipMonitor, ComparatorSide, EmergencyStop, FINGERS, FingerPowerStage, SampleError, Sampler,
-    TripCauseRecorder, WindowWatchdog, line_losses, save_dose_if_changed, stack_is_overrun,
+    TriggerInput, TriggerOutput, TripCauseRecorder, WindowWatchdog, line_losses,
+    save_dose_if_changed, stack_is_overrun,
 };
 
 /// Executes the control ticks of all fingers: samples the sensors, computes each finger's outputs,
@@ -20,8 +22,10 @@ pub struct ControlLoop {
     pub stages: [FingerPowerStage; FINGERS],
     pub comparator_side: ComparatorSide,
     pub emergency_stop: EmergencyStop,
+    pub trigger_input: TriggerInput,
+    pub trigger_output: TriggerOutput,
     pub trip_cause_recorder: TripCauseRecorder,
-    pub telemetry: Producer<'static, WithSourceFinger<Telemetry>>,
+    pub telemetry: Producer<'static, WithSourceFinger<UnsolicitedReport>>,
     pub window_watchdog: WindowWatchdog,
     pub chip_monitor: ChipMonitor,
 }
@@ -63,6 +67,11 @@ impl ControlLoop {
         };
         let needs_scatter = device.finger_needs_scatter(finger);
         let samples = Samples::from_scans(scans, inputs, needs_scatter);
+        if finger == FingerIndex::FIRST
+            && let Some(edge) = self.trigger_input.take_edge()
+        {
+            device.note_trigger_edge(edge);
+        }
         // A line that comes between load and store counts in this tick, as the one before it.
         if host_is_active.load(Ordering::Relaxed) {
             host_is_active.store(false, Ordering::Relaxed);
@@ -88,12 +97,18 @@ impl ControlLoop {
         save_dose_if_changed(finger, device.finger_thermal_dose(finger));
         self.comparator_side.select(outputs.comparator_test);
         stage.apply_drive_and_comparator_test(&outputs);
+        self.trigger_output.set(finger, outputs.trigger_output);
+        let mut is_due = false;
+        if device.finger_has_event(finger) {
+            is_due = true;
+            self.queue_events(device, finger);
+        }
         let telemetry = device.finger_telemetry_if_due(finger);
-        let is_due = telemetry.is_some();
+        is_due |= telemetry.is_some();
         if let Some(telemetry) = telemetry {
             // A full queue means that the link to the host is too slow; this line of telemetry is
             // then dropped.
-            if self.telemetry.enqueue(telemetry).is_err() {
+            if self.telemetry.enqueue(telemetry.into_report()).is_err() {
                 line_losses::DROPPED_TELEMETRY.count();
             }
         }
@@ -105,6 +120,17 @@ impl ControlLoop {
             self.chip_monitor.restart_when_clock_has_come();
         }
         Ok(is_due)
+    }
+
+    /// Queues the events of a finger for the host, as far as there is room; the others stay in the station.
+    #[inline(never)]
+    fn queue_events(&mut self, device: &mut DeviceInPlace<FINGERS>, finger: FingerIndex<FINGERS>) {
+        // Ends, because each round takes an event that nothing replaces meanwhile.
+        while self.telemetry.ready()
+            && let Some(event) = device.take_finger_event(finger)
+        {
+            let _ = self.telemetry.enqueue(event);
+        }
     }
 
     /// Turns all bridges off, stops sampling until the next reset, trips all fingers by the fault

@@ -17,6 +17,6 @@ pub use control_loop::ControlLoop;
 pub use nucleo_f446re::{
     BlankOrToBeAnsweredLine, Board, ChipMonitor, ComparatorSide, EmergencyStop, FINGERS,
     FingerPowerStage, IndependentWatchdog, Outbox, Receiver, SampleError, SampleTrigger, Sampler,
-    StaticMemory, Transmitter, TripCauseRecorder, WindowWatchdog, board_status_now, line_losses,
-    pac, restart_to_save, save_dose_if_changed, stack_is_overrun,
+    StaticMemory, Transmitter, TriggerInput, TriggerOutput, TripCauseRecorder, WindowWatchdog,
+    board_status_now, line_losses, pac, restart_to_save, save_dose_if_changed, stack_is_overrun,
 };

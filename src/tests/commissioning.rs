@@ -147,7 +147,7 @@ fn an_error_names_the_first_finger_that_refuses_and_the_others_execute_the_line(
     arm(&mut five.device, FingerIndex::new(2).expect("a finger"));
     assert_eq!(five.send("@2 material copper"), "@2 ok");
     assert_eq!(five.send("@2 start"), "@2 ok");
-    let refused = "@2 err not while an object is presented: abort or arm first";
+    let refused = "@2 err not while an object or a course is presented: abort or arm first";
     assert_eq!(five.send("set correction display 0.2 0 0"), refused);
     assert_eq!(five.send("set steps 10 0.5"), refused);
     assert_eq!(five.send("calibrate check clear"), refused);

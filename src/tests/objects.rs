@@ -5,6 +5,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use super::device::{arm, samples};
+use crate::device::command::AssumedFinger;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, FingerIndex};
 use crate::protocol::CommandHandler;
@@ -268,4 +269,16 @@ fn another_assumed_finger_is_another_set_point() {
     bench.send_ok(&["@1 finger thesis"]);
     assert_eq!(bench.send("@1 finger"), "@1 ok finger=thesis");
     assert_eq!(bench.send("finger"), "@0 ok finger=mean");
+}
+
+#[test]
+fn fingers_have_the_same_tissue_if_both_or_neither_have_layers() {
+    let fingers = AssumedFinger::PROTOCOL_WORDS.map(|(_, finger)| finger);
+    for (a, b) in fingers
+        .iter()
+        .flat_map(|a| fingers.iter().map(move |b| (a, b)))
+    {
+        let equal = a.body().tissue == b.body().tissue;
+        assert_eq!(equal, a.is_layered() == b.is_layered(), "{a:?} {b:?}");
+    }
 }

@@ -76,7 +76,7 @@ fn a_correction_that_is_set_while_the_display_is_held_trips_nothing() {
             panic!("{line}: {:?}", outcome.answers);
         };
         assert!(
-            state.starts_with("ok state=armed fault=-"),
+            state.starts_with("ok state=stimulus fault=-"),
             "{line}: {state}"
         );
     }

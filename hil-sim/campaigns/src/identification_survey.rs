@@ -133,7 +133,7 @@ fn tune(plants: &CommissioningSetup, settings: &[String]) -> anyhow::Result<(Ide
     }
     arm(&mut client, None)?;
     client.ask(&PlainCommand::Tune)?;
-    client.ask(&PlainCommand::Stream(1))?;
+    client.ask(&PlainCommand::stream(1))?;
     let (mut demand_a, mut pairs) = (0.0f64, Vec::new());
     for ms in 1..TUNE_MS {
         // An answer comes in the millisecond in which its line is sent.

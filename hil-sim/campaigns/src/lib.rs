@@ -5,6 +5,7 @@ pub mod fidelity;
 mod identification_survey;
 mod parallel;
 mod percentile;
+pub mod tracking;
 
 pub use identification_survey::{
     IdentificationResult, QUANTITIES, survey_device, table as survey_table,

@@ -33,6 +33,8 @@ mod tests;
 const TIMERS: usize = 10;
 const TIM1: usize = 0;
 const TIM2: usize = 1;
+const TIM3: usize = 2;
+const TIM4: usize = 3;
 const TIM5: usize = 4;
 const TIM8: usize = 7;
 const TIM10: usize = 8;
@@ -52,6 +54,8 @@ const TIMER_PINS: [(u8, u8, u8, usize, usize); 10] = [
 ];
 /// Break inputs (same table): timer, port, bit, alternate function.
 const BREAK_PINS: [(usize, u8, u8, u8); 3] = [(TIM1, 0, 6, 1), (TIM1, 1, 12, 1), (TIM8, 0, 6, 3)];
+/// Capture inputs of which edges can come from outside (same table): timer, channel, port, bit, alternate function.
+const CAPTURE_PINS: [(usize, usize, u8, u8, u8); 1] = [(TIM3, 0, 1, 4, 2)];
 /// ADC_CR2, which selects the trigger.
 const ADC_CR2: u32 = 0x4001_2008;
 const WWDG_IRQ: usize = 0;
@@ -354,6 +358,13 @@ impl<W: Wiring> Chip<W> {
                 2 => Some(Trigger::Tim3),
                 _ => None,
             };
+            if timer == TIM2 {
+                for slave in [TIM3, TIM4] {
+                    if self.tims[slave].is_started_by_tim2() {
+                        self.tims[slave].start(at);
+                    }
+                }
+            }
             if source.is_some() && source == self.adc.trigger() {
                 let result = self.adc.start(at);
                 if let (Err(refusal), None) = (result, self.misuse) {
@@ -361,6 +372,16 @@ impl<W: Wiring> Chip<W> {
                 }
             }
         }
+    }
+
+    /// Tells the timers whether the converter or another timer uses their trigger outputs.
+    fn connect_triggers(&mut self, now: u64) {
+        let of_adc = self.adc.trigger();
+        let starts_timers = [TIM3, TIM4]
+            .iter()
+            .any(|slave| self.tims[*slave].is_started_by_tim2());
+        self.tims[TIM2].use_trigger(of_adc == Some(Trigger::Tim2) || starts_timers, now);
+        self.tims[TIM3].use_trigger(of_adc == Some(Trigger::Tim3), now);
     }
 
     /// Reports a changed bridge leg to the wiring.
@@ -406,13 +427,21 @@ impl<W: Wiring> Chip<W> {
         self.ports[port].level(bit, self.wiring.pin(port as u8, bit))
     }
 
-    /// Samples the inputs that act without a register access: break inputs and enabled EXTI lines.
+    /// Samples the inputs that act without a register access: break inputs, captured inputs and enabled EXTI lines.
     pub fn sample_inputs(&mut self, at: u64) {
         for (timer, port, bit, function) in BREAK_PINS {
             let watched = self.tims[timer].watches_break();
             if watched && self.ports[usize::from(port)].mode(bit) == Mode::Alternate(function) {
                 let level = self.pin(usize::from(port), bit);
                 if self.tims[timer].set_break(level) {
+                    self.timer_changed(timer, at);
+                }
+            }
+        }
+        for (timer, channel, port, bit, function) in CAPTURE_PINS {
+            if self.ports[usize::from(port)].mode(bit) == Mode::Alternate(function) {
+                let level = self.pin(usize::from(port), bit);
+                if self.tims[timer].set_input(channel, level, at) {
                     self.timer_changed(timer, at);
                 }
             }

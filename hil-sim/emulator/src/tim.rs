@@ -2,7 +2,8 @@
 //! flags, trigger output, PWM levels, and the main output enable with break of the advanced timer.
 //!
 //! The counter is not ticked: its value follows from the time of its last restart, and [`Tim::sync`] brings flags
-//! and preloaded registers up to date. Capture, encoder, slave, centre-aligned and down-counting modes are refused.
+//! and preloaded registers up to date. TIM3 and TIM4 may be started by TIM2. An input is captured without filter and prescaler. Encoder, slave, centre-aligned and
+//! down-counting modes are refused, and so is capture with a filter, or from another channel's input.
 mod registers;
 
 /// Properties in which the timers differ.
@@ -44,6 +45,9 @@ const OSSR: u32 = 1 << 11;
 const OSSI: u32 = 1 << 10;
 const LOCK: u32 = 3 << 8;
 
+/// SMCR of TIM3 and TIM4: trigger mode, started by ITR1, which is TIM2's trigger output (17.4.3).
+const STARTED_BY_TIM2: u32 = 0x16;
+
 /// Output of a channel to its pin (RM0390 16.4.9, output control bits).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Output {
@@ -60,6 +64,7 @@ pub(crate) struct Tim {
     divider: u64,
     cr1: u32,
     cr2: u32,
+    smcr: u32,
     dier: u32,
     sr: u32,
     ccmr: [u32; 2],
@@ -80,6 +85,8 @@ pub(crate) struct Tim {
     /// value when it was written.
     period_end: u32,
     ccr_now: [u32; 4],
+    /// Level of each channel's input.
+    inputs: [bool; 4],
     repeats_left: u32,
     /// Cycle at which the counter was 0; meaningful while counting.
     zero_at: u64,
@@ -239,7 +246,7 @@ impl Tim {
     fn compare_flags(&mut self, to: u64) {
         for channel in 0..self.kind.channels {
             let compare = self.ccr_now[channel];
-            if compare <= self.period_end {
+            if compare <= self.period_end && !self.is_capturing(channel) {
                 let matches = self.zero_at.wrapping_add(u64::from(compare) * self.tick());
                 if matches > self.synced_to && matches <= to {
                     self.sr |= 2 << channel;
@@ -289,8 +296,8 @@ impl Tim {
         }
         for channel in 0..self.kind.channels {
             let flag = 2 << channel;
-            if self.dier & flag != 0 && self.sr & flag == 0 && self.ccr_now[channel] <= self.arr_now
-            {
+            let matches = self.ccr_now[channel] <= self.arr_now && !self.is_capturing(channel);
+            if self.dier & flag != 0 && self.sr & flag == 0 && matches {
                 let at = self
                     .zero_at
                     .wrapping_add(u64::from(self.ccr_now[channel]) * self.tick());
@@ -326,6 +333,48 @@ impl Tim {
         self.bdtr & BKE != 0
     }
 
+    /// Whether TIM2's trigger output starts the counter.
+    pub const fn is_started_by_tim2(&self) -> bool {
+        self.smcr == STARTED_BY_TIM2
+    }
+
+    /// Starts the counter, as the trigger input does in trigger mode (17.3.14).
+    pub fn start(&mut self, now: u64) {
+        if self.cr1 & 1 == 0 {
+            let count = self.count(now);
+            self.cr1 |= 1;
+            self.set_count(count, now);
+            self.schedule();
+        }
+    }
+
+    /// Whether a channel is an input (CCxS, 17.4.7).
+    fn is_capturing(&self, channel: usize) -> bool {
+        self.ccmr[channel / 2] >> (8 * (channel % 2)) & 3 != 0
+    }
+
+    /// Sets the level of a channel's input. The selected edge stores the count, and sets CCxIF, or CCxOF as well if CCxIF is
+    /// still set (17.3.5). `true`: it was such an edge.
+    pub fn set_input(&mut self, channel: usize, level: bool, now: u64) -> bool {
+        if std::mem::replace(&mut self.inputs[channel], level) == level {
+            return false;
+        }
+        let selection = self.ccer >> (4 * channel) & 3;
+        let selected = selection == if level { 1 } else { 3 };
+        if !selected || !self.is_capturing(channel) {
+            return false;
+        }
+        self.sync(now);
+        let flag = 2 << channel;
+        if self.sr & flag != 0 {
+            self.sr |= flag << 8;
+        }
+        self.sr |= flag;
+        self.ccr[channel] = self.count(now);
+        self.ccr_now[channel] = self.ccr[channel];
+        true
+    }
+
     /// Interrupt requests: break, update, trigger, compare.
     pub fn requests(&self) -> [bool; 4] {
         let raised = self.sr & self.dier;
@@ -347,6 +396,9 @@ impl Tim {
             },
             false => Output::Released,
         };
+        if self.is_capturing(channel) {
+            return Output::Released;
+        }
         let enabled = self.ccer >> (4 * channel) & 1 != 0;
         // A halted timer with complementary outputs disables its outputs as if MOE were 0 (RM0090 38.16.2).
         if self.kind.advanced && (self.bdtr & MOE == 0 || self.halted) {

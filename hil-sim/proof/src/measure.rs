@@ -14,7 +14,7 @@ use thermal_sim::five_fingers::{self, FINGERS, FiveFingerEngine as _};
 use thermal_sim::run::{Outcome, run};
 use thermal_sim::scene::Scene;
 
-use crate::scenes::{faulty, touched};
+use crate::scenes::{courses, faulty, touched};
 use crate::{Proof, Section, levels};
 
 /// Cycles of a millisecond at 180 MHz.
@@ -88,7 +88,8 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
 
 /// Cost of all scenes with one finger, without the eight seconds before each.
 fn alone(firmware: &Firmware) -> Result<Vec<Measured>> {
-    let scenes: Vec<(String, Scene)> = touched()?.into_iter().chain(faulty()?).collect();
+    let scenes = touched()?.into_iter().chain(faulty()?).chain(courses()?);
+    let scenes: Vec<(String, Scene)> = scenes.collect();
     let jobs: Vec<Option<&(String, Scene)>> =
         [None].into_iter().chain(scenes.iter().map(Some)).collect();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -98,6 +99,9 @@ fn alone(firmware: &Firmware) -> Result<Vec<Measured>> {
         };
         let mut image = OneFingerBoard::new(firmware, World::new(scene)?)?;
         let outcome = run(scene, &mut image, |_| ()).with_context(|| what.clone())?;
+        let plays = (scene.host.iter()).any(|sent| sent.line.starts_with("play"));
+        let started = (outcome.events.iter()).any(|(_, line)| line.ends_with("start"));
+        ensure!(started || !plays, "{what}: no course has started");
         of_outcome(what, &outcome)
     };
     parallel_map(&jobs, threads, measured, || ())

@@ -1,9 +1,11 @@
-//! Scenes that cover materials, forces, control laws, faults and lines of the host.
+//! Scenes that cover materials, forces, control laws, faults, courses and lines of the host.
 use std::fmt::Write as _;
 use std::path::Path;
 
 use anyhow::{Context, Result};
 use contact_model::material::MATERIALS;
+use thermal_client::client::upload_course;
+use thermal_device::stimulus::TemperatureKind;
 use thermal_sim::scene::{FaultKind, Scene};
 
 /// Time at which each fault begins, during contact, s.
@@ -76,6 +78,36 @@ pub fn faulty() -> Result<Vec<(String, Scene)>> {
         parsed(kind.name(), &text)
     };
     FaultKind::ALL.into_iter().map(scene).collect()
+}
+
+/// Scenes in which a landing starts a course whose points are 1 ms apart, so that each tick begins a segment: one of many points,
+/// and one of two, which each tick begins again. The force rises so slowly that the course begins with the most ticks behind it.
+///
+/// # Errors
+/// A scene is refused.
+pub fn courses() -> Result<Vec<(String, Scene)>> {
+    const PLAY_S: f64 = 0.5;
+    const LANDING_S: f64 = 1.0;
+    let scene = |(what, count, times): (&str, usize, u16)| {
+        let mut text = head("copper", 2.2);
+        let points: Vec<_> = (0..count)
+            .map(|point| (1e-3 * point as f64, 33.0 + 0.05 * (point % 2) as f64))
+            .collect();
+        let upload = upload_course(TemperatureKind::Absolute, &points);
+        let upload = upload.iter().map(ToString::to_string);
+        let play = ["events on".into(), format!("play landing {times} neutral")];
+        for line in upload.chain(play) {
+            writeln!(text, "[[host]]\nt_s = {PLAY_S:?}\nline = {line:?}")?;
+        }
+        for (t_s, force_n) in [(LANDING_S, 0.012), (LANDING_S + 0.05, 2.0)] {
+            writeln!(text, "[[force]]\nt_s = {t_s}\nforce_n = {force_n}")?;
+        }
+        parsed(what, &text)
+    };
+    [("course", 48, 20), ("course-of-two-points", 2, 1000)]
+        .into_iter()
+        .map(scene)
+        .collect()
 }
 
 fn head(material: &str, duration_s: f64) -> String {

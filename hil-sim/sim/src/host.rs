@@ -2,7 +2,10 @@
 
 use std::ops::Range;
 
+use thermal_client::client::upload_course;
+use thermal_client::course::Course;
 use thermal_device::reference::ContactModel;
+use thermal_device::stimulus::TemperatureKind;
 use thermal_protocol::LINE_MAX_BYTES;
 
 use crate::scene::{FaultKind, Scene, custom_line};
@@ -21,6 +24,10 @@ const HEARTBEAT_MS: usize = 500;
 const BLANK: &[u8] = b"\n";
 /// Sent every half millisecond by a flooding host: as much as the serial line carries.
 const FLOOD: &[u8] = b"state\nstate\nstate\nstate\nstate\nstate\nstate\nstate\n";
+/// Half milliseconds between two lines of a host that uploads and plays courses: a device has answered the first by then.
+const PLAYING_HALF_MS: u64 = 4;
+/// The courses that it plays in turn: time, s, and temperature, °C, of their points.
+const PLAYED: [[(f64, f64); 2]; 2] = [[(0.0, 42.0), (1.0, 40.0)], [(0.0, 15.0), (1.0, 17.0)]];
 /// Bytes that are not valid lines.
 const GARBAGE: &[u8] = b"\x00\xff\xfe\x80arm\x01\n\xc3\x28 start\n";
 
@@ -35,6 +42,47 @@ pub struct Host {
     /// Time ranges since the start of the device, ms, in which the host floods the line, and in which it is silent.
     floods: Vec<Range<u64>>,
     silences: Vec<Range<u64>>,
+    playing: PlayingHost,
+}
+
+/// A host that uploads and plays courses without pause.
+#[derive(Clone, Debug)]
+struct PlayingHost {
+    /// Time ranges since the start of the device, ms.
+    times: Vec<Range<u64>>,
+    /// Its lines, which it sends again and again.
+    lines: Vec<Vec<u8>>,
+    next: usize,
+    /// Half millisecond since the start of the device from which on the next line may be sent.
+    free_half_ms: u64,
+}
+
+impl PlayingHost {
+    fn new(times: Vec<Range<u64>>) -> Self {
+        let lines = PLAYED.iter().flat_map(|points| {
+            let upload = upload_course(TemperatureKind::Absolute, points).into_iter();
+            upload
+                .map(|command| format!("{command}\n").into_bytes())
+                .chain([b"play now\n".to_vec()])
+        });
+        Self {
+            times,
+            lines: lines.collect(),
+            next: 0,
+            free_half_ms: 0,
+        }
+    }
+
+    /// The line sent at a half millisecond since the start of the device, if any.
+    fn send(&mut self, half_ms: u64) -> Option<&[u8]> {
+        if !within(&self.times, half_ms / 2) || half_ms < self.free_half_ms {
+            return None;
+        }
+        self.free_half_ms = half_ms + PLAYING_HALF_MS;
+        let line = self.lines.get(self.next);
+        self.next = (self.next + 1) % self.lines.len();
+        line.map(Vec::as_slice)
+    }
 }
 
 /// The lines by which an operator chooses the object of a scene: its material, its temperature and, if it is no half-space,
@@ -89,11 +137,13 @@ impl Host {
         let law = scene.law.map(|law| format!("law {}", law.name()));
         let set_up = material_and_temperature(scene).into_iter();
         let set_up = set_up.chain([mode.into()]).chain(law);
+        let upload = (scene.course.as_ref()).map_or_else(Vec::new, Course::upload_commands);
         // What the device assumes follows the command that arms it, which so is sent at the same time for all scenes.
         let finger = format!("finger {}", scene.assumed_finger.name());
         let set_up = set_up
             .chain(["arm".into(), finger])
-            .chain(relaxations(scene));
+            .chain(relaxations(scene))
+            .chain(upload.iter().map(ToString::to_string));
         let arm_ms = set_up_from_ms + SPACING_MS * settings.len() as u64;
         let mut queue: Vec<_> = (settings.iter().cloned().chain(set_up).zip(0..))
             .map(|(line, i)| (set_up_from_ms + i * SPACING_MS, line))
@@ -104,7 +154,12 @@ impl Host {
         } else {
             arm_ms + SKIN_SETTLING_MS
         };
-        queue.push((start_ms, "start".into()));
+        let start = if scene.course.is_some() {
+            "play landing"
+        } else {
+            "start"
+        };
+        queue.push((start_ms, start.into()));
         queue.push((zero_ms - STREAM_MS, format!("stream {stream_ms}")));
         queue.extend(
             scene
@@ -129,6 +184,7 @@ impl Host {
             .skip(1);
         let heartbeats = heartbeats.map(|ms| (ms, BLANK.to_vec()));
         let (floods, silences) = (times(FaultKind::HostFlood), times(FaultKind::HostSilent));
+        let playing = PlayingHost::new(times(FaultKind::HostPlays));
         let mut queue: Vec<_> = (lines.chain(garbage).chain(heartbeats))
             .filter(|(ms, _)| !within(&silences, *ms))
             .collect();
@@ -140,6 +196,7 @@ impl Host {
             next: 0,
             floods,
             silences,
+            playing,
         }
     }
 
@@ -155,8 +212,11 @@ impl Host {
         let Some((_, bytes)) = next.filter(|(ms, bytes)| half_ms >= 2 * ms + sending_half(bytes))
         else {
             let now_ms = half_ms / 2;
-            let floods = within(&self.floods, now_ms) && !within(&self.silences, now_ms);
-            return floods.then_some(FLOOD);
+            if within(&self.silences, now_ms) {
+                return None;
+            }
+            let floods = within(&self.floods, now_ms);
+            return (floods.then_some(FLOOD)).or_else(|| self.playing.send(half_ms));
         };
         self.next += 1;
         Some(bytes)

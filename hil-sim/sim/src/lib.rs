@@ -12,6 +12,7 @@ pub mod five_fingers;
 mod flash_cells;
 pub mod host;
 pub mod metrics;
+pub mod play;
 pub mod processor;
 pub mod report;
 pub mod run;
@@ -21,6 +22,7 @@ mod scene_recording;
 pub mod serve;
 pub mod simulated_link;
 pub mod trace;
+mod trigger_edges;
 pub mod upload;
 mod world;
 

@@ -179,7 +179,7 @@ pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
     let evaluations = || {
         rows.iter()
             .filter_map(|row| row.device.as_ref())
-            .map(|device| u64::from(device.evaluations))
+            .filter_map(|device| device.evaluations.map(u64::from))
     };
     let skins = || rows.iter().map(|row| row.skin_c);
     let mut exchanges = outcome.exchanges();
@@ -269,6 +269,18 @@ pub fn skin_errors(scene: &Scene, outcome: &Outcome) -> impl Iterator<Item = (f6
     rows.filter_map(|(row, since_s)| Some((since_s?, row.skin_c - row.skin_real_c)))
 }
 
+/// Time since the landing, s, and difference of the display to the scene's course, K, at every row in contact; nothing without
+/// a course.
+pub fn course_errors(scene: &Scene, outcome: &Outcome) -> impl Iterator<Item = (f64, f64)> {
+    let rows = outcome.trace.rows().iter();
+    let rows = rows.zip(contact_times(scene, outcome));
+    let course = scene.course.as_ref();
+    rows.filter_map(move |(row, since_s)| {
+        let since_s = since_s?;
+        Some((since_s, row.display_c - course?.at(since_s)))
+    })
+}
+
 fn range(values: impl Iterator<Item = f64>) -> Extremes {
     let none = Extremes {
         min: f64::INFINITY,
@@ -290,7 +302,7 @@ fn current(outcome: &Outcome) -> CurrentFigures {
 }
 
 /// Errors in mK from time since landing in s and error in K; `None` without contact.
-fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<ErrorFigures> {
+pub fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<ErrorFigures> {
     let (mut count, mut squares, mut max_k) = (0u32, 0.0, None::<f64>);
     for (since_s, error_k) in samples {
         count += 1;

@@ -10,6 +10,7 @@ use crate::host::SET_UP_FROM_MS;
 use crate::processor::{Injection, MachineFault, NotInjected};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
+use crate::trigger_edges::trigger_edges_us;
 
 pub use crate::scene_recording::{Exchange, Outcome};
 
@@ -88,6 +89,7 @@ pub fn run_with<E: Engine>(
     let mut scene_run = SceneRun {
         recording,
         injections,
+        scene,
         engine,
         received: LineSplitter::default(),
     };
@@ -103,9 +105,11 @@ pub fn run_with<E: Engine>(
         scene_run.recording.record(ms, scene_run.engine.world());
         scene_run.step_plant();
         scene_run.inject(2 * ms, |after_us| after_us > 0)?;
+        scene_run.trigger(2 * ms).map_err(RunError::Stop)?;
         scene_run.engine.run_half_ms().map_err(RunError::Stop)?;
         scene_run.send(2 * ms + 1);
         scene_run.inject(2 * ms + 1, |_| true)?;
+        scene_run.trigger(2 * ms + 1).map_err(RunError::Stop)?;
         scene_run.engine.run_half_ms().map_err(RunError::Stop)?;
         for line in scene_run.lines() {
             (scene_run.recording.receive(ms, line)).map_err(RunError::Refused)?;
@@ -119,6 +123,13 @@ pub fn run_with<E: Engine>(
     Ok(recording.outcome(E::NAME, &engine.resets(), engine.cost(), real_time_factor))
 }
 
+/// Microseconds from the start of a half millisecond since the start to a time of the scene, s, if the time is in that half
+/// millisecond. Time zero of the scene is `zero_ms` after the start.
+fn offset_in_half_ms(t_s: f64, zero_ms: u64, half_ms: u64) -> Option<u32> {
+    let us = (t_s * 1e6 + zero_ms as f64 * 1e3).round() as u64;
+    (us / HALF_MS_US == half_ms).then_some((us % HALF_MS_US) as u32)
+}
+
 /// Injects the processor faults of a half millisecond since the start whose offset in it, µs, is accepted by `at`. Time zero
 /// of the scene is `zero_ms` after the start, and no fault is before the start.
 pub(crate) fn inject_due<'a, E: Engine>(
@@ -129,9 +140,8 @@ pub(crate) fn inject_due<'a, E: Engine>(
     at: impl Fn(u32) -> bool,
 ) -> Result<(), NotInjected> {
     for injection in injections {
-        let us = (injection.t_s * 1e6 + zero_ms as f64 * 1e3).round() as u64;
-        let after_us = (us % HALF_MS_US) as u32;
-        if us / HALF_MS_US == half_ms && at(after_us) {
+        let after_us = offset_in_half_ms(injection.t_s, zero_ms, half_ms);
+        if let Some(after_us) = after_us.filter(|after_us| at(*after_us)) {
             engine.inject(&injection.fault, after_us)?;
         }
     }
@@ -141,6 +151,7 @@ pub(crate) fn inject_due<'a, E: Engine>(
 struct SceneRun<'a, E> {
     recording: SceneRecording<'a>,
     injections: Vec<&'a Injection>,
+    scene: &'a Scene,
     engine: &'a mut E,
     received: LineSplitter,
 }
@@ -149,6 +160,14 @@ impl<E: Engine> SceneRun<'_, E> {
     fn inject(&mut self, half_ms: u64, at: impl Fn(u32) -> bool) -> Result<(), NotInjected> {
         let (injections, zero_ms) = (self.injections.iter().copied(), self.recording.zero_ms);
         inject_due(self.engine, injections, zero_ms, half_ms, at)
+    }
+
+    /// Raises the trigger input at the scene's times within a half millisecond.
+    fn trigger(&mut self, half_ms: u64) -> Result<(), E::Stop> {
+        let from_us = (HALF_MS_US * half_ms) as i64 - 1000 * self.recording.zero_ms as i64;
+        let edges_us = trigger_edges_us(self.scene, &(from_us..from_us + HALF_MS_US as i64));
+        let mut offsets_us = edges_us.iter().map(|us| (us - from_us) as u32);
+        offsets_us.try_for_each(|after_us| self.engine.trigger(after_us))
     }
 
     /// Sends the bytes of the host at a half millisecond since the start.

@@ -15,7 +15,9 @@ pub struct Outcome {
     pub engine: &'static str,
     /// One row per millisecond.
     pub trace: Trace,
-    /// Every line of the device except telemetry, with the time of its completion, s.
+    /// Lines of events, `E …`, with the time of their completion, s.
+    pub events: Vec<(f64, String)>,
+    /// Every other line of the device except telemetry, with the time of its completion, s.
     pub answers: Vec<(f64, String)>,
     /// Every line to the device that is not blank, with the time at which it was sent, s.
     pub sent: Vec<(f64, String)>,
@@ -74,6 +76,7 @@ pub struct SceneRecording<'a> {
     pub zero_ms: u64,
     pub end_ms: u64,
     trace: Trace,
+    events: Vec<(f64, String)>,
     answers: Vec<(f64, String)>,
     sent: Vec<(f64, String)>,
     /// Electrical energy that the tile had taken up at the first row and at the last one, J.
@@ -92,6 +95,7 @@ impl<'a> SceneRecording<'a> {
             zero_ms,
             end_ms: zero_ms + scene_ms,
             trace: Trace::with_capacity(scene_ms as usize + 1),
+            events: Vec::new(),
             answers: Vec::new(),
             sent: Vec::new(),
             energy_j: (0.0, 0.0),
@@ -138,6 +142,7 @@ impl<'a> SceneRecording<'a> {
             Some(telemetry) => self.trace.attach_telemetry(telemetry),
             // Before time zero only set-up is sent.
             None if ms < self.zero_ms && line.starts_with("err") => return Err(line),
+            None if line.starts_with("E ") => self.events.push((self.t_s(ms + 1), line)),
             None => self.answers.push((self.t_s(ms + 1), line)),
         }
         Ok(())
@@ -159,6 +164,7 @@ impl<'a> SceneRecording<'a> {
             engine,
             resets: resets.iter().map(shift).collect(),
             trace: self.trace,
+            events: self.events,
             answers: self.answers,
             sent: self.sent,
             electrical_j: self.energy_j.1 - self.energy_j.0,

@@ -1,6 +1,7 @@
 //! The subcommands.
 
 pub mod commission;
+pub mod display;
 #[cfg(feature = "emulator")]
 pub mod embedded_tests;
 mod engine;
@@ -15,11 +16,13 @@ pub mod model;
 pub mod object;
 mod output;
 pub mod parameters;
+pub mod play;
 #[cfg(feature = "emulator")]
 pub mod profile;
 pub mod roughness;
 pub mod run;
 pub mod serve;
 pub mod thesis;
+pub mod tracking;
 
 pub use thermal_sim::Failure;

@@ -1,6 +1,7 @@
 //! The `hil-sim` command as a user meets it.
 
 mod cli;
+mod course;
 mod infrared;
 mod roughness;
 mod serve;

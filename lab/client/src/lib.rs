@@ -3,4 +3,5 @@
 
 pub mod client;
 pub mod commissioning;
+pub mod course;
 pub mod link;

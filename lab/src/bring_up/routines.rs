@@ -218,7 +218,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         self.client.ask(&PlainCommand::Checksum(true))?;
         self.discard_telemetry()?;
         let before = self.client.counts();
-        self.client.ask(&PlainCommand::Stream(1))?;
+        self.client.ask(&PlainCommand::stream(1))?;
         let end = self.client.link().now() + Duration::from_millis(ms);
         let mut lines = 0;
         loop {
@@ -228,7 +228,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             }
             lines += 1;
         }
-        self.client.ask(&PlainCommand::Stream(0))?;
+        self.client.ask(&PlainCommand::stream(0))?;
         let after = self.client.counts();
         self.client.ask(&PlainCommand::Checksum(false))?;
         self.keep("lines", f64::from(lines));
@@ -259,10 +259,10 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     /// Holds the display at a temperature, and compares its thermistors with the reference thermometer.
     fn hold(&mut self, keep: &'static str, celsius: f64) -> Result<(), Interruption> {
         arm(self.client, None)?;
-        self.client.ask(&PlainCommand::Hold(celsius))?;
+        self.client.ask(&PlainCommand::Hold(celsius, None))?;
         self.bench.notice(&CommissioningEvent::HoldStarted(celsius));
         self.discard_telemetry()?;
-        self.client.ask(&PlainCommand::Stream(HOLD_STREAM_MS))?;
+        self.client.ask(&PlainCommand::stream(HOLD_STREAM_MS))?;
         let start = self.client.next_telemetry(Duration::from_secs(1))?;
         let start_c = start.and_then(|line| line.telemetry.display_c);
         let distance_k = start_c.map_or(DISTANCE_MAX_K, |start_c| (celsius - start_c).abs());
@@ -278,7 +278,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             if let Some(fault) = line.telemetry.fault() {
                 let fault = fault.name();
                 let why = super::fault_words::explanation(fault).unwrap_or("see docs/safety.md");
-                self.client.ask(&PlainCommand::Stream(0))?;
+                self.client.ask(&PlainCommand::stream(0))?;
                 return Err(Interruption::Bench(format!(
                     "the device has tripped by `{fault}` while it held {celsius} °C: {why}"
                 )));
@@ -289,7 +289,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         // The stream goes on while the person reads: the device trips if this program or its computer stops.
         let reference_c = self.reference_c(ThermistorId::Display)?;
         let check_c = class_c(self.client.ask(&QueryRaw)?.check);
-        self.client.ask(&PlainCommand::Stream(0))?;
+        self.client.ask(&PlainCommand::stream(0))?;
         self.keep(format!("{keep}-check"), check_c - reference_c);
         self.keep(format!("{keep}-highest"), highest_c);
         let Some(last) = last else { return Ok(()) };

@@ -55,7 +55,7 @@ fn by_a_person(target: &Target, arguments: &Arguments) -> Result<CommissioningRe
     );
     target.with_client(|client| {
         clear_calibration(client, arguments.finger).map_err(Failure::run)?;
-        (client.ask_finger(arguments.finger, &PlainCommand::Stream(WATCHED_STREAM_MS)))
+        (client.ask_finger(arguments.finger, &PlainCommand::stream(WATCHED_STREAM_MS)))
             .map_err(Failure::run)?;
         commission(client, arguments.finger, &mut person).map_err(Failure::run)
     })

@@ -77,7 +77,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             unix.map_err(Failure::run)?.as_secs_f64() - client.link().now().as_secs_f64()
         };
         client
-            .ask(&PlainCommand::Stream(arguments.interval))
+            .ask(&PlainCommand::stream(arguments.interval))
             .map_err(Failure::run)?;
         let end = arguments.duration.map(|time| client.link().now() + time);
         let logged = log(client, end, zero_s, &mut out);
@@ -89,7 +89,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             client.clock().restarts()
         );
         logged?;
-        client.ask(&PlainCommand::Stream(0)).map_err(Failure::run)
+        client.ask(&PlainCommand::stream(0)).map_err(Failure::run)
     })
 }
 
@@ -138,7 +138,9 @@ fn row(line: &ReceivedTelemetry, time: Option<TickTime>, zero_s: f64) -> Vec<Str
         number(telemetry.force_n),
         number(telemetry.demand_a),
         number(telemetry.current_a),
-        telemetry.evaluations.to_string(),
+        telemetry
+            .evaluations
+            .map_or(String::new(), |count| count.to_string()),
         u8::from(telemetry.limited).to_string(),
     ]
 }

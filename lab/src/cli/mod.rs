@@ -4,6 +4,7 @@ pub mod bring_up;
 pub mod commission;
 pub mod info;
 pub mod log;
+pub mod play;
 pub mod ports;
 pub mod send;
 mod target;

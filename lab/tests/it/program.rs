@@ -42,6 +42,35 @@ fn a_simulated_device_says_what_it_is() {
 }
 
 #[test]
+fn a_course_is_loaded_and_waits_for_the_landing() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("course.csv");
+    std::fs::write(&path, "t_s,celsius\n0,30\n2,28\n").unwrap();
+    let play = format!("play --simulated --json {}", path.display());
+    let played = run(&format!("{play} --arm --repeats 3"));
+    assert!(played.status.success(), "{}", text(&played.stderr));
+    let played = json(&played.stdout);
+    assert_eq!(
+        (&played["points"], &played["at"]),
+        (&2.into(), &"landing".into())
+    );
+    let refused = run(&play);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(
+        text(&refused.stderr).contains("play needs a driven display: arm first"),
+        "{}",
+        text(&refused.stderr)
+    );
+    std::fs::write(&path, "0,30\n2,99\n").unwrap();
+    let wrong = run(&play);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(
+        text(&wrong.stderr).contains("course.csv:2: celsius 99"),
+        "{}",
+        text(&wrong.stderr)
+    );
+}
+
+#[test]
 fn answers_are_printed_and_a_refusal_is_a_failure() {
     let sent = run("send --simulated law arm");
     assert_eq!(text(&sent.stdout), "ok law=model\nok\n");
@@ -173,5 +202,6 @@ fn ctrl_c_ends_a_log_with_abort() {
     assert!(signalled.unwrap().success());
     assert!(logger.wait().unwrap().success());
     let lines = server.join().unwrap();
-    assert_eq!(lines[1..], ["stream 10", "stream 0", "abort"]);
+    // The first two lines end checksums and find the answers.
+    assert_eq!(lines[2..], ["stream 10", "stream 0", "abort"]);
 }

@@ -65,8 +65,8 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
         PlainCommand::Mode(ContactModel::SemiInfinite),
         PlainCommand::Law(Law::Pi10Hz),
         PlainCommand::Checksum(true),
-        PlainCommand::Stream(7),
-        PlainCommand::Stream(0),
+        PlainCommand::stream(7),
+        PlainCommand::stream(0),
         PlainCommand::Checksum(false),
         PlainCommand::Set(setting),
         PlainCommand::ClearCalibration(ThermistorId::Check),
@@ -100,7 +100,7 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     arm(&mut client, None).unwrap();
     client.ask(&PlainCommand::Start).unwrap();
     client.ask(&PlainCommand::Arm).unwrap();
-    client.ask(&PlainCommand::Hold(30.0)).unwrap();
+    client.ask(&PlainCommand::Hold(30.0, None)).unwrap();
     client.ask(&PlainCommand::Tune).unwrap();
     client.ask(&PlainCommand::Abort).unwrap();
     let refused = client.ask(&PlainCommand::Clear).unwrap_err();
@@ -128,7 +128,7 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     client
         .ask(&PlainCommand::Store(StorageOrder::Forget))
         .unwrap();
-    assert!((client.ask(&QueryMargins).unwrap().gain_k_s_a - 2.91).abs() < 1e-9);
+    assert!((client.ask(&QueryMargins).unwrap().gain_k_s_a - 2.957).abs() < 1e-9);
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn telemetry_comes_at_its_interval_and_a_device_that_restarts_is_noticed() {
     let mut engine = device();
     let mut client = Client::new(SimulatedLink::new(&mut engine));
     client.wait(Duration::from_millis(100)).unwrap();
-    client.ask(&PlainCommand::Stream(5)).unwrap();
+    client.ask(&PlainCommand::stream(5)).unwrap();
     client.wait(Duration::from_secs(3)).unwrap();
     let mut last = None;
     while let Some(line) = client.next_telemetry(Duration::ZERO).unwrap() {
@@ -176,7 +176,7 @@ fn telemetry_comes_at_its_interval_and_a_device_that_restarts_is_noticed() {
     client
         .ask(&PlainCommand::Store(StorageOrder::Forget))
         .unwrap();
-    client.ask(&PlainCommand::Stream(5)).unwrap();
+    client.ask(&PlainCommand::stream(5)).unwrap();
     client.wait(Duration::from_millis(50)).unwrap();
     let line = client.next_telemetry(Duration::ZERO).unwrap().unwrap();
     assert!(line.telemetry.tick < 100, "{line:?}");
@@ -190,7 +190,7 @@ fn a_driven_device_whose_host_only_listens_does_not_trip() {
     let mut client = Client::new(SimulatedLink::new(&mut engine));
     client.wait(Duration::from_millis(500)).unwrap();
     arm(&mut client, None).unwrap();
-    client.ask(&PlainCommand::Stream(1000)).unwrap();
+    client.ask(&PlainCommand::stream(1000)).unwrap();
     client.wait(Duration::from_secs(120)).unwrap();
     assert_eq!(client.ask(&QueryState).unwrap().state, StateName::Armed);
 }

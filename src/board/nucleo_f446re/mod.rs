@@ -13,6 +13,8 @@
 //! | PC4 | CN10-34 | bridge supply        | ADC1 channel 14, behind its switch        |
 //! | PB2 | CN10-22 | side of the comparators' tests | low hot, high cold; pull-down   |
 //! | PC13 | CN7-23 | emergency stop       | low while pressed                         |
+//! | PB4 | D5     | trigger input         | rising edge; TIM3 channel 1               |
+//! | PB3 | D3     | trigger output        | a pulse of 10 ms marks an event           |
 //! | PA2 | -      | to the host           | USART2 by way of the on-board probe       |
 //! | PA3 | -      | from the host         | USART2 by way of the on-board probe       |
 //! | PH0 | -      | 8 MHz from the probe  | HSE, bypassed oscillator                  |
@@ -51,6 +53,8 @@ pub(crate) mod settings_flash;
 pub(crate) mod settings_storage;
 pub(crate) mod stack_guard;
 mod tick_rate_and_rcc_monitor;
+mod trigger_input;
+mod trigger_output;
 pub(crate) mod trip_cause_recorder;
 mod unique_id;
 mod window_watchdog;
@@ -63,8 +67,9 @@ use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 use thermal_display::device::command::WithSourceFinger;
+use thermal_display::device::events::UnsolicitedReport;
 use thermal_display::device::safety::{Fault, TripCause};
-use thermal_display::device::{DeviceInPlace, FingerIndex, Station, Telemetry};
+use thermal_display::device::{DeviceInPlace, FingerIndex, Station};
 use thermal_display::line_queue::LineQueue;
 use thermal_display::protocol::{
     BoardStatus, CommandHandler, Error, OutgoingLine, Reply, StorageFailureText,
@@ -86,6 +91,8 @@ pub use serial::{BlankOrToBeAnsweredLine, Outbox, Receiver, Transmitter};
 pub use settings_storage::restart_to_save;
 pub use stack_guard::stack_is_overrun;
 pub use stm32f4xx_hal::pac;
+pub use trigger_input::TriggerInput;
+pub use trigger_output::TriggerOutput;
 pub use trip_cause_recorder::TripCauseRecorder;
 pub use window_watchdog::WindowWatchdog;
 pub use wiring::{FINGERS, FingerPowerStage};
@@ -107,7 +114,7 @@ pub struct StaticMemory {
     frames: [OutgoingLine; serial::FRAME_COUNT],
     frame_queues: serial::FullAndEmptyFrameQueues,
     line_queue: LineQueue,
-    telemetry: Queue<WithSourceFinger<Telemetry>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
+    telemetry: Queue<WithSourceFinger<UnsolicitedReport>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
     // Created in place, because moving it while sampling runs would delay the first tick. Not an `Option`, whose `None` is not
     // all zeros, so that the whole memory would be kept in flash, to be copied from there at the start.
     handler: MaybeUninit<CommandHandler<FINGERS>>,
@@ -180,8 +187,8 @@ fn create_and_restore_device(
     device
 }
 
-/// Creates the stations in `places`, one after the other: an array of them on the stack would need more of it than
-/// everything that runs later.
+/// Creates the stations in `places`: the first one, and the others as its copies. On the stack they would need more of it
+/// than everything that runs later.
 ///
 /// The device gets one reference to the whole array, not an array of references. The latter was once all that a resource of
 /// RTIC held, in memory that the start leaves as it is (`.uninit`). As the program stored it once only, LLVM 21 made the
@@ -192,11 +199,17 @@ fn create_stations(
     places: &'static mut MaybeUninit<[Station; FINGERS]>,
     cause: Option<TripCause>,
 ) -> &'static mut [Station; FINGERS] {
-    let station = Station::new_optionally_tripped(cause, &Settings::default());
     let first = places.as_mut_ptr().cast::<Station>();
-    for finger in 0..FINGERS {
-        // SAFETY: the place is one of the array's, which nothing else refers to.
-        unsafe { first.add(finger).write(station.clone()) };
+    // SAFETY: the places are those of the array, which nothing else refers to, and the first one is written first.
+    unsafe {
+        first.write(Station::new(&Settings::default()));
+        // Not before the move, which then needs no second place on the stack.
+        if let Some(cause) = cause {
+            (*first).trip(cause);
+        }
+        for finger in (0..FINGERS).skip(1) {
+            first.add(finger).write((*first).clone());
+        }
     }
     // SAFETY: all places were written.
     unsafe { places.assume_init_mut() }
@@ -381,6 +394,12 @@ impl Board {
                 stages,
                 comparator_side: ComparatorSide::new(gpiob.pb2),
                 emergency_stop: EmergencyStop::new(gpioc.pc13),
+                trigger_input: TriggerInput::new(
+                    peripherals.TIM3,
+                    gpiob.pb4.into_input(),
+                    &mut rcc,
+                ),
+                trigger_output: TriggerOutput::new(gpiob.pb3),
                 trip_cause_recorder,
                 telemetry: telemetry_in,
                 window_watchdog: WindowWatchdog::start(peripherals.WWDG, &mut rcc),

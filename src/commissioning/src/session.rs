@@ -29,9 +29,9 @@ pub const SETTINGS_LINE_COUNT: usize = CONVERTER_STEPS_LINE_COUNT + THERMISTOR_W
 
 /// A function that executes a command on the station of the session's finger, and returns the station's reply or
 /// refusal. The control tick may be locked out while it runs, so it must end after a bounded, short time.
-pub trait ExecuteOnStation: FnMut(Command) -> Result<command::Reply, Refused> {}
+pub trait ExecuteOnStation: FnMut(Command<'_>) -> Result<command::Reply, Refused> {}
 
-impl<F: FnMut(Command) -> Result<command::Reply, Refused>> ExecuteOnStation for F {}
+impl<F: FnMut(Command<'_>) -> Result<command::Reply, Refused>> ExecuteOnStation for F {}
 
 /// The commissioning of one finger by requests of the host: holds the finger's settings, with the calibration of its
 /// thermistors and the parameters of its tile, and the calibration points since start-up.

@@ -11,11 +11,13 @@ use contact_model::material::{Material, SKIN, Surface};
 use fixed::types::U16F16;
 
 use crate::control::{ControlParameters, Law};
+use crate::events::EventKinds;
 use crate::identification::{AbortReason, NormalEquationRow};
 use crate::reference::ContactModel;
-use crate::safety::{Fault, SelfTestReport, Setpoint, TripCause};
+use crate::safety::{Fault, PredictedDose, SelfTestReport, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, Samples, ThermistorAverage};
-use crate::{StateName, TICK_S};
+use crate::stimulus::{CourseChunk, PlayOrder};
+use crate::{StateName, TICK_S, TelemetryFields};
 
 /// Upper limit of [`ChosenMaterial::impedance_ratio`]. An object at this limit takes hardly any heat.
 const EFFUSIVITY_RATIO_MAX: f64 = 200.0;
@@ -127,12 +129,21 @@ impl AssumedFinger {
             Self::MeanOnPad => &FingerBody::MEAN_ON_PAD,
         }
     }
+
+    /// Whether its tissue has layers. All layered fingers have the same tissue.
+    #[must_use]
+    pub const fn is_layered(self) -> bool {
+        match self {
+            Self::Thesis => false,
+            Self::Mean | Self::MeanOnPad => true,
+        }
+    }
 }
 
 /// A command or query of the host to one finger's station. All values are within their ranges; whether the station's
 /// state permits the command is decided only when the station executes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Command {
+pub enum Command<'a> {
     /// Report the state, the chosen material, body, object temperature and contact model, and the set-point of the last
     /// tick, by [`Reply::Status`]. Never refused.
     Status,
@@ -142,6 +153,8 @@ pub enum Command {
     Stream {
         /// Time from one line of telemetry to the next, ms, up to 60000; 0 switches telemetry off.
         interval_ms: u32,
+        /// The fields of each line.
+        fields: TelemetryFields,
     },
     /// Choose the material of the object that `start` presents, as a half-space. If an object is presented already, the
     /// new one replaces it at once; if a finger touches, a new contact begins.
@@ -167,9 +180,28 @@ pub enum Command {
     /// armed, preset and contact the display moves at once. A `hold` or an identification of the tile ends, and the
     /// result of an identification is discarded. No effect in the self-test; refused while the station is tripped.
     Arm,
-    /// Move the set-point of an armed display from the display's present reading to this temperature, by 1 K/s, and
-    /// stay there. Refused if the station is not armed.
-    Hold(Setpoint),
+    /// Move the set-point from the display's present reading, or from that of the present hold or course, to a
+    /// temperature, and stay there. Refused in off, self-test, ready and tripped.
+    Hold {
+        /// Where the set-point stays.
+        target: Setpoint,
+        /// Rate, K/s, above zero.
+        rate_k_s: Celsius,
+    },
+    /// Load a chunk of a course, which with its last chunk replaces the one that was loaded before, but not one that plays.
+    /// `None` only asks whether loading is permitted, and is refused while the station is tripped; to be sent before the first
+    /// chunk. The chunks are never refused.
+    LoadCourse(Option<CourseChunk<'a>>),
+    /// Play the course that was loaded last. Refused in off, self-test, ready and tripped, if no course is loaded, and if
+    /// its temperatures above the present skin or its dose are too large.
+    Play(PlayOrder),
+    /// Report events from now on, or none. Never refused.
+    ReportEvents(bool),
+    /// Give a pulse at the trigger output at events of these kinds. Never refused.
+    TriggerOutput(EventKinds),
+    /// Assume this temperature of the skin before contact, °C, for set-points, or that of the sensor for `None`. If a
+    /// finger touches, a new contact begins. Limits, dose and detectors keep the sensor.
+    AssumeSkin(Option<Celsius>),
     /// Present the chosen object: the display goes to the preset, the temperature at which a contact with the object
     /// begins, and waits for a finger. Refused if the station is not armed, or if no material is chosen.
     Start,
@@ -250,10 +282,13 @@ pub enum Refused {
     NoMaterial,
     /// `start` was sent while an object is already presented.
     AlreadyStarted,
-    /// The command with this name, `hold` or `tune`, was sent in a state other than armed (in tripped the reply is
-    /// [`Self::Tripped`]), or `tune` without a valid reading of the sink.
-    NeedsArmed(&'static str),
-    /// The command was [`Command::Average`], [`Command::Calibrate`] or [`Command::Retune`], and an object is presented:
+    /// The command with this name, `hold` or `play`, was sent in a state that does not drive the display (in tripped the reply is
+    /// [`Self::Tripped`]).
+    NeedsDrivenDisplay(&'static str),
+    /// `tune` was sent in a state that does not drive the display (in tripped the reply is [`Self::Tripped`]), while an object or
+    /// a course is presented, or without a valid reading of the sink.
+    TuneNeedsArmed,
+    /// The command was [`Command::Average`], [`Command::Calibrate`] or [`Command::Retune`], and an object or a course is presented:
     /// the finger would feel the change, or disturb the average.
     Presenting,
     /// `tune` was sent while a finger touches the display; the finger's heat would distort the result.
@@ -278,6 +313,13 @@ pub enum Refused {
     StillFaulty(Fault),
     /// `clear` was sent to a station that is not tripped.
     NothingToClear,
+    /// `play` was sent before a course was loaded.
+    NoCourse,
+    /// `play` was sent, and the temperature of the loaded course, °C, given here, would be out of range above the present
+    /// skin.
+    CourseOutOfRange(Celsius),
+    /// `play` was sent, and the loaded course would bring the thermal dose to this, which trips.
+    CourseDose(PredictedDose),
 }
 
 /// State, chosen object and set-point of one finger's station: the answer to [`Command::Status`], which the host sends

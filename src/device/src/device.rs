@@ -5,10 +5,11 @@ use core::borrow::BorrowMut;
 
 use crate::command::{Command, Refused, Reply, WithSourceFinger};
 use crate::drive::BoardOutputs;
+use crate::events::UnsolicitedReport;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
-use crate::{FingerIndex, Station};
+use crate::{FingerIndex, Station, TriggerEdge};
 use thermal_settings::{Settings, StoredSettings};
 
 /// The whole device without its hardware: one [`Station`] for each of its `FINGERS` fingers. The stations share no
@@ -143,6 +144,33 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
         })
     }
 
+    /// Whether there is an event of a finger that was not fetched yet.
+    #[must_use]
+    pub fn finger_has_event(&self, finger: FingerIndex<FINGERS>) -> bool {
+        self.station(finger).has_event()
+    }
+
+    /// The oldest event of a finger that was not fetched yet, with the index of the finger (none on a device with one
+    /// finger). To be called after each tick until there is none, or until there is no room for another one.
+    pub fn take_finger_event(
+        &mut self,
+        finger: FingerIndex<FINGERS>,
+    ) -> Option<WithSourceFinger<UnsolicitedReport>> {
+        let event = self.station_mut(finger).take_event()?;
+        Some(WithSourceFinger {
+            finger: finger.index_unless_single_finger(),
+            content: UnsolicitedReport::Event(event),
+        })
+    }
+
+    /// Takes note of an edge at the trigger input, for all fingers: a course that waits for it begins in the next tick. To
+    /// be called before the tick that [reports](TriggerEdge::ticks_ago) the edge.
+    pub fn note_trigger_edge(&mut self, edge: TriggerEdge) {
+        for station in self.stations.borrow_mut() {
+            station.note_trigger_edge(edge);
+        }
+    }
+
     /// Executes a command in the station of one finger, in bounded and short time. Meanwhile no tick
     /// begins: a tick switches the multiplexers of five fingers, at most 11 us after its finger's last scan.
     ///
@@ -151,7 +179,7 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     pub fn execute_on_finger(
         &mut self,
         finger: FingerIndex<FINGERS>,
-        command: &Command,
+        command: &Command<'_>,
     ) -> Result<Reply, Refused> {
         self.station_mut(finger).execute(command)
     }
@@ -163,7 +191,7 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     pub fn execute(
         &mut self,
         finger: Option<FingerIndex<FINGERS>>,
-        command: Command,
+        command: Command<'_>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Refused>> {
         execute_in_turn(finger, |one| self.execute_on_finger(one, &command))
     }

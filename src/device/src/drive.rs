@@ -107,4 +107,6 @@ pub struct BoardOutputs {
     /// Test of the comparator. All fingers share the line that selects the side, hot or cold; never do two fingers
     /// demand different sides at the same time.
     pub comparator_test: ComparatorTest,
+    /// Whether the trigger output is high. The output of several fingers is high if that of any of them is.
+    pub trigger_output: bool,
 }

@@ -11,6 +11,7 @@ pub mod control;
 mod device;
 pub mod drive;
 pub mod estimate;
+pub mod events;
 mod finger_index;
 pub mod identification;
 mod low_pass;
@@ -21,8 +22,9 @@ pub mod safety;
 pub mod sense;
 mod state_name;
 mod station;
+pub mod stimulus;
 mod telemetry;
-mod temperature_hold;
+mod trigger_edge;
 
 pub use device::{Device, DeviceInPlace, execute_in_turn};
 pub use finger_index::FingerIndex;
@@ -31,8 +33,9 @@ pub use pwm_period::{
 };
 pub use state_name::StateName;
 pub use station::Station;
-pub use telemetry::Telemetry;
+pub use telemetry::{Telemetry, TelemetryFields};
 pub use thermal_settings::{TICK_HZ, TICK_S};
+pub use trigger_edge::TriggerEdge;
 
 /// Scans of all eight analogue signals of one finger per second: 16 000, of which 16 are summed for each control tick.
 pub const SCANS_PER_SECOND: u32 = TICK_HZ * sense::SCANS_PER_TICK as u32;

@@ -23,6 +23,8 @@ pub enum StateName {
     Preset,
     /// An object is presented and a finger touches the display, whose temperature follows the contact model.
     Contact,
+    /// The display follows a temperature that the host prescribes: it holds one, or plays a course, or waits to begin one.
+    Stimulus,
     /// The bridge is off because of this fault, the first since the last `clear`. The bridge stays off until the host
     /// sends `clear` when no fault is present any more.
     Tripped(Fault),
@@ -39,6 +41,7 @@ impl StateName {
             Self::Armed => "armed",
             Self::Preset => "preset",
             Self::Contact => "contact",
+            Self::Stimulus => "stimulus",
             Self::Tripped(_) => "tripped",
         }
     }

@@ -5,6 +5,42 @@ use contact_model::fixed_point::{Celsius, Force};
 use crate::StateName;
 use crate::drive::Current;
 
+/// Fields of a telemetry line that the host may leave out. The tick, the state and the remark, which names a fault, are
+/// always there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TelemetryFields(u16);
+
+impl TelemetryFields {
+    /// The fields in the order of the line.
+    pub const NAMES: [&'static str; 9] = [
+        "setpoint",
+        "display",
+        "sink",
+        "skin",
+        "room",
+        "force",
+        "demand",
+        "current",
+        "evaluations",
+    ];
+    /// No field.
+    pub const NONE: Self = Self(0);
+    /// All fields.
+    pub const ALL: Self = Self((1 << Self::NAMES.len()) - 1);
+
+    /// The set with the field of this index, too.
+    #[must_use]
+    pub const fn with(self, index: usize) -> Self {
+        Self(self.0 | (1 << index) & Self::ALL.0)
+    }
+
+    /// Whether the field of this index is in the set.
+    #[must_use]
+    pub const fn contains(self, index: usize) -> bool {
+        self.0 & 1 << index != 0
+    }
+}
+
 /// What one line of telemetry reports to the host: readings, set-point and current of one finger in one control tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Telemetry {
@@ -37,4 +73,6 @@ pub struct Telemetry {
     /// Evaluations of the function `erfcx` for set-points since the last reset, as a measure of the processor's load;
     /// wraps at 2^32.
     pub evaluations: u32,
+    /// The fields that the host has chosen.
+    pub fields: TelemetryFields,
 }

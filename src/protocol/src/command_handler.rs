@@ -1,6 +1,6 @@
 //! Execution of the host's lines for all fingers of a device.
 
-use core::{array, fmt};
+use core::{array, fmt, iter};
 
 use contact_model::fixed_point::Body;
 use contact_model::material::{Material, SKIN};
@@ -12,20 +12,20 @@ use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode_settings
 
 use crate::arguments::{expect_end, read_word};
 use crate::finger_address::{legible_address, split_address};
-use crate::line_checksum::{strip_checksum, write_line};
-use crate::upload::Upload;
+use crate::line_checksum::{ChecksumError, line_checksum, strip_checksum, write_line};
+use crate::upload::{Upload, UploadStep};
 use crate::{BoardStatus, Error, OutgoingLine, Reply, Request, UploadError};
 
 /// A function that executes a command in the station (the control) of the given finger, or in the stations of all
 /// fingers for `None`, and returns the reply or the refusal, in bounded and short time. [`CommandHandler::answer`]
 /// calls it.
 pub trait ExecuteOnStations<const FINGERS: usize>:
-    FnMut(Option<FingerIndex<FINGERS>>, Command) -> ExecutionResult
+    FnMut(Option<FingerIndex<FINGERS>>, Command<'_>) -> ExecutionResult
 {
 }
 
 impl<const FINGERS: usize, F> ExecuteOnStations<FINGERS> for F where
-    F: FnMut(Option<FingerIndex<FINGERS>>, Command) -> ExecutionResult
+    F: FnMut(Option<FingerIndex<FINGERS>>, Command<'_>) -> ExecutionResult
 {
 }
 
@@ -40,8 +40,9 @@ pub type ExecutionResult = Result<WithSourceFinger<command::Reply>, WithSourceFi
 #[derive(Clone, Debug)]
 pub struct CommandHandler<const FINGERS: usize> {
     sessions: [CommissioningSession; FINGERS],
-    /// The upload that has begun and is not committed yet, with the finger whose address its lines have.
-    upload: Option<(Option<FingerIndex<FINGERS>>, Upload)>,
+    upload: Upload,
+    /// The finger whose address the lines of the upload have.
+    upload_owner: Option<FingerIndex<FINGERS>>,
     /// Whether lines to the host end with a checksum.
     checksums: bool,
     /// State of the board, for the answer to `board`. Whoever has a board keeps it up to date.
@@ -54,7 +55,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     pub fn new(settings: Settings) -> Self {
         Self {
             sessions: array::from_fn(|_| CommissioningSession::new(settings)),
-            upload: None,
+            upload: Upload::new(),
+            upload_owner: None,
             checksums: false,
             board: BoardStatus::default(),
         }
@@ -69,7 +71,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         };
         Self {
             sessions: stored.each_ref().map(session),
-            upload: None,
+            upload: Upload::new(),
+            upload_owner: None,
             checksums: false,
             board: BoardStatus::default(),
         }
@@ -114,7 +117,15 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         const { assert!(FINGERS > 0 && FINGERS <= 10) };
-        let line = strip_checksum(line).map_err(|error| WithSourceFinger {
+        let stripped = match strip_checksum(line) {
+            Ok(content)
+                if self.checksums && content.len() == line.len() && !is_abort::<FINGERS>(line) =>
+            {
+                Err(ChecksumError::Missing(line_checksum(line.as_bytes())))
+            }
+            stripped => stripped,
+        };
+        let line = stripped.map_err(|error| WithSourceFinger {
             finger: legible_address::<FINGERS>(line),
             content: Error::Checksum(error),
         })?;
@@ -148,9 +159,24 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 let command = Command::Body(body.map_err(rejected)?);
                 Self::execute_in_stations(command, finger, execute)
             }
+            Request::Pulse(pulse) => {
+                (pulse.replace_course(self.upload.course_to_replace()))
+                    .map_err(|error| rejected(Error::Course(error)))?;
+                let (_, loaded) = self.load_course(finger, &mut execute);
+                let played = Self::execute_in_stations(Command::Play(pulse.order), finger, execute);
+                loaded.and(played)
+            }
             Request::Upload => match self.continue_upload(finger, line).map_err(rejected)? {
-                None => Ok(addressed(Reply::DONE)),
-                Some(body) => {
+                UploadStep::Row => Ok(addressed(Reply::DONE)),
+                UploadStep::BeginCourse => {
+                    let (permitted, answer) = self.load_course(finger, &mut execute);
+                    if !permitted {
+                        self.upload.end();
+                    }
+                    answer
+                }
+                UploadStep::Course => self.load_course(finger, &mut execute).1,
+                UploadStep::Object(body) => {
                     let command = Command::Body(ObjectBody::Upload(body));
                     Self::execute_in_stations(command, finger, execute)
                 }
@@ -169,7 +195,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// Executes a command in the station of `finger`, or in all stations for `None`.
     #[inline(never)]
     fn execute_in_stations(
-        command: Command,
+        command: Command<'_>,
         finger: Option<FingerIndex<FINGERS>>,
         mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
@@ -177,6 +203,42 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             Ok(reply) => Ok(reply.map_content(Reply::Station)),
             Err(refused) => Err(refused.map_content(Error::from)),
         }
+    }
+
+    /// Loads the course of the upload in the station of `finger`, or in all stations for `None`. A course that has only begun
+    /// has no points, and changes nothing. Returns whether a station permits it, and the answer, which is the refusal of the
+    /// first station that does not.
+    #[inline(never)]
+    fn load_course(
+        &self,
+        finger: Option<FingerIndex<FINGERS>>,
+        execute: &mut impl ExecuteOnStations<FINGERS>,
+    ) -> (
+        bool,
+        Result<WithSourceFinger<Reply>, WithSourceFinger<Error>>,
+    ) {
+        let number = finger.map(FingerIndex::index_u8);
+        let (mut permitted, mut first_refusal) = (false, None);
+        for one in FingerIndex::all().filter(|one| finger.is_none_or(|finger| finger == *one)) {
+            let chunks = self.upload.course().chunks().map(Some);
+            let refusal = iter::once(None)
+                .chain(chunks)
+                .find_map(|chunk| execute(Some(one), Command::LoadCourse(chunk)).err());
+            match refusal {
+                None => permitted = true,
+                Some(refused) => {
+                    first_refusal.get_or_insert(WithSourceFinger {
+                        finger: number.or(one.index_unless_single_finger()),
+                        content: Error::Refused(refused.content),
+                    });
+                }
+            }
+        }
+        let done = WithSourceFinger {
+            finger: number,
+            content: Reply::DONE,
+        };
+        (permitted, first_refusal.map_or(Ok(done), Err))
     }
 
     /// Properties of the material that is chosen in the station of `finger` or, for `None`, in all stations.
@@ -204,7 +266,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         Ok(material)
     }
 
-    /// Executes one line of an upload, and returns the object if the line is a valid commit. A commit with one argument
+    /// Executes one line of an upload, and returns what the line has completed. A commit with one argument
     /// ends the upload even if it is refused, and so does a `begin` that is refused. There is one upload for all fingers,
     /// which saves the RAM of the others: it belongs to the address that began it last, so that hosts of several fingers
     /// that upload at the same time get an error and not each other's rows.
@@ -213,34 +275,30 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         &mut self,
         finger: Option<FingerIndex<FINGERS>>,
         line: &str,
-    ) -> Result<Option<Body>, Error> {
+    ) -> Result<UploadStep, Error> {
         // The only finger is all fingers.
         let owner = finger.filter(|_| FINGERS > 1);
         let mut words = line.split_ascii_whitespace();
         words.next();
         let step = read_word(&mut words, "begin, row or commit")?;
-        match (step, &mut self.upload) {
-            ("begin", upload) => {
-                *upload = None;
-                *upload = Some((owner, Upload::begin(line, &mut words)?));
+        match step {
+            "begin" => {
+                self.upload_owner = owner;
+                return self.upload.begin(line, &mut words);
             }
-            ("row" | "commit", Some((other, _))) if *other != owner => {
-                let other = other.map(FingerIndex::index_u8);
+            "row" | "commit" if self.upload.has_begun() && self.upload_owner != owner => {
+                let other = self.upload_owner.map(FingerIndex::index_u8);
                 return Err(Error::Upload(UploadError::OfAnother(other)));
             }
-            ("row", Some((_, upload))) => upload.add_row(line, &mut words)?,
-            ("commit", upload @ Some(_)) => {
+            "row" => self.upload.add_row(line, &mut words)?,
+            "commit" => {
                 let checksum = read_word(&mut words, "checksum")?;
                 expect_end(&mut words)?;
-                return upload
-                    .take()
-                    .map(|(_, upload)| upload.commit(checksum))
-                    .transpose();
+                return self.upload.commit(checksum);
             }
-            ("row" | "commit", None) => return Err(Error::Upload(UploadError::NotBegun)),
-            (unknown, _) => return Err(Error::UnknownUpload(unknown.into())),
+            unknown => return Err(Error::UnknownUpload(unknown.into())),
         }
-        Ok(None)
+        Ok(UploadStep::Row)
     }
 
     /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. With
@@ -336,6 +394,12 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
         None
     }
+}
+
+/// Whether a line is `abort`, with or without the address of a finger. It is executed also without the checksum that other
+/// lines must have: it only switches bridges off, and an operator must be able to type it.
+fn is_abort<const FINGERS: usize>(line: &str) -> bool {
+    split_address::<FINGERS>(line).is_ok_and(|(_, command)| command.trim_ascii() == "abort")
 }
 
 /// Diffusion time of a slab, `thickness² / diffusivity`, s, above which it counts as a half-space: its back then changes the

@@ -10,14 +10,22 @@ use thermal_commissioning::{
     IdentificationError, POINTS_PER_THERMISTOR_MAX, PointError, REFERENCE_DIFFERENCE_MAX_K,
     SessionError, THERMISTOR_WORDS,
 };
+use thermal_device::TelemetryFields;
 use thermal_device::command::{AssumedFinger, Refused};
 use thermal_device::control::Law;
+use thermal_device::safety::PredictedDose;
+use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
+use thermal_device::stimulus::{
+    COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, CourseEnd, CourseError,
+    CourseStart, TemperatureKind,
+};
 use thermal_settings::Range;
 
 use crate::calibrate_settings_set_commands::SET_COMMAND_TARGET_WORDS;
+use crate::events::NO_EVENTS_WORD;
 use crate::line_checksum::TwoHexDigits;
 use crate::object::{BACK_WORDS, OBJECT_ARGUMENTS};
-use crate::request::{CHECKSUM_WORDS, CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
+use crate::request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, SWITCH_WORDS};
 use crate::upload::UploadError;
 use crate::{ChecksumError, LINE_MAX_BYTES, LineError, Request};
 
@@ -74,8 +82,8 @@ pub enum Error {
     Line(LineError),
     /// The line is rejected for its checksum, for this reason.
     Checksum(ChecksumError),
-    /// The argument of `checksum`, quoted here, is neither `on` nor `off`.
-    UnknownChecksumSwitch(QuotedWordExcerpt),
+    /// The argument of the command named here, quoted here, is neither `on` nor `off`.
+    UnknownSwitch(&'static str, QuotedWordExcerpt),
     /// The first word of the line, quoted here, is no command. In this and all other errors of unknown words the quoted
     /// word is empty if it is missing.
     UnknownCommand(QuotedWordExcerpt),
@@ -105,6 +113,22 @@ pub enum Error {
     /// The word after `calibrate` or `set correction`, quoted here, is none of the thermistors `display`, `check`,
     /// `sink`, `skin` and `room`.
     UnknownSensor(QuotedWordExcerpt),
+    /// A word of the argument of `trigger-out`, quoted here, is no event that the output can mark.
+    UnknownEventKind(QuotedWordExcerpt),
+    /// A word after the interval of `stream`, quoted here, is no field of telemetry.
+    UnknownTelemetryField(QuotedWordExcerpt),
+    /// The argument of `skin`, quoted here, is neither `sensor` nor a temperature.
+    UnknownSkin(&'static Range, QuotedWordExcerpt),
+    /// The word, quoted here, that says what starts a course is none of `now`, `trigger` and `landing`.
+    UnknownCourseStart(QuotedWordExcerpt),
+    /// The word after the times of a course, quoted here, is neither `hold` nor `neutral`.
+    UnknownCourseEnd(QuotedWordExcerpt),
+    /// The word after the number of points of a course, quoted here, is neither `absolute` nor `relative`.
+    UnknownTemperatureKind(QuotedWordExcerpt),
+    /// A course is refused, for this reason.
+    Course(CourseError),
+    /// The point of a course in the row with this index is refused, for this reason; the upload goes on.
+    CoursePoint(usize, CourseError),
     /// The word after `set`, quoted here, is none of `steps`, `correction` and `tile`.
     UnknownSetting(QuotedWordExcerpt),
     /// The line lacks the word with this name. The name is `command` if the line has no command, and
@@ -169,12 +193,10 @@ impl fmt::Display for Error {
         match self {
             Self::Line(error) => write_line_error(f, *error),
             Self::Checksum(error) => write_checksum_error(f, error),
-            Self::UnknownChecksumSwitch(word) => write_unknown_word(
-                f,
-                "checksum",
-                word,
-                CHECKSUM_WORDS.iter().map(|(name, _)| *name),
-            ),
+            Self::UnknownSwitch(command, word) => {
+                let known = SWITCH_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, command, word, &known)
+            }
             Self::UnknownCommand(word) => write_unknown_word(
                 f,
                 "command",
@@ -199,33 +221,55 @@ impl fmt::Display for Error {
                 write!(f, "object missing; {OBJECT_ARGUMENTS}")
             }
             Self::UnknownObject(word) => write!(f, "object {word}: {OBJECT_ARGUMENTS}"),
-            Self::UnknownBack(word) => write_unknown_word(f, "back", word, BACK_WORDS.into_iter()),
-            Self::UnknownUpload(word) => write_unknown_word(
-                f,
-                "upload",
-                word,
-                ["begin", "row", "commit", "object"].into_iter(),
-            ),
+            Self::UnknownBack(word) => write_word_not_in_list(f, "back", word, &BACK_WORDS),
+            Self::UnknownUpload(word) => {
+                let known = ["begin", "row", "commit", "object", "course"];
+                write_word_not_in_list(f, "upload", word, &known)
+            }
             Self::SlabNeedsMaterial => f.write_str("a slab needs a material first"),
             Self::Upload(error) => write_upload_error(f, *error),
             Self::Body(error) => error.fmt(f),
-            Self::UnknownMode(word) => write_unknown_word(
-                f,
-                "mode",
-                word,
-                CONTACT_MODEL_WORDS.iter().map(|(name, _)| *name),
-            ),
-            Self::UnknownLaw(word) => write_unknown_word(
-                f,
-                "law",
-                word,
-                Law::PROTOCOL_WORDS.iter().map(|(name, _)| *name),
-            ),
+            Self::UnknownMode(word) => {
+                let known = CONTACT_MODEL_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, "mode", word, &known)
+            }
+            Self::UnknownLaw(word) => {
+                let known = Law::PROTOCOL_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, "law", word, &known)
+            }
             Self::UnknownSensor(word) => {
-                write_unknown_word(f, "sensor", word, THERMISTOR_WORDS.iter().copied())
+                write_word_not_in_list(f, "sensor", word, &THERMISTOR_WORDS)
             }
             Self::UnknownSetting(word) => {
-                write_unknown_word(f, "setting", word, SET_COMMAND_TARGET_WORDS.iter().copied())
+                write_word_not_in_list(f, "setting", word, &SET_COMMAND_TARGET_WORDS)
+            }
+            Self::UnknownEventKind(word) => {
+                let known = ["land", "lift", "start", "end", NO_EVENTS_WORD];
+                write_word_not_in_list(f, "event", word, &known)
+            }
+            Self::UnknownTelemetryField(word) => {
+                write_word_not_in_list(f, "field", word, &TelemetryFields::NAMES)
+            }
+            Self::UnknownSkin(range, word) if word.is_empty() => {
+                write!(f, "skin missing; sensor or {range}")
+            }
+            Self::UnknownSkin(range, word) => write!(f, "skin {word}: sensor or {range}"),
+            Self::UnknownCourseStart(word) => {
+                let known = CourseStart::PROTOCOL_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, "start of a course", word, &known)
+            }
+            Self::UnknownCourseEnd(word) => {
+                let known = CourseEnd::PROTOCOL_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, "end of a course", word, &known)
+            }
+            Self::UnknownTemperatureKind(word) => {
+                let known = TemperatureKind::PROTOCOL_WORDS.map(|(name, _)| name);
+                write_word_not_in_list(f, "temperatures", word, &known)
+            }
+            Self::Course(error) => write_course_error(f, error),
+            Self::CoursePoint(row, error) => {
+                write!(f, "row {row}: ")?;
+                write_course_error(f, error)
             }
             Self::Missing(argument) => write!(f, "{argument} missing"),
             Self::Extra(word) => write!(f, "unexpected {word} after the command"),
@@ -261,6 +305,17 @@ impl fmt::Display for Error {
 
 /// Writes that `word` is unknown, and which words are known, as in `unknown mode 'x'; known: contact semi-infinite`.
 /// There, `mode` is the `kind` of the word.
+#[inline(never)]
+fn write_word_not_in_list(
+    f: &mut fmt::Formatter<'_>,
+    kind: &str,
+    word: &QuotedWordExcerpt,
+    known: &[&str],
+) -> fmt::Result {
+    write_unknown_word(f, kind, word, known.iter().copied())
+}
+
+/// [`write_word_not_in_list`] for any table of words.
 fn write_unknown_word<'a>(
     f: &mut fmt::Formatter<'_>,
     kind: &str,
@@ -308,6 +363,13 @@ fn write_checksum_error(f: &mut fmt::Formatter<'_>, error: &ChecksumError) -> fm
                 "checksum {received} is wrong, the line has {actual}; send the line again"
             )
         }
+        ChecksumError::Missing(actual) => {
+            let actual = TwoHexDigits(*actual);
+            write!(
+                f,
+                "checksum missing, the line has {actual}; send the line again with it"
+            )
+        }
         ChecksumError::Malformed(word) => write!(f, "checksum {word} is not 2 hexadecimal digits"),
     }
 }
@@ -344,14 +406,51 @@ fn write_upload_error(f: &mut fmt::Formatter<'_>, error: UploadError) -> fmt::Re
     }
 }
 
+fn write_course_error(f: &mut fmt::Formatter<'_>, error: &CourseError) -> fmt::Result {
+    match error {
+        CourseError::TooManyPoints => {
+            write!(f, "too many points; at most {COURSE_POINTS_MAX}")
+        }
+        CourseError::TooFewPoints => f.write_str("a course has at least 2 points"),
+        CourseError::TimeGoesBack(ms, before_ms) => write!(
+            f,
+            "time {ms} ms is not after {before_ms} ms, that of the row before"
+        ),
+        CourseError::TooLong(ms) => {
+            write!(f, "too long: {ms} ms; {COURSE_DURATION_MAX_MS} ms at most")
+        }
+        CourseError::OutOfRange => f.write_str("temperature out of range"),
+        CourseError::TooFast(rate_k_s) => write!(
+            f,
+            "too fast: {rate_k_s} K/s from the point before; at most {COURSE_RATE_MAX_K_S} K/s"
+        ),
+        CourseError::TooHotForTooLong(dose_ms) => write_dose(f, *dose_ms),
+    }
+}
+
+/// Writes that a course would give too large a dose, given in ms at 43 °C.
+fn write_dose(f: &mut fmt::Formatter<'_>, dose_ms: u32) -> fmt::Result {
+    let minutes = |ms: u32| Rounded(f64::from(ms) / 60e3, 2);
+    write!(
+        f,
+        "too hot for too long: CEM43 would be {} min; below {} min is allowed",
+        minutes(dose_ms),
+        minutes(PredictedDose::LIMIT_MS)
+    )
+}
+
 fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::Result {
     f.write_str(match refused {
         Refused::NotArmed => "start needs arm first",
         Refused::Testing => "the self-test goes on; ask again in a second",
         Refused::NoMaterial => "start needs a material first",
         Refused::AlreadyStarted => "already started; arm takes the object away",
-        Refused::NeedsArmed(command) => return write!(f, "{command} needs the state armed"),
-        Refused::Presenting => "not while an object is presented: abort or arm first",
+        Refused::NeedsDrivenDisplay(command) => {
+            return write!(f, "{command} needs a driven display: arm first");
+        }
+        Refused::TuneNeedsArmed => "tune needs the state armed",
+        Refused::Presenting => "not while an object or a course is presented: abort or arm first",
+        Refused::NoCourse => "no course is loaded; upload begin course first",
         Refused::Touched => "tune needs a display without a finger on it",
         Refused::NotTuned => "nothing was tuned since arm; tune first",
         Refused::Tuning => "tuning goes on; ask again in a second",
@@ -360,6 +459,15 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         Refused::Tripped(fault) => {
             return write!(f, "tripped by {}; clear it first", fault.name());
         }
+        Refused::CourseOutOfRange(celsius) => {
+            let (min, max) = (Shortest(SETPOINT_MIN_C), Shortest(SETPOINT_MAX_C));
+            let celsius = Rounded(celsius.to_num(), 2);
+            return write!(
+                f,
+                "with the present skin the course reaches {celsius} C; {min} to {max} C are allowed"
+            );
+        }
+        Refused::CourseDose(dose) => return write_dose(f, dose.milliseconds_at_43()),
         Refused::StillFaulty(fault) => {
             return write!(f, "fault {} is still present", fault.name());
         }

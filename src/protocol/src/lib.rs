@@ -11,6 +11,7 @@ mod calibrate_settings_set_commands;
 mod command_handler;
 mod decimal_number;
 mod error;
+mod events;
 mod finger_address;
 mod line_buffer;
 mod line_checksum;
@@ -18,6 +19,7 @@ mod line_reader;
 mod object;
 mod reply;
 mod request;
+mod stimulus;
 mod telemetry;
 mod upload;
 
@@ -28,7 +30,7 @@ pub use line_checksum::{ChecksumError, OutgoingLine, line_checksum, strip_checks
 pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
 pub use reply::Reply;
 pub use request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, Request};
-pub use telemetry::{TelemetryLine, wrap_as_telemetry_line};
+pub use telemetry::{TelemetryLine, UnsolicitedLine, wrap_as_telemetry_line};
 pub use upload::UploadError;
 
 #[cfg(test)]

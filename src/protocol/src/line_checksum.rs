@@ -19,6 +19,8 @@ pub enum ChecksumError {
     Wrong(u8, u8),
     /// What follows `*`, quoted here, is not a hexadecimal number of two digits.
     Malformed(QuotedWordExcerpt),
+    /// The line has no checksum, although checksums are on; its bytes have this one.
+    Missing(u8),
 }
 
 /// Checksum of a line: the exclusive or of all bytes before the `*`.

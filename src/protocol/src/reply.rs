@@ -19,7 +19,7 @@ use crate::request::CONTACT_MODEL_WORDS;
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
 const PROTOCOL_VERSION: u32 = 1;
 /// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
-const CAPABILITIES: &str = "upload,checksum,board,self-test,raw";
+const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course";
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.

@@ -7,8 +7,6 @@ use thermal_commissioning::{SessionRequest, StorageOrder};
 use thermal_device::command::{AssumedFinger, ChosenMaterial, Command};
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
-use thermal_device::safety::Setpoint;
-use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
 use thermal_settings::{Range, Settings};
 
 use crate::Error;
@@ -19,7 +17,9 @@ use crate::arguments::{
 use crate::calibrate_settings_set_commands::{
     parse_calibration_point_or_clear, parse_set_arguments, parse_settings_query,
 };
+use crate::events::{parse_switch, parse_telemetry_fields, parse_trigger_output};
 use crate::object::parse_object;
+use crate::stimulus::{Pulse, parse_hold, parse_play, parse_pulse, parse_skin};
 
 /// A line from the host after parsing: a command with its arguments, which are within their ranges.
 #[allow(
@@ -36,7 +36,7 @@ pub enum Request {
     Board,
     /// A line that the stations (the control) of the addressed fingers execute as this command, such as `arm` or
     /// `material`.
-    Station(Command),
+    Station(Command<'static>),
     /// The line `object slab ...`: the object is a slab of the chosen material.
     Slab {
         /// Its thickness, mm.
@@ -44,6 +44,8 @@ pub enum Request {
         /// What is behind it.
         back: Back,
     },
+    /// The line `pulse ...`: load a course of four points, and play it.
+    Pulse(Pulse),
     /// A line `upload`: begin, a row, or commit.
     Upload,
     /// A line about settings or calibration, which the commissioning sessions of the addressed fingers execute:
@@ -79,7 +81,9 @@ impl Request {
         "board" => Self::Board,
         "state" => Self::Station(Command::Status),
         "stream" => Self::Station(parse_stream(words)?),
-        "checksum" => Self::Checksum(parse_checksum_switch(words)?),
+        "events" => Self::Station(Command::ReportEvents(parse_switch(words, "events")?)),
+        "trigger-out" => Self::Station(Command::TriggerOutput(parse_trigger_output(words)?)),
+        "checksum" => Self::Checksum(parse_switch(words, "checksum")?),
         "material" => Self::Station(parse_material_and_compute_contact(words, display)?),
         "object" => parse_object(words)?,
         "finger" => Self::Station(Command::Finger(words.next().map(parse_finger).transpose()?)),
@@ -87,7 +91,10 @@ impl Request {
         "mode" => Self::Station(Command::Mode(parse_contact_model(words)?)),
         "law" => Self::Station(Command::Law(words.next().map(parse_control_law_word).transpose()?)),
         "arm" => Self::Station(Command::Arm),
-        "hold" => Self::Station(Command::Hold(parse_hold_setpoint(words)?)),
+        "hold" => Self::Station(parse_hold(words)?),
+        "play" => Self::Station(Command::Play(parse_play(words)?)),
+        "pulse" => Self::Pulse(parse_pulse(words)?),
+        "skin" => Self::Station(Command::AssumeSkin(parse_skin(words)?)),
         "start" => Self::Station(Command::Start),
         "abort" => Self::Station(Command::Abort),
         "clear" => Self::Station(Command::Clear),
@@ -132,8 +139,8 @@ pub const CONTACT_MODEL_WORDS: [(&str, ContactModel); 2] = [
     ("contact", ContactModel::ContactResistance),
     ("semi-infinite", ContactModel::SemiInfinite),
 ];
-/// Arguments of the command `checksum`.
-pub const CHECKSUM_WORDS: [(&str, bool); 2] = [("on", true), ("off", false)];
+/// Arguments of the commands `checksum` and `events`.
+pub const SWITCH_WORDS: [(&str, bool); 2] = [("on", true), ("off", false)];
 /// Argument of the command `material` in place of a material's name. The properties of the material follow:
 /// conductivity (W/mK), density (kg/m³), specific heat (J/kgK), roughness (µm) and slope of the asperities (rad).
 pub const CUSTOM_MATERIAL_WORD: &str = "custom";
@@ -143,12 +150,6 @@ static STREAM_INTERVAL_RANGE: Range = Range {
     unit: "ms",
     min: 0.0,
     max: 60_000.0,
-};
-static HOLD_TEMPERATURE_RANGE: Range = Range {
-    name: "temperature",
-    unit: "C",
-    min: SETPOINT_MIN_C,
-    max: SETPOINT_MAX_C,
 };
 /// Allowed ranges of the properties of a material in the line `material custom ...`, in their order on the line:
 /// thermal conductivity, density, specific heat, roughness and slope of the asperities.
@@ -185,21 +186,15 @@ static MATERIAL_PROPERTY_RANGES: [Range; 5] = [
     },
 ];
 
-fn parse_stream(words: &mut Words<'_>) -> Result<Command, Error> {
+fn parse_stream(words: &mut Words<'_>) -> Result<Command<'static>, Error> {
     // Rounds a fraction of a millisecond up, so that only 0 ends the stream.
     let interval_ms = read_fixed_point_in_range(words, &STREAM_INTERVAL_RANGE)?
         .saturating_ceil()
         .to_num::<i64>();
     Ok(Command::Stream {
         interval_ms: interval_ms.unsigned_abs() as u32,
+        fields: parse_telemetry_fields(words)?,
     })
-}
-
-fn parse_checksum_switch(words: &mut Words<'_>) -> Result<bool, Error> {
-    let name = word_or_empty(words);
-    let (_, on) = table_entry_for_word_or_none(&CHECKSUM_WORDS, name)
-        .ok_or(Error::UnknownChecksumSwitch(name.into()))?;
-    Ok(on)
 }
 
 fn parse_finger(name: &str) -> Result<AssumedFinger, Error> {
@@ -221,15 +216,10 @@ fn parse_control_law_word(name: &str) -> Result<Law, Error> {
     Ok(law)
 }
 
-fn parse_hold_setpoint(words: &mut Words<'_>) -> Result<Setpoint, Error> {
-    let celsius = read_fixed_point_in_range(words, &HOLD_TEMPERATURE_RANGE)?.to_num();
-    Ok(Setpoint::clamp_celsius_with_flag(celsius).0)
-}
-
 fn parse_material_and_compute_contact(
     words: &mut Words<'_>,
     display: &Surface,
-) -> Result<Command, Error> {
+) -> Result<Command<'static>, Error> {
     let name = word_or_empty(words);
     let (name, material) = if name == CUSTOM_MATERIAL_WORD {
         (

@@ -2,8 +2,9 @@
 
 use core::fmt;
 
-use thermal_device::Telemetry;
 use thermal_device::command::WithSourceFinger;
+use thermal_device::events::UnsolicitedReport;
+use thermal_device::{Telemetry, TelemetryFields};
 
 use crate::line_buffer::LineBuffer;
 
@@ -29,6 +30,29 @@ pub fn wrap_as_telemetry_line(
     telemetry.map_content(TelemetryLine)
 }
 
+/// A report that nobody has asked for; `Display` writes it as a line to the host, without a line ending: telemetry as
+/// [`TelemetryLine`], an event as `E tick us kind`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnsolicitedLine(pub UnsolicitedReport);
+
+impl fmt::Display for UnsolicitedLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            UnsolicitedReport::Telemetry(telemetry) => TelemetryLine(telemetry).fmt(f),
+            UnsolicitedReport::Event(event) => {
+                let mut line = LineBuffer::new();
+                line.push_str_if_fits("E ");
+                line.push_integer(event.tick);
+                line.push_str_if_fits(" ");
+                line.push_integer(event.microseconds.into());
+                line.push_str_if_fits(" ");
+                line.push_str_if_fits(event.kind.name());
+                line.fmt(f)
+            }
+        }
+    }
+}
+
 impl fmt::Display for TelemetryLine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut line = LineBuffer::new();
@@ -37,22 +61,24 @@ impl fmt::Display for TelemetryLine {
         line.push_integer(telemetry.tick);
         line.push_str_if_fits(" ");
         line.push_str_if_fits(telemetry.state.name());
-        line.push_str_if_fits(" ");
-        line.push_celsius_or_dash::<5>(telemetry.setpoint);
-        line.push_str_if_fits(" ");
-        line.push_celsius_or_dash::<4>(telemetry.display);
-        for temperature in [telemetry.sink, telemetry.skin, telemetry.room] {
+        for index in 0..TelemetryFields::NAMES.len() {
+            if !telemetry.fields.contains(index) {
+                continue;
+            }
             line.push_str_if_fits(" ");
-            line.push_celsius_or_dash::<2>(temperature);
+            // In the order of `TelemetryFields::NAMES`.
+            match index {
+                0 => line.push_celsius_or_dash::<5>(telemetry.setpoint),
+                1 => line.push_celsius_or_dash::<4>(telemetry.display),
+                2 => line.push_celsius_or_dash::<2>(telemetry.sink),
+                3 => line.push_celsius_or_dash::<2>(telemetry.skin),
+                4 => line.push_celsius_or_dash::<2>(telemetry.room),
+                5 => line.push_force_or_dash(telemetry.force),
+                6 => line.push_current(telemetry.demand),
+                7 => line.push_current(telemetry.current),
+                _ => line.push_integer(telemetry.evaluations),
+            }
         }
-        line.push_str_if_fits(" ");
-        line.push_force_or_dash(telemetry.force);
-        for current in [telemetry.demand, telemetry.current] {
-            line.push_str_if_fits(" ");
-            line.push_current(current);
-        }
-        line.push_str_if_fits(" ");
-        line.push_integer(telemetry.evaluations);
         line.push_str_if_fits(" ");
         line.push_str_if_fits(match telemetry.state.fault() {
             Some(fault) => fault.name(),

@@ -14,6 +14,7 @@ use super::{
     TelemetryLine,
 };
 use thermal_commissioning::IdentificationError;
+use thermal_device::TelemetryFields;
 use thermal_device::command::AssumedFinger;
 use thermal_device::command::{self, Command, ObjectBody, Status};
 use thermal_device::control::Law;
@@ -42,11 +43,18 @@ fn every_command_is_parsed() {
     assert_eq!(parse("board"), Ok(Request::Board));
     for (line, command) in [
         ("state", Command::Status),
-        ("stream 0", Command::Stream { interval_ms: 0 }),
+        (
+            "stream 0",
+            Command::Stream {
+                interval_ms: 0,
+                fields: TelemetryFields::ALL,
+            },
+        ),
         (
             " stream  60000 ",
             Command::Stream {
                 interval_ms: 60_000,
+                fields: TelemetryFields::ALL,
             },
         ),
         ("object room", Command::Object(None)),
@@ -104,7 +112,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id board state stream checksum material object finger upload mode law arm hold start abort clear cause self-test raw \
+            "err unknown command 'fly'; known: id board state stream events trigger-out checksum material object finger upload mode law arm hold play pulse skin start abort clear cause self-test raw \
              calibrate tune margins settings set save forget",
         ),
         (
@@ -284,6 +292,7 @@ fn the_longest_answers_fit_their_limit() {
         demand: Current::MIN,
         current: Current::MIN,
         evaluations: u32::MAX,
+        fields: TelemetryFields::ALL,
     };
     let line = TelemetryLine(longest).to_string();
     assert!(

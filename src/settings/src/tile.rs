@@ -31,7 +31,7 @@ impl Tile {
     /// Nominal tile, the factory default: a Peltier module of 30 mm and 6 A with a thermistor in its display plate. Its
     /// parameters were identified on the simulated device, by `cargo hil-sim commission scenes/copper.toml`.
     pub const FACTORY_DEFAULT: Self = Self {
-        gain_k_s_a: 2.91,
+        gain_k_s_a: 2.957,
         joule_per_a: 0.0585,
         leak_1_s: 0.103,
         sensor_lag_s: 0.1,

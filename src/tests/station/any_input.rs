@@ -198,7 +198,7 @@ impl TickCount {
         let on = outputs.drive != Drive::Off;
         let driven = matches!(
             telemetry.state,
-            StateName::Armed | StateName::Preset | StateName::Contact
+            StateName::Armed | StateName::Preset | StateName::Contact | StateName::Stimulus
         );
         // The bridge stays off in the tick in which the self-test passes.
         let controls = driven && !was_testing;

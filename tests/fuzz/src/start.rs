@@ -21,7 +21,8 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
     }
 
     /// The device with this index, modulo their number: off, in self-test, armed, at the preset, in contact, ready,
-    /// tripped, identifying the tile (begun, driving pulses, done), streaming telemetry in contact under the PI law.
+    /// tripped, identifying the tile (begun, driving pulses, done), streaming telemetry in contact under the PI law, playing a
+    /// course and waiting for a landing to play one, with events.
     pub fn get(&self, index: u8) -> CheckedDevice<FINGERS> {
         let all = self.0.get_or_init(|| {
             let device_after = |lines: &[&str], force_n: f64, ticks: u32| {
@@ -71,6 +72,13 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
                 0.5,
                 50,
             );
+            let pulse = "pulse 24 40 20 0.1 20";
+            let with_course = |play: &str| {
+                let course = format!("{pulse} {play}");
+                device_after(&["stream 10", "events on", "arm", &course], 0.0, 50)
+            };
+            let playing = with_course("now 100");
+            let waiting = with_course("landing 3 neutral");
             let mut all = vec![
                 off,
                 testing,
@@ -83,6 +91,8 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
                 driving_pulses,
                 identified,
                 streaming,
+                playing,
+                waiting,
             ];
             let states: Vec<_> = all
                 .iter_mut()
@@ -100,6 +110,8 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
                 StateName::Armed,
                 StateName::Armed,
                 StateName::Contact,
+                StateName::Stimulus,
+                StateName::Stimulus,
             ];
             assert_eq!(states, expected);
             all

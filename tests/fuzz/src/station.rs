@@ -116,7 +116,7 @@ impl Upload {
 }
 
 /// Lines without numbers.
-const WORDS: [&str; 25] = [
+const WORDS: [&str; 33] = [
     "arm",
     "start",
     "abort",
@@ -142,6 +142,14 @@ const WORDS: [&str; 25] = [
     "finger mean",
     "finger thesis",
     "object half-space",
+    "pulse 24 42 100 0.1 100 now 100",
+    "pulse 36 20 5 0.1 2 landing 3 neutral",
+    "play now 2",
+    "play landing",
+    "skin sensor",
+    "skin 33",
+    "events on",
+    "trigger-out land,lift,start,end",
 ];
 
 const MATERIALS: [&str; 9] = [

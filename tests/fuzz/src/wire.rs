@@ -10,8 +10,11 @@
 //! | 0xd0, 0xd1   | a reception error, a full queue of lines                  |
 //! | 0xd2         | activity of the host                                      |
 //! | 0xd3         | the checksum of the line so far                           |
+//! | 0xd4         | a line that commits the upload, with its checksum         |
+//! | 0xd5, 0xd6   | an edge at the trigger input in the coming tick, or in the one before |
 //! | others       | sent to the device, as bytes that no line may contain     |
 
+use thermal_display::device::TriggerEdge;
 use thermal_display::protocol::{LineError, LineReader};
 
 use crate::device::CheckedDevice;
@@ -41,6 +44,7 @@ fn play<const FINGERS: usize>(mut device: CheckedDevice<FINGERS>, bytes: &[u8]) 
     let mut reader = LineReader::new();
     let mut remaining = TICKS / FINGERS as u32;
     let mut line = Vec::new();
+    let mut uploaded = Vec::new();
     for &byte in bytes {
         match byte {
             0x80..=0xbf => {
@@ -58,9 +62,24 @@ fn play<const FINGERS: usize>(mut device: CheckedDevice<FINGERS>, bytes: &[u8]) 
                     device.byte(&mut reader, byte);
                 }
             }
+            0xd4 => {
+                let checksum = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&uploaded);
+                for byte in format!("\nupload commit {checksum:08x}\n").bytes() {
+                    device.byte(&mut reader, byte);
+                }
+                line.clear();
+            }
+            0xd5 | 0xd6 => device.trigger(TriggerEdge {
+                us: 437,
+                ticks_ago: byte & 1 ^ 1,
+            }),
             byte => {
                 device.byte(&mut reader, byte);
                 if LineReader::is_line_end(byte) {
+                    if line.starts_with(b"upload begin ") {
+                        uploaded.clear();
+                    }
+                    uploaded.extend(line.iter().chain(b"\n"));
                     line.clear();
                 } else {
                     line.push(byte);

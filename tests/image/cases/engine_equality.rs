@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use image_tests::{image, on, on_image};
-use stm32_emulator::Firmware;
+use stm32_emulator::{Firmware, OneFingerBoard};
 use system_tests::{between, forces, host, natively, scene};
 use thermal_campaigns::fidelity::{Population, Way};
-use thermal_sim::NativeRunner;
 use thermal_sim::processor::FlashTiming;
-use thermal_sim::run::Outcome;
+use thermal_sim::run::{Outcome, run};
 use thermal_sim::scene::Scene;
+use thermal_sim::{NativeRunner, World};
 
 fn csv(outcome: &Outcome, name: &str) -> String {
     let path =
@@ -18,6 +18,21 @@ fn csv(outcome: &Outcome, name: &str) -> String {
     let text = std::fs::read_to_string(&path).expect("a trace");
     std::fs::remove_file(&path).expect("a trace");
     text
+}
+
+/// Times of the edges at the trigger input by the device's events, µs since its start.
+fn reported_edges_us(outcome: &Outcome) -> Vec<i64> {
+    let lines = outcome.events.iter().map(|(_, line)| line);
+    lines
+        .filter(|line| line.ends_with("trigger"))
+        .map(|line| {
+            let mut words = line.split(' ').skip(1).map(|word| word.parse::<i64>());
+            let (Some(Ok(tick)), Some(Ok(us))) = (words.next(), words.next()) else {
+                panic!("{line}");
+            };
+            1000 * tick + us
+        })
+        .collect()
 }
 
 #[test]
@@ -110,6 +125,127 @@ fn both_engines_write_the_same_trace_of_the_example_scenes() {
             .map(|(outcome, engine)| csv(outcome, &format!("{engine}-{name}")));
         assert!(native == image, "{name}");
     }
+}
+
+/// A pulse that waits for the trigger and is started by its first edge; edges all over the millisecond, also while the tick
+/// runs. The times of the edges in the events are those of the scene.
+#[test]
+fn both_engines_play_a_course_from_the_same_trigger_and_report_the_same_events() {
+    let lines = host(&[
+        (0.2, "events on"),
+        (0.3, "hold 33 5"),
+        (1.0, "pulse 33 30 5 0.2 5"),
+        (1.1, "trigger-out start,end"),
+        (2.6, "play trigger"),
+    ]);
+    let edges_s: Vec<_> = (0..100).map(|n| 3.0 + 0.021_037 * f64::from(n)).collect();
+    let triggers: String = (edges_s.iter())
+        .map(|t_s| format!("[[trigger]]\nt_s = {t_s:.6}\n"))
+        .collect();
+    let touched = forces(&[(0.5, 2.0)]) + &triggers + &lines;
+    let scene = scene("copper", 5.5, "", &touched);
+    let (native, image) = (natively(&scene), on_image(&scene));
+    let told = |outcome: &Outcome| -> Vec<String> {
+        outcome
+            .events
+            .iter()
+            .map(|(_, line)| line.clone())
+            .collect()
+    };
+    assert_eq!(told(&native), told(&image));
+    assert!(csv(&native, "native-course") == csv(&image, "image-course"));
+    let events = told(&image);
+    let of = |kind: &str| events.iter().filter(|line| line.ends_with(kind)).count();
+    assert_eq!((of("start"), of("end")), (2, 2), "{events:?}");
+    // From edge to edge the events tell what the scene says, to a microsecond.
+    let reported_us = reported_edges_us(&image);
+    assert_eq!(reported_us.len(), edges_s.len(), "{events:?}");
+    for (reported, scene) in reported_us.windows(2).zip(edges_s.windows(2)) {
+        let interval_us = 1e6 * (scene[1] - scene[0]);
+        assert!(((reported[1] - reported[0]) as f64 - interval_us).abs() < 0.5);
+    }
+}
+
+/// Edges in each microsecond of a tick, and many about the one in which the tick reads the timer, while the host's lines delay
+/// ticks by a little.
+#[test]
+fn the_image_reports_an_edge_at_any_time_of_a_tick_to_a_microsecond() {
+    const FIRST_US: i64 = 500_000;
+    // The tick reads the timer some 963 us after its first scan, which starts 233 us before a millisecond of the scene.
+    const AROUND_READING_US: i64 = 700;
+    let all = (0..1000).map(|n| FIRST_US + 2001 * n);
+    let around_reading =
+        (0..1000).map(|n| FIRST_US + 2_100_000 + 3000 * n + AROUND_READING_US + n % 40);
+    let edges_us: Vec<i64> = all.chain(around_reading).collect();
+    let triggers: String = (edges_us.iter())
+        .map(|us| format!("[[trigger]]\nt_s = {:.6}\n", 1e-6 * *us as f64))
+        .collect();
+    let queries = (0..1000).map(|n| (0.5 + 5.3e-3 * f64::from(n), "law"));
+    let lines: Vec<_> = [(0.2, "events on")].into_iter().chain(queries).collect();
+    let scene = scene("copper", 6.0, "", &(triggers + &host(&lines)));
+    let reported_us = reported_edges_us(&on_image(&scene));
+    assert_eq!(reported_us.len(), edges_us.len());
+    let zero_us = reported_us[0] - edges_us[0];
+    let wrong: Vec<_> = (reported_us.iter().zip(&edges_us))
+        .map(|(reported_us, edge_us)| (reported_us % 1000, reported_us - zero_us - edge_us))
+        // The emulated chip sees an edge between two blocks of instructions, so a microsecond late at most.
+        .filter(|(_, error_us)| !(0..=1).contains(error_us))
+        .collect();
+    assert!(wrong.is_empty(), "us of a tick, error in us: {wrong:?}");
+}
+
+/// The pulse at the output begins in the tick that starts or ends a course, or finds a lift; a landing is marked once it is
+/// found, and its event tells the tick in which it began.
+#[test]
+fn the_trigger_output_marks_events_in_the_tick_that_finds_them() {
+    const EDGE_S: f64 = 2.5;
+    let lines = host(&[
+        (0.2, "events on"),
+        (0.3, "trigger-out land,lift,start,end"),
+        (0.8, "pulse 33 30 5 0.2 5"),
+    ]);
+    let edge = format!("[[trigger]]\nt_s = {EDGE_S}\n");
+    let touched = forces(&[(0.5, 2.0), (2.7, 0.0)]) + &edge + &lines;
+    let scene = scene("copper", 3.0, "", &touched);
+    let firmware = Firmware::from_file(image()).expect("an image for this chip");
+    let world = World::new(&scene).expect("a plant for the scene");
+    let mut board = OneFingerBoard::new(&firmware, world).expect("the image starts");
+    let outcome = run(&scene, &mut board, |_| ()).expect("the image runs to the end");
+    let times: Vec<(f64, &str)> = (outcome.events.iter())
+        .map(|(_, line)| {
+            let words: Vec<_> = line.split(' ').collect();
+            let [_, tick, us, kind] = words[..] else {
+                panic!("{line}");
+            };
+            let number = |word: &str| word.parse::<f64>().expect("a number");
+            (number(tick) * 1e-3 + number(us) * 1e-6, kind)
+        })
+        .collect();
+    let reported_edge_s = times
+        .iter()
+        .find(|(_, kind)| *kind == "trigger")
+        .expect("an edge")
+        .0;
+    let zero_s = scene.settle_s;
+    let rises_s: Vec<_> = (board.trigger_output_rises_s().iter())
+        .map(|rise_s| rise_s - zero_s - EDGE_S + reported_edge_s)
+        .collect();
+    let marked: Vec<_> = times
+        .iter()
+        .filter(|(_, kind)| *kind != "trigger")
+        .collect();
+    assert_eq!(rises_s.len(), marked.len(), "{times:?} {rises_s:?}");
+    let mut latest_us = 0.0_f64;
+    for ((tick_s, kind), rise_s) in marked.into_iter().zip(rises_s) {
+        // The scans of a tick take 950 us.
+        let late_us = 1e6 * (rise_s - tick_s) - 950.0;
+        println!("{kind}: {late_us:.0} us after the end of its tick's scans");
+        match *kind {
+            "land" => assert!((1000.0..3100.0).contains(&late_us), "{late_us} us"),
+            _ => latest_us = latest_us.max(late_us),
+        }
+    }
+    assert!((0.0..100.0).contains(&latest_us), "{latest_us} us");
 }
 
 #[test]

@@ -12,7 +12,7 @@ use thermal_sim::World;
 use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, NativeFiveFingers, run};
 use thermal_sim::metrics::figures;
 use thermal_sim::run::Outcome;
-use thermal_sim::scene::Scene;
+use thermal_sim::scene::{HostLine, Scene};
 
 /// Cycles in a millisecond at 180 MHz.
 const MILLISECOND: f64 = 180_000.0;
@@ -126,27 +126,74 @@ fn five_uploaded_objects_reach_their_fingers() {
     }
 }
 
+/// All fingers share the trigger input; one of them waits for it, all report it.
+#[test]
+fn an_edge_of_the_trigger_reaches_all_fingers_with_the_same_time_on_both_engines() {
+    let mut scenes = five_contacts().map(|mut scene| {
+        let lines = [
+            (0.3, "events on"),
+            (0.4, "pulse 33 30 5 0.2 5"),
+            (1.2, "play trigger"),
+        ];
+        let lines = lines.map(|(t_s, line)| HostLine {
+            t_s,
+            line: line.into(),
+        });
+        scene.host.extend(lines);
+        scene
+    });
+    scenes[1].triggers_s = vec![1.5, 1.6, 2.1];
+    let image = equal_on_both_engines(&scenes);
+    let mut native = NativeFiveFingers::new(worlds(&scenes));
+    let native = run(&scenes, &mut native, |_| ()).expect("runs");
+    for (image, native) in image.iter().zip(&native) {
+        let told = |outcome: &Outcome| -> Vec<String> {
+            outcome
+                .events
+                .iter()
+                .map(|(_, line)| line.clone())
+                .collect()
+        };
+        assert_eq!(told(image), told(native));
+        let edges = told(image);
+        let edges: Vec<_> = edges
+            .iter()
+            .filter(|line| line.ends_with("trigger"))
+            .collect();
+        assert_eq!(edges.len(), 3, "{edges:?}");
+    }
+}
+
 /// The image writes the same traces as five native devices; up to the noise of the sensors, it also equals five devices for
-/// one finger whose bridges switch at the same frequency: the losses at each edge grow with it.
+/// one finger whose bridges switch at the same frequency: the losses at each edge grow with it. The largest difference is that
+/// of the noise, hence the mean of several draws.
 #[test]
 fn each_of_five_fingers_behaves_like_a_finger_alone() {
+    const DRAWS: u64 = 8;
     let scenes = five_contacts();
-    let image = equal_on_both_engines(&scenes);
-    let mut farthest_k = 0.0f64;
-    for (finger, scene) in scenes.iter().enumerate() {
-        let alone = natively(&scene.on_five_fingers());
-        let mut largest_k = 0.0f64;
-        for (row, alone) in image[finger].trace.rows().iter().zip(alone.trace.rows()) {
-            largest_k = largest_k.max((row.skin_c - alone.skin_c).abs());
+    equal_on_both_engines(&scenes);
+    let farthest_k = |draw: u64| {
+        let mut scenes = scenes.clone();
+        for scene in &mut scenes {
+            scene.seed += draw * FINGERS as u64;
+        }
+        let mut together = NativeFiveFingers::new(worlds(&scenes));
+        let together = run(&scenes, &mut together, |_| ()).expect("runs");
+        let mut farthest_k = 0.0f64;
+        for (scene, together) in scenes.iter().zip(&together) {
+            let alone = natively(&scene.on_five_fingers());
+            for (row, alone) in together.trace.rows().iter().zip(alone.trace.rows()) {
+                farthest_k = farthest_k.max((row.skin_c - alone.skin_c).abs());
+            }
         }
         println!(
-            "finger {finger}, {}: {:.2} mK from a finger alone",
-            scene.object.name,
-            largest_k * 1e3
+            "draw {draw}: {:.2} mK from a finger alone",
+            1e3 * farthest_k
         );
-        farthest_k = farthest_k.max(largest_k);
-    }
-    assert_figure("five_fingers.skin_as_alone", 1e3 * farthest_k);
+        farthest_k
+    };
+    let mean_k = (0..DRAWS).map(farthest_k).sum::<f64>() / DRAWS as f64;
+    assert_figure("five_fingers.skin_as_alone", 1e3 * mean_k);
 }
 
 #[test]

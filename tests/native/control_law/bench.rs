@@ -31,7 +31,7 @@ pub fn setpoint(t_c: f64) -> Setpoint {
 
 /// What commissioning identifies on the nominal tile with a thermistor lag of 0.1 s (`hil-sim commission`).
 pub const IDENTIFIED: settings::Tile = settings::Tile {
-    gain_k_s_a: 2.91,
+    gain_k_s_a: 2.957,
     joule_per_a: 0.0585,
     leak_1_s: 0.103,
     sensor_lag_s: 0.1,

@@ -108,7 +108,7 @@ def main():
         else:
             print(f"const FINGER_FEEDTHROUGH_K_W: f64 = {rust(gains[2])};")
         if len(row) == 2 and left:
-            print(f"const LEG_HEATING_TIME_CONSTANT_S: f64 = {nstr(lag, 3)};")
+            print(f"const LEG_MEAN_TIME_CONSTANT_S: f64 = {nstr(lag, 3)};")
     print(f'const LEG_MEAN_RISE_PER_JOULE_HEAT_K_W: I4F28 = I4F28::lit("{nstr(1 / (12 * LEGS_W_K), 3)}");')
     print(f'const HOT_SIDE_THERMAL_RESISTANCE_K_W: I4F28 = I4F28::lit("{nstr(HOT_K_W, 3)}");')
 

@@ -39,6 +39,7 @@ mod tests {
         stage.apply_drive_and_comparator_test(&BoardOutputs {
             drive,
             comparator_test: ComparatorTest::None,
+            trigger_output: false,
         });
     }
 

@@ -204,7 +204,14 @@ impl RunAssessment {
 const OFF: &str = "off";
 
 /// The states in which the device continues to work without a fault.
-pub(super) const WORKING_STATES: [&str; 5] = ["self-test", "ready", "armed", "preset", "contact"];
+pub(super) const WORKING_STATES: [&str; 6] = [
+    "self-test",
+    "ready",
+    "armed",
+    "preset",
+    "contact",
+    "stimulus",
+];
 
 /// Whether the device works without a fault at the end of a run.
 pub(super) fn works_at_end(outcome: &Outcome, t_s: f64) -> bool {

@@ -10,7 +10,7 @@ use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
 use super::assessment::RunAssessment;
-use super::{FaultCase, FaultScene, InjectedFault, InjectionPoint, Touch, scene_text};
+use super::{FaultCase, InjectedFault, InjectionPoint, Touch, scene_text};
 
 /// Questions at the end and their times before it, s. The state is queried twice because a reset can truncate a line of
 /// telemetry, which then merges with the first answer.
@@ -34,24 +34,26 @@ fn run_if_applicable(
 fn fault_free_run(
     device: &dyn SceneRunner,
     fault_case: &FaultCase,
-    place: FaultScene,
+    point: InjectionPoint,
     scene: &Scene,
 ) -> anyhow::Result<Option<Outcome>> {
     let mut fault_free = scene.clone();
-    let needed = place.has_tuned_model()
+    let needed = point.scene.has_tuned_model()
         && fault_case
             .symptoms
             .iter()
             .any(|sign| sign.needs_fault_free_run());
     match fault_case.fault {
-        InjectedFault::Hardware(broken) if needed => {
+        InjectedFault::Hardware(broken) if needed || fault_case.unchanged => {
             fault_free
                 .faults
                 .retain(|fault| fault.fault.kind != broken.kind);
         }
         InjectedFault::HostLine(lines) if fault_case.unchanged => {
-            (fault_free.host)
-                .retain(|host| scene_text::host_lines(lines).all(|line| line != host.line));
+            // The scene may have the same lines at another time.
+            (fault_free.host).retain(|host| {
+                host.t_s != point.t_s || scene_text::host_lines(lines).all(|line| line != host.line)
+            });
         }
         _ => return Ok(None),
     }
@@ -113,7 +115,7 @@ impl FaultRun {
         let assessment = match run_if_applicable(device, &scene) {
             Ok(None) => return Ok(None),
             Ok(Some((outcome, figures))) => {
-                let fault_free = fault_free_run(device, fault_case, point.scene, &scene)?;
+                let fault_free = fault_free_run(device, fault_case, point, &scene)?;
                 let fault_free: &[_] = fault_free
                     .as_ref()
                     .map_or(&[], |outcome| outcome.trace.rows());

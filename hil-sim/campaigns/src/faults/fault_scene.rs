@@ -3,8 +3,10 @@
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use serde::Serialize;
+use thermal_client::client::upload_course;
 use thermal_device::control::Law;
 use thermal_device::safety::Fault;
+use thermal_device::stimulus::TemperatureKind;
 use thermal_sim::named_enum;
 
 use super::{Touch, scene_text};
@@ -38,6 +40,14 @@ named_enum! {
         HeldWarm = "held-warm",
         /// Held at 15 °C under a finger.
         HeldCold = "held-cold",
+        /// A course is repeated under a finger.
+        Course = "course",
+        /// A course is repeated; the finger lands later.
+        CourseBare = "course-bare",
+        /// A course waits under a finger for an edge at the trigger input, which comes.
+        CourseTrigger = "course-trigger",
+        /// A course waits for the finger, which lands later.
+        CourseLanding = "course-landing",
         /// Tuning; the finger lands later.
         Tuning = "tuning",
         /// A finger lands on copper of a constant temperature, as on the thesis's first display.
@@ -80,6 +90,18 @@ const SHORTEST_S: f64 = 7.0;
 const TESTED_FROM_S: f64 = 4.0;
 /// Time of the host's command, s.
 const COMMAND_S: f64 = 0.05;
+/// Time of the edge at the trigger input for which a course waits, s.
+const EDGE_S: f64 = 3.0;
+/// Course of the scenes with one: time, s, and temperature, °C. It rises and falls by 5 K/s.
+const COURSE: [(f64, f64); 7] = [
+    (0.0, 34.0),
+    (1.0, 39.0),
+    (2.0, 39.0),
+    (4.0, 29.0),
+    (5.0, 24.0),
+    (6.0, 24.0),
+    (8.0, 34.0),
+];
 /// Cause of the trip before the fault.
 const EARLIER_TRIP: Fault = Fault::HostSilent;
 
@@ -118,6 +140,9 @@ impl FaultScene {
             // The set-point moves by 1 K/s.
             Self::HeldWarm => (RESTING, (0.3, 12.0), &[8.1]),
             Self::HeldCold => (RESTING, (0.3, 22.0), &[19.1]),
+            Self::Course => (RESTING, (0.3, 12.0), &[1.1, 2.1, 8.1]),
+            Self::CourseTrigger => (RESTING, (0.3, 6.0), &[EDGE_S]),
+            Self::CourseBare | Self::CourseLanding => (LATE, (0.3, 6.5), &[6.0]),
             Self::Tuning => (LATER, (0.3, 15.5), &[15.0]),
             Self::Neutral | Self::Preset => (LATE, (0.1, 6.5), &[6.0]),
             Self::Replace => (REPLACING, (0.3, 7.0), &[1.5, 2.5, 3.5, 4.5]),
@@ -149,14 +174,33 @@ impl FaultScene {
         !matches!(self, Self::Untuned)
     }
 
-    /// Command that the host sends to the armed device.
-    const fn command(self) -> Option<&'static str> {
-        match self {
-            Self::HeldWarm => Some("hold 42"),
-            Self::HeldCold => Some("hold 15"),
-            Self::Tuning => Some("tune"),
-            _ => None,
-        }
+    /// Whether the host plays a course.
+    pub(super) const fn has_course(self) -> bool {
+        matches!(
+            self,
+            Self::Course | Self::CourseBare | Self::CourseTrigger | Self::CourseLanding
+        )
+    }
+
+    /// Whether the host prescribes what an armed display does, instead of an object.
+    pub(super) const fn is_commanded(self) -> bool {
+        self.has_course() || matches!(self, Self::HeldWarm | Self::HeldCold | Self::Tuning)
+    }
+
+    /// Lines that the host sends to the armed device.
+    fn commands(self) -> Vec<String> {
+        let play = match self {
+            Self::HeldWarm => return vec!["hold 42".into()],
+            Self::HeldCold => return vec!["hold 15".into()],
+            Self::Tuning => return vec!["tune".into()],
+            Self::Course | Self::CourseBare => "play now 1000",
+            Self::CourseTrigger => "play trigger 1000",
+            Self::CourseLanding => "play landing 1000",
+            _ => return Vec::new(),
+        };
+        let upload = upload_course(TemperatureKind::Absolute, &COURSE);
+        let upload = upload.iter().map(ToString::to_string);
+        upload.chain([play.into()]).collect()
     }
 
     /// Whether the control law uses a tuned model of the tile, so that the display follows a fault-free run closely.
@@ -210,9 +254,8 @@ impl FaultScene {
         let (material, object_c) = self.object();
         let appears_s = match self {
             Self::Slew | Self::Pi | Self::Pi10Hz | Self::Untuned => 1.0,
-            Self::Touched | Self::Neutral | Self::HeldWarm | Self::HeldCold | Self::Tuning => {
-                duration_s
-            }
+            Self::Touched | Self::Neutral => duration_s,
+            commanded if commanded.is_commanded() => duration_s,
             _ => 0.0,
         };
         let mut text = format!(
@@ -235,8 +278,11 @@ impl FaultScene {
                 text += &format!("[[host]]\nt_s = {t_s:?}\nline = \"{line}\"\n");
             }
         }
-        if let Some(line) = self.command() {
-            text += &scene_text::host_line(line, COMMAND_S);
+        for line in self.commands() {
+            text += &scene_text::host_line(&line, COMMAND_S);
+        }
+        if matches!(self, Self::CourseTrigger) {
+            text += &format!("[[trigger]]\nt_s = {EDGE_S:?}\n");
         }
         (text, duration_s)
     }

@@ -70,8 +70,16 @@ fn is_shared(fault: &InjectedFault) -> bool {
                 | FaultKind::HostGarbage
                 | FaultKind::HostSilent
                 | FaultKind::HostFlood
+                | FaultKind::HostPlays
+                | FaultKind::TriggerStuck
+                | FaultKind::TriggerChatter
         ),
     }
+}
+
+/// Whether only the first finger's host sends too much; all simulated hosts share the line.
+const fn is_of_one_host(kind: FaultKind) -> bool {
+    matches!(kind, FaultKind::HostFlood | FaultKind::HostPlays)
 }
 
 /// A fault case with the scenes of all fingers, and the time of the fault.
@@ -137,7 +145,10 @@ impl FiveFingerRun {
                 (Some(broken), _) => finger == broken,
                 // Processor and host are one for all fingers; silence and garbage come from all simulated hosts.
                 (None, InjectedFault::Processor(_)) => finger == 0,
-                (None, fault) => finger == 0 || fault.kind() != FaultKind::HostFlood.name(),
+                (None, InjectedFault::Hardware(fault)) => {
+                    finger == 0 || !is_of_one_host(fault.kind)
+                }
+                (None, _) => true,
             };
             let fault = [(self.fault_case.fault, point.t_s)];
             let faults = if has_fault { &fault[..] } else { &[] };
@@ -145,7 +156,7 @@ impl FiveFingerRun {
             let seed = stream_seed(self.seed, &format!("finger {finger}")) >> 1;
             let text = scene_text(faults, point, after_s, seed, &[], &Touch::default());
             let mut scene = Scene::parse(&text, Path::new(point.scene.name()))?;
-            let floods = |fault: &&mut ScheduledFault| fault.fault.kind == FaultKind::HostFlood;
+            let floods = |fault: &&mut ScheduledFault| is_of_one_host(fault.fault.kind);
             for flood in scene.faults.iter_mut().filter(floods) {
                 flood.until_s = flood.t_s + FLOOD_S;
             }

@@ -13,6 +13,7 @@
 //! without the fault must render as before.
 
 mod assessment;
+mod drawn_course;
 mod fault_case;
 mod fault_run;
 mod fault_scene;

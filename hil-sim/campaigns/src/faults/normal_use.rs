@@ -12,6 +12,7 @@ use thermal_sim::SceneRunner;
 use thermal_sim::metrics::Extremes;
 use thermal_sim::scene::Scene;
 
+use super::drawn_course::course_tables;
 use super::{Touch, scene_text};
 use crate::fidelity::PlantDraw;
 
@@ -23,6 +24,10 @@ const WHOLE_S: f64 = 128.0;
 const ON_ONE_DEVICE: u64 = 8;
 /// Fraction of sessions in which the display is held at a temperature, as for calibration.
 const HELD: f64 = 0.125;
+/// Fraction of sessions in which the host plays courses, one after the other, in place of an object.
+const PLAYED: f64 = 0.125;
+/// Time from one course to the next, s.
+const PLAYED_EVERY_S: f64 = 20.0;
 /// Noise of a conversion, counts: the whole range of the parameter, which is not among the drawn ones.
 const NOISE_COUNTS: std::ops::RangeInclusive<f64> = 0.4..=1.2;
 /// Range of the forces, N, drawn with a uniform logarithm.
@@ -57,7 +62,11 @@ impl UseSession {
         let held_c = draw
             .random_bool(HELD)
             .then(|| draw.random_range(15.0..=42.0));
+        let course_seed = stream_seed(seed, &format!("session {number} course"));
+        let plays =
+            held_c.is_none() && Xoshiro256PlusPlus::seed_from_u64(course_seed).random_bool(PLAYED);
         let appears_s = match held_c {
+            _ if plays => SESSION_S,
             Some(_) => SESSION_S,
             None if draw.random_bool(0.25) => draw.random_range(0.0..=20.0),
             None => 0.0,
@@ -85,6 +94,13 @@ impl UseSession {
         }
         if let Some(held_c) = held_c {
             text += &scene_text::host_line(&format!("hold {held_c:.3}"), 0.1);
+        }
+        if plays {
+            for part in 0..(SESSION_S / PLAYED_EVERY_S) as u32 {
+                let seed = stream_seed(course_seed, &format!("part {part}"));
+                let t_s = 0.1 + f64::from(part) * PLAYED_EVERY_S;
+                text += &course_tables(seed, t_s, SESSION_S);
+            }
         }
         let mut device_draw = Xoshiro256PlusPlus::seed_from_u64(stream_seed(device.seed, "noise"));
         let noise_counts = device_draw.random_range(NOISE_COUNTS);

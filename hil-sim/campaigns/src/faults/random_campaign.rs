@@ -8,6 +8,7 @@ use serde::Serialize;
 use thermal_plant::parameters::stream_seed;
 use thermal_sim::SceneRunner;
 
+use super::drawn_course::course_tables;
 use super::table::failing_run_text;
 use super::{
     Breach, FaultCase, FaultRun, FaultScene, InjectedFault, InjectionPoint, Touch, fault_cases,
@@ -15,6 +16,12 @@ use super::{
 };
 use crate::fidelity::PlantDraw;
 
+/// Share of the campaigns in whose scene the host would present an object in which it plays a course.
+const WITH_COURSE: f64 = 0.3;
+/// Time at which the course is uploaded, s: before any fault.
+const COURSE_S: f64 = 0.012;
+/// End of the shortest scene, s.
+const COURSE_UNTIL_S: f64 = 7.0;
 /// Consecutive campaigns on one device, because commissioning a device takes longer than a campaign.
 const ON_ONE_DEVICE: u64 = 8;
 
@@ -48,12 +55,18 @@ impl RandomCampaign {
         let mut scenes = FaultScene::ALL.to_vec();
         scenes.retain(|place| !fault_case.never_at.contains(place));
         let place = scenes[draw.random_range(0..scenes.len())];
+        let point = place.injection_point(draw.random(), draw.random());
+        let mut touch = Touch::new(stream_seed(own, "touch"), place.object().0);
+        let takes_course = !place.is_commanded() && place.has_tripped_before().is_none();
+        if takes_course && draw.random_bool(WITH_COURSE) {
+            touch.tables += &course_tables(stream_seed(own, "course"), COURSE_S, COURSE_UNTIL_S);
+        }
         Self {
             number,
             fault_case,
-            point: place.injection_point(draw.random(), draw.random()),
+            point,
             device: PlantDraw::in_use(seed, number / ON_ONE_DEVICE),
-            touch: Touch::new(stream_seed(own, "touch"), place.object().0),
+            touch,
         }
     }
 
@@ -205,6 +218,10 @@ mod tests {
                 assert_ne!(scene.params, thermal_plant::Params::nominal());
             }
         }
+        assert!((0..200).any(|number| {
+            let text = RandomCampaign::new(1, number, true).text();
+            text.contains("upload begin course") && text.contains("appears_t_s = 0.0")
+        }));
         assert_eq!(scenes.len(), FaultScene::ALL.len());
         assert_eq!(faults.len(), fault_cases().len());
     }

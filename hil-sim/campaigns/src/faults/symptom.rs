@@ -249,7 +249,7 @@ fn supply_off(rows: &[TraceRow]) -> Option<f64> {
         let is_tested = row.device.as_ref().is_some_and(|device| {
             matches!(
                 device.state.name(),
-                "ready" | "armed" | "preset" | "contact"
+                "ready" | "armed" | "preset" | "contact" | "stimulus"
             )
         });
         wrong = if is_tested && !SUPPLY_V.contains(&row.supply_v) {

@@ -12,7 +12,9 @@ use thermal_sim::scene::Scene;
 
 use super::meter::Meter;
 use super::one_finger::{ADC_INPUTS, OneFingerBoard, StartError, power_up, resets};
-use super::{A, B, Bridge, C, D, EMERGENCY_STOP, FIRST_BRIDGE, Pin, TEST_SIDE, bridge, inject};
+use super::{
+    A, B, Bridge, C, D, EMERGENCY_STOP, FIRST_BRIDGE, Pin, TEST_SIDE, TRIGGER_INPUT, bridge, inject,
+};
 use crate::{Firmware, Machine, Stop, Wiring};
 
 const BRIDGES: [Bridge; FINGERS] = [
@@ -37,6 +39,7 @@ const SETTLED_SCANS: usize = 17;
 /// conversion 67 us after it.
 const FIRST_BOUNDARY_PS: u64 = 65_000_000;
 const TURN_PS: u64 = 200_000_000;
+const HALF_MICROSECOND_PS: u64 = 500_000;
 
 /// The emulated microcontroller on five plants.
 pub struct FiveFingerBoard {
@@ -103,6 +106,7 @@ impl FiveFingerEngine for FiveFingerBoard {
         let at_ps = self.first_boundary_ps + self.boundaries * TURN_PS;
         self.boundaries += 1;
         self.machine.run_until_ps(at_ps)?;
+        self.machine.wiring_mut().trigger = false;
         let tests = BRIDGES
             .each_ref()
             .map(|bridge| bridge.comparator_test(&self.machine));
@@ -140,6 +144,14 @@ impl FiveFingerEngine for FiveFingerBoard {
         let pins = self.machine.wiring_mut();
         pins.select_faults[usize::from(line) % SELECT.len()] = Some(fault);
         pins.update_selection(now);
+        Ok(())
+    }
+
+    fn trigger(&mut self) -> Result<(), Stop> {
+        let last_ps = self.first_boundary_ps + self.boundaries.saturating_sub(1) * TURN_PS;
+        // So that the count of microseconds at the edge is not in doubt.
+        self.machine.run_until_ps(last_ps + HALF_MICROSECOND_PS)?;
+        self.machine.wiring_mut().trigger = true;
         Ok(())
     }
 
@@ -191,6 +203,8 @@ struct Pins {
     /// Last code of each input.
     codes: [u16; ADC_INPUTS.len()],
     first_conversion: Option<u64>,
+    /// Level at the trigger input.
+    trigger: bool,
     received: Vec<u8>,
 }
 
@@ -209,6 +223,7 @@ impl Pins {
             longest_switch: 0,
             codes: [0; ADC_INPUTS.len()],
             first_conversion: None,
+            trigger: false,
             received: Vec::new(),
         }
     }
@@ -281,6 +296,9 @@ impl Wiring for Pins {
         }
         if (port, bit) == TEST_SIDE {
             return self.worlds.iter().find_map(World::side_stuck);
+        }
+        if (port, bit) == TRIGGER_INPUT {
+            return Some(self.trigger);
         }
         if (port, bit) == PARITY {
             return Some(self.select.iter().filter(|level| **level).count() % 2 == 1);

@@ -28,6 +28,11 @@ const TEST_SIDE: Pin = (B, 2);
 /// Sense line of the emergency stop, low while it is pressed.
 const EMERGENCY_STOP: Pin = (C, 13);
 
+/// Trigger input.
+const TRIGGER_INPUT: Pin = (B, 4);
+/// Trigger output.
+const TRIGGER_OUTPUT: Pin = (B, 3);
+
 /// Pins of the bridge of one finger.
 struct Bridge {
     in1: Pin,

@@ -11,7 +11,9 @@ use thermal_sim::scene::Scene;
 use thermal_sim::{RamLayout, SceneRunner, World, run_scene_on};
 
 use super::meter::{Meter, TICK};
-use super::{EMERGENCY_STOP, FIRST_BRIDGE, TEST_SIDE, inject, refused};
+use super::{
+    EMERGENCY_STOP, FIRST_BRIDGE, TEST_SIDE, TRIGGER_INPUT, TRIGGER_OUTPUT, inject, refused,
+};
 use crate::{Firmware, Machine, RAM_BASE, RAM_SIZE, Stop, Wiring};
 
 /// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2, PC4.
@@ -102,6 +104,20 @@ impl OneFingerBoard {
         self.machine.watch(TICK);
     }
 
+    /// Times of the rising edges at the trigger output, s since the first boundary.
+    pub fn trigger_output_rises_s(&self) -> Vec<f64> {
+        let rises = self.machine.wiring().trigger_output_rises.iter();
+        let first_ps = self.first_boundary_ps as f64;
+        rises
+            .map(|at| (self.machine.ps_at(*at) as f64 - first_ps) * 1e-12)
+            .collect()
+    }
+
+    /// Time of the last boundary, ps since power-up.
+    const fn boundary_ps(&self) -> u64 {
+        self.first_boundary_ps + self.halves * HALF_MS_PS
+    }
+
     /// The machine, read-only.
     #[must_use]
     pub fn machine(&self) -> &Machine<impl Wiring + use<>> {
@@ -124,8 +140,8 @@ impl Engine for OneFingerBoard {
 
     fn run_half_ms(&mut self) -> Result<(), Stop> {
         self.halves += 1;
-        self.machine
-            .run_until_ps(self.first_boundary_ps + self.halves * HALF_MS_PS)?;
+        self.machine.run_until_ps(self.boundary_ps())?;
+        self.machine.wiring_mut().trigger = false;
         let test = FIRST_BRIDGE.comparator_test(&self.machine);
         self.world().comparator_test(test);
         Ok(())
@@ -140,13 +156,24 @@ impl Engine for OneFingerBoard {
     }
 
     fn inject(&mut self, fault: &MachineFault, after_us: u32) -> Result<(), NotInjected> {
-        let begin_ps = self.first_boundary_ps + self.halves * HALF_MS_PS;
         if after_us > 0 {
-            let at_ps = begin_ps + u64::from(after_us) * MICROSECOND_PS;
+            let at_ps = self.boundary_ps() + u64::from(after_us) * MICROSECOND_PS;
             let reached = self.machine.run_until_ps(at_ps);
             reached.map_err(|stop| refused(fault, &stop))?;
         }
         inject(&mut self.machine, fault)
+    }
+
+    fn trigger(&mut self, after_us: u32) -> Result<(), Stop> {
+        // Half a microsecond later, so that the count of microseconds at the edge is not in doubt.
+        let low_ps = self.boundary_ps() + u64::from(after_us) * MICROSECOND_PS;
+        if self.machine.wiring().trigger {
+            self.machine.run_until_ps(low_ps)?;
+            self.machine.wiring_mut().trigger = false;
+        }
+        self.machine.run_until_ps(low_ps + MICROSECOND_PS / 2)?;
+        self.machine.wiring_mut().trigger = true;
+        Ok(())
     }
 
     fn resets(&self) -> Vec<DeviceReset> {
@@ -195,6 +222,10 @@ impl SceneRunner for Firmware {
 struct Pins {
     world: World,
     first_conversion: Option<u64>,
+    /// Level at the trigger input.
+    trigger: bool,
+    /// Cycles since power-up of the rising edges at the trigger output.
+    trigger_output_rises: Vec<u64>,
     received: Vec<u8>,
 }
 
@@ -203,6 +234,8 @@ impl Pins {
         Self {
             world,
             first_conversion: None,
+            trigger: false,
+            trigger_output_rises: Vec::new(),
             received: Vec::new(),
         }
     }
@@ -221,7 +254,14 @@ impl Wiring for Pins {
             pin if pin == FIRST_BRIDGE.fault => Some(!self.world.bridge_fault()),
             EMERGENCY_STOP => Some(!self.world.emergency_stop()),
             TEST_SIDE => self.world.side_stuck(),
+            TRIGGER_INPUT => Some(self.trigger),
             _ => None,
+        }
+    }
+
+    fn output(&mut self, port: u8, bit: u8, level: Option<bool>, at: u64) {
+        if (port, bit) == TRIGGER_OUTPUT && level == Some(true) {
+            self.trigger_output_rises.push(at);
         }
     }
 

@@ -2,7 +2,6 @@
 use super::{
     ADC_IRQ, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ, WWDG_IRQ,
 };
-use crate::adc::Trigger;
 use crate::dac::Dac;
 use crate::dma::Dma;
 use crate::exti::lines;
@@ -263,12 +262,12 @@ impl<W: Wiring> Chip<W> {
             }
             Device::Tim(i) => {
                 self.tims[i].write(offset, value, now)?;
+                self.connect_triggers(now);
                 self.timer_changed(i, now);
             }
             Device::Adc => {
                 self.adc.write(offset, value, now)?;
-                self.tims[1].use_trigger(self.adc.trigger() == Some(Trigger::Tim2), now);
-                self.tims[2].use_trigger(self.adc.trigger() == Some(Trigger::Tim3), now);
+                self.connect_triggers(now);
                 self.nvic.set_line(ADC_IRQ, self.adc.request(), now);
                 self.dma_request_possible = true;
             }

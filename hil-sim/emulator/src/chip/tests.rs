@@ -1,12 +1,14 @@
 //! The peripherals together, as the bus reaches them, without the CPU.
 use super::Chip;
+use crate::ram::{Memory, NoMemory};
 use crate::stop::Refusal;
 use crate::{Wiring, names};
 use thermal_sim::processor::{ChipState, ResetCause};
 
-/// A circuit that drives the pins of port C.
+/// A circuit that drives all pins of ports B and C alike.
 #[derive(Default)]
 pub(super) struct Outside {
+    port_b: Option<bool>,
     port_c: Option<bool>,
 }
 
@@ -15,9 +17,25 @@ impl Wiring for Outside {
         0
     }
     fn pin(&self, port: u8, _bit: u8) -> Option<bool> {
-        self.port_c.filter(|_| port == 2)
+        match port {
+            1 => self.port_b,
+            2 => self.port_c,
+            _ => None,
+        }
     }
     fn uart_tx(&mut self, _byte: u8, _at: u64, _baud: u32) {}
+}
+
+/// A memory that no DMA stream uses.
+struct Absent;
+
+impl Memory for Absent {
+    fn load(&mut self, _address: u32, _bytes: u8) -> Result<u32, NoMemory> {
+        Err(NoMemory)
+    }
+    fn store(&mut self, _address: u32, _bytes: u8, _value: u32) -> Result<(), NoMemory> {
+        Err(NoMemory)
+    }
 }
 
 /// A chip as delivered, on which registers are tried.
@@ -103,6 +121,34 @@ fn an_edge_that_was_before_its_selection_does_not_pend() {
         bench.chip.sample_inputs(2);
         assert_eq!(bench.read(EXTI + 0x14), Ok(1 << 13), "high: {level}");
     }
+}
+
+/// RM0390 17.3.14 and 17.3.5, DS10693 table 11: TIM2's update event starts TIM3, whose first input is PB4.
+#[test]
+fn tim3_counts_from_tim2s_update_and_captures_pb4() {
+    const GPIOB: u32 = 0x4002_0400;
+    let mut bench = Bench::new();
+    bench.chip.wiring.port_b = Some(false);
+    // PB4 as alternate function 2; TIM3 counts to 1000, started by ITR1; TIM2 gives its update event as trigger output.
+    bench.set_up(&[
+        (GPIOB, 2 << 8),
+        (GPIOB + 0x20, 2 << 16),
+        (TIM3 + 0x2c, 999),
+        (TIM3 + 0x18, 1),
+        (TIM3 + 0x20, 1),
+        (TIM3 + 0x08, 0x16),
+        (TIM2 + 0x2c, 99),
+        (TIM2 + 0x04, 0x20),
+        (TIM2, 1),
+    ]);
+    for (now, level) in [(150, false), (350, true)] {
+        bench.now = now;
+        bench.chip.service(now, &mut Absent);
+        bench.chip.wiring.port_b = Some(level);
+        bench.chip.sample_inputs(now);
+    }
+    assert_eq!(bench.read(TIM3 + 0x10).map(|flags| flags >> 1 & 1), Ok(1));
+    assert_eq!(bench.read(TIM3 + 0x34), Ok(250), "TIM3 started at 100");
 }
 
 /// RM0390 7.4, 6.3, 3.8.

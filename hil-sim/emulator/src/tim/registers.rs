@@ -1,5 +1,5 @@
 //! Register access of the timers (RM0390 16.4, 17.4, 19.4).
-use super::{AOE, BIF, BKE, BKP, LOCK, MOE, OSSI, OSSR, Tim, UIF};
+use super::{AOE, BIF, BKE, BKP, LOCK, MOE, OSSI, OSSR, STARTED_BY_TIM2, Tim, UIF};
 use crate::stop::{Answer, Refusal, only};
 
 impl Tim {
@@ -24,7 +24,7 @@ impl Tim {
         Ok(match offset {
             0x00 => self.cr1,
             0x04 => self.cr2,
-            0x08 => 0,
+            0x08 => self.smcr,
             0x0c => self.dier,
             0x10 => self.sr,
             0x14 => 0,
@@ -34,7 +34,14 @@ impl Tim {
             0x28 => self.psc,
             0x2c => self.arr,
             0x30 if self.kind.advanced => self.rcr,
-            0x34..=0x40 => self.ccr[(offset as usize - 0x34) / 4],
+            0x34..=0x40 => {
+                let channel = (offset as usize - 0x34) / 4;
+                if self.is_capturing(channel) {
+                    self.sr &= !(2 << channel); // 17.4.5: read out, a captured count clears its flag
+                    self.schedule();
+                }
+                self.ccr[channel]
+            }
             0x44 if self.kind.advanced => self.bdtr,
             0x50 if self.kind.counter_max == u32::MAX => 0,
             _ => return Err(Refusal::Offset),
@@ -81,7 +88,12 @@ impl Tim {
                 let protected = if self.lock() >= 1 { 0x7f00 } else { 0 };
                 self.cr2 = value & !protected | self.cr2 & protected;
             }
-            0x08 => only(value, 0, "TIM SMCR (slave modes)")?,
+            0x08 => {
+                let is_tim3_or_tim4 = !self.kind.advanced && self.kind.counter_max == 0xffff;
+                let allowed = is_tim3_or_tim4 && value == STARTED_BY_TIM2;
+                only(if allowed { 0 } else { value }, 0, "TIM SMCR (slave modes)")?;
+                self.smcr = value;
+            }
             0x0c => {
                 let channels = ((1u32 << self.kind.channels) - 1) << 1;
                 let advanced = if self.kind.advanced { 0xa0 } else { 0 };
@@ -101,6 +113,10 @@ impl Tim {
                     UIF | channels | if self.kind.advanced { BIF } else { 0 },
                     "TIM EGR.TG or COMG",
                 )?;
+                let captures =
+                    (0..self.kind.channels).filter(|channel| self.is_capturing(*channel));
+                let captured: u32 = captures.map(|channel| 2 << channel).sum();
+                only(value & captured, 0, "TIM EGR.CCxG of an input")?;
                 if value & BIF != 0 {
                     self.bdtr &= !MOE;
                 }
@@ -142,6 +158,9 @@ impl Tim {
             }
             0x34..=0x40 => {
                 let channel = (offset as usize - 0x34) / 4;
+                if self.is_capturing(channel) {
+                    return Ok(()); // 17.4.13: read-only
+                }
                 self.ccr[channel] = value & self.kind.counter_max;
                 if self.ccmr[channel / 2] >> (8 * (channel % 2) + 3) & 1 == 0 {
                     self.ccr_now[channel] = self.ccr[channel];
@@ -155,9 +174,22 @@ impl Tim {
     }
 
     fn write_ccmr(&mut self, half: usize, value: u32) -> Answer<()> {
-        only(value & 0x0303, 0, "TIM CCMR.CCxS (input capture)")?;
+        only(
+            value & 0x0202,
+            0,
+            "TIM CCMR.CCxS (capture from another channel's input, or from TRC)",
+        )?;
+        for channel in 0..2 {
+            if value >> (8 * channel) & 1 != 0 {
+                only(
+                    value >> (8 * channel) & 0xff,
+                    1,
+                    "TIM CCMR.ICxF or ICxPSC (filter or prescaler of an input)",
+                )?;
+            }
+        }
         only(value & 0x8080, 0, "TIM CCMR.OCxCE (clear by ETRF)")?;
-        let allowed = if self.kind.channels > 1 { 0x7c7c } else { 0x7c };
+        let allowed = if self.kind.channels > 1 { 0x7d7d } else { 0x7d };
         only(value, allowed, "TIM CCMR reserved bits")?;
         for channel in 0..2 {
             let mode = value >> (8 * channel + 4) & 7;

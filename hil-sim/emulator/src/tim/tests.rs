@@ -154,7 +154,8 @@ fn one_pulse_mode_stops_at_the_update() {
 fn unmodelled_modes_are_refused() {
     let mut tim = Tim::new(GENERAL, 2);
     assert!(tim.write(0x08, 3, 0).is_err(), "encoder");
-    assert!(tim.write(0x18, 1, 0).is_err(), "input capture");
+    assert!(tim.write(0x18, 2, 0).is_err(), "capture from another input");
+    assert!(tim.write(0x08, 0x06, 0).is_err(), "started by TIM1");
     assert!(tim.write(0x00, 0x20, 0).is_err(), "centre-aligned");
 }
 
@@ -221,4 +222,59 @@ fn a_count_beyond_a_new_reload_value_runs_to_the_counters_maximum() {
     assert_eq!(tim.read(0x24, 0x1_0000 + 7).unwrap(), 7);
     assert_eq!(tim.requests(), [false, true, false, false]);
     assert_eq!(tim.read(0x24, 0x1_0000 + 1529).unwrap(), 0);
+}
+
+/// A counter of microseconds at 90 MHz, which wraps after a millisecond, with channel 1 as input of rising edges.
+fn microseconds_with_input() -> Tim {
+    let input = [(0x28, 89), (0x2c, 999), (0x18, 0x1), (0x20, 0x1)];
+    let start = [(0x14, 1), (0x10, 0), (0x00, 1)];
+    timer(GENERAL, 2, &[input.as_slice(), &start].concat())
+}
+
+/// 17.3.5: the selected edge stores the count and sets CC1IF; reading the count clears it.
+#[test]
+fn a_rising_edge_stores_the_count_and_reading_it_clears_the_flag() {
+    let mut tim = microseconds_with_input();
+    assert!(!tim.set_input(0, false, 180 * 10), "no change is no edge");
+    assert!(tim.set_input(0, true, 180 * 1234 + 90));
+    assert_eq!(tim.read(0x10, 180 * 1300).unwrap() & 2, 2);
+    assert_eq!(tim.read(0x34, 180 * 1300).unwrap(), 234);
+    assert_eq!(tim.read(0x10, 180 * 1300).unwrap() & 2, 0);
+    assert!(
+        !tim.set_input(0, false, 180 * 1400),
+        "a falling edge is not selected"
+    );
+    assert_eq!(tim.read(0x34, 180 * 1500).unwrap(), 234);
+}
+
+/// 17.3.5: a second capture before the first was read replaces it and sets the overcapture flag.
+#[test]
+fn a_capture_that_was_not_read_is_replaced_and_flagged() {
+    let mut tim = microseconds_with_input();
+    for us in [100, 200] {
+        tim.set_input(0, true, 180 * us);
+        tim.set_input(0, false, 180 * (us + 1));
+    }
+    assert_eq!(tim.read(0x10, 180 * 300).unwrap() & 0x202, 0x202);
+    assert_eq!(tim.read(0x34, 180 * 300).unwrap(), 200);
+    tim.write(0x10, !0x202, 180 * 300).unwrap();
+    assert_eq!(tim.read(0x10, 180 * 300).unwrap() & 0x202, 0);
+}
+
+/// The compare value of an input is no output and sets no flag when the count passes it.
+#[test]
+fn an_input_matches_no_count() {
+    let mut tim = microseconds_with_input();
+    tim.set_input(0, true, 180 * 500);
+    tim.read(0x34, 180 * 501).unwrap();
+    assert_eq!(tim.read(0x10, 180 * 5_000).unwrap() & 2, 0);
+    assert_eq!(tim.output(0), Output::Released);
+    assert!(
+        tim.write(0x18, 0x11, 0).is_err(),
+        "filters are not modelled"
+    );
+    assert!(
+        tim.write(0x14, 2, 0).is_err(),
+        "capture by software is not modelled"
+    );
 }

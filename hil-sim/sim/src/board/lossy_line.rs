@@ -65,6 +65,10 @@ impl<E: Engine> Engine for LossyLine<E> {
         self.engine.inject(fault, after_us)
     }
 
+    fn trigger(&mut self, after_us: u32) -> Result<(), Self::Stop> {
+        self.engine.trigger(after_us)
+    }
+
     fn resets(&self) -> Vec<DeviceReset> {
         self.engine.resets()
     }

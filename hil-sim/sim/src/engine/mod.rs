@@ -61,6 +61,13 @@ pub trait Engine {
     /// The engine has no such part, or refuses the fault.
     fn inject(&mut self, fault: &MachineFault, after_us: u32) -> Result<(), NotInjected>;
 
+    /// Raises the trigger input `after_us` µs (less than 500) after the start of the present half millisecond, until its end
+    /// or until shortly before the next call in it.
+    ///
+    /// # Errors
+    /// The device did something that is not modelled.
+    fn trigger(&mut self, after_us: u32) -> Result<(), Self::Stop>;
+
     /// Resets of the device after power-up, oldest first.
     fn resets(&self) -> Vec<DeviceReset>;
 

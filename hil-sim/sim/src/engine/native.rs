@@ -11,11 +11,12 @@ use thermal_device::safety::{Fault, ThermalDose, TripCause};
 use thermal_device::sense::{DigitalInputs, SCANS_PER_TICK, Samples, Scan};
 use thermal_device::{
     Device, FingerIndex, PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_PERIOD_STEPS_OF_ONE_FINGER,
+    TriggerEdge,
 };
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::comparator::ComparatorTest as PlantTest;
 use thermal_protocol::{
-    CommandHandler, Error, LineReader, OutgoingLine, Reply, wrap_as_telemetry_line,
+    CommandHandler, Error, LineReader, OutgoingLine, Reply, UnsolicitedLine, wrap_as_telemetry_line,
 };
 use thermal_settings::{Settings, StoredSettings, decode_settings_record};
 
@@ -33,6 +34,14 @@ const BYTE_NS: u64 = 10 * 1_000_000_000 / BAUD;
 const TICK_NS: u64 = 730_000;
 const TICK_OF_FIVE_FINGERS_NS: u64 = 135_000;
 
+/// From the start of a tick's first scan to the boundary after it, µs: of one finger, and of the first of five.
+const SCAN_TO_BOUNDARY_US: u64 = 233;
+const SCAN_TO_BOUNDARY_OF_FIVE_FINGERS_US: u64 = 66;
+/// Time since the start of a first scan, µs, from which on an edge of the trigger input waits for the next tick, as the board's
+/// does: of one finger, and of five.
+const TRIGGER_WAITS_FROM_US: u16 = 900;
+const TRIGGER_OF_FIVE_FINGERS_WAITS_FROM_US: u16 = 150;
+
 /// Timeout of the window watchdog, ms.
 const WINDOW_MS: u64 = 46;
 
@@ -40,6 +49,7 @@ const WINDOW_MS: u64 = 46;
 const OFF: BoardOutputs = BoardOutputs {
     drive: Drive::Off,
     comparator_test: ComparatorTest::None,
+    trigger_output: false,
 };
 
 /// Scans between the boundaries: four end the first step's tick, eight and four follow.
@@ -67,6 +77,8 @@ pub struct NativeDevice<const FINGERS: usize> {
     /// Time for which no tick has run, while the outputs keep their state.
     hung_ms: Option<u64>,
     resets: Vec<DeviceReset>,
+    /// Edges of the trigger input with the milliseconds whose ticks report them.
+    trigger_edges: VecDeque<(u64, TriggerEdge)>,
     /// Settings in the simulated flash.
     stored: Option<[StoredSettings; FINGERS]>,
     /// Time since the first boundary, ns.
@@ -196,6 +208,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
             side_is_high: false,
             hung_ms: None,
             resets: Vec::new(),
+            trigger_edges: VecDeque::new(),
             stored: None,
             now_ns: 0,
             boundaries: 0,
@@ -215,6 +228,9 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
                 .is_some_and(|level| level != self.side_is_high),
             ..DigitalInputs::default()
         };
+        if index == FingerIndex::FIRST {
+            self.report_trigger_edge(at_ns / (2 * HALF_NS));
+        }
         let finger = &mut self.fingers[index.index()];
         let needs_scatter = self.device.finger_needs_scatter(index);
         let samples = finger.samples(shared, needs_scatter);
@@ -224,8 +240,40 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
             test => self.side_is_high = test == ComparatorTest::Cold,
         }
         finger.set_outputs(outputs);
+        while let Some(event) = self.device.take_finger_event(index) {
+            self.send_line(&event.map_content(UnsolicitedLine));
+        }
         if let Some(telemetry) = self.device.finger_telemetry_if_due(index) {
             self.send_line(&wrap_as_telemetry_line(telemetry));
+        }
+    }
+
+    /// Raises the trigger input `after_us` µs after the last boundary.
+    fn raise_trigger(&mut self, after_us: u32) {
+        let (to_boundary_us, waits_from_us) = if FINGERS == 1 {
+            (SCAN_TO_BOUNDARY_US, TRIGGER_WAITS_FROM_US)
+        } else {
+            (
+                SCAN_TO_BOUNDARY_OF_FIVE_FINGERS_US,
+                TRIGGER_OF_FIVE_FINGERS_WAITS_FROM_US,
+            )
+        };
+        let at_us = self.now_ns / 1000 + u64::from(after_us) + to_boundary_us;
+        let us = (at_us % 1000) as u16;
+        let ticks_ago = u8::from(us >= waits_from_us);
+        let edge = TriggerEdge { us, ticks_ago };
+        let reported_ms = at_us / 1000 + u64::from(ticks_ago);
+        self.trigger_edges.push_back((reported_ms, edge));
+    }
+
+    /// Reports the last edge of the trigger input that is due in this millisecond to the device; a timer keeps one only.
+    fn report_trigger_edge(&mut self, ms: u64) {
+        let mut last = None;
+        while let Some((_, edge)) = self.trigger_edges.pop_front_if(|(at_ms, _)| *at_ms <= ms) {
+            last = Some(edge);
+        }
+        if let Some(edge) = last {
+            self.device.note_trigger_edge(edge);
         }
     }
 
@@ -405,6 +453,11 @@ impl Engine for NativeEngine {
         self.inject_fault(fault)
     }
 
+    fn trigger(&mut self, after_us: u32) -> Result<(), Infallible> {
+        self.raise_trigger(after_us);
+        Ok(())
+    }
+
     fn resets(&self) -> Vec<DeviceReset> {
         self.resets.clone()
     }
@@ -455,6 +508,11 @@ impl FiveFingerEngine for NativeFiveFingers {
 
     fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected> {
         self.inject_fault(fault)
+    }
+
+    fn trigger(&mut self) -> Result<(), Infallible> {
+        self.raise_trigger(0);
+        Ok(())
     }
 
     fn resets(&self) -> Vec<DeviceReset> {

@@ -25,6 +25,7 @@ use crate::processor::{Injection, MachineFault, NotInjected};
 use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
+use crate::trigger_edges::trigger_edges_us;
 use thermal_plant::bridge::BridgeOutputs;
 
 /// Number of fingers of the device.
@@ -67,6 +68,12 @@ pub trait FiveFingerEngine {
     /// The fault does not apply to the engine, or its machine refuses it.
     fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected>;
 
+    /// Raises the trigger input now, until the next boundary.
+    ///
+    /// # Errors
+    /// The device did something that is not modelled.
+    fn trigger(&mut self) -> Result<(), Self::Stop>;
+
     /// Resets of the device after power-up; time counts from the first finger's first boundary.
     fn resets(&self) -> Vec<DeviceReset>;
 
@@ -80,8 +87,8 @@ pub trait FiveFingerEngine {
 }
 
 /// Runs a scene on each finger and returns their results; `progress` is called with the fraction done. Faults of the
-/// processor in any of the scenes are injected into the one that all fingers share, at whole milliseconds, before the first
-/// finger's boundary.
+/// processor in any of the scenes are injected into the one that all fingers share, and edges of their triggers raise the input
+/// that all share, at whole milliseconds, before the first finger's boundary.
 ///
 /// # Errors
 /// The engine stopped, the device refused a scene, or a fault of the processor could not be injected.
@@ -108,6 +115,11 @@ pub fn run<H: FiveFingerEngine>(
     let end_ms = last(|finger| finger.end_ms);
     let last_ms = end_ms + DRAIN_MS;
     let injections = injections(scenes, zero_ms, end_ms)?;
+    let is_triggered = |ms: u64| {
+        let at_us = 1000 * (ms as i64 - zero_ms as i64);
+        let rounded_to_ms = at_us - 500..at_us + 500;
+        (scenes.iter()).any(|scene| !trigger_edges_us(scene, &rounded_to_ms).is_empty())
+    };
     let mut received = LineSplitter::default();
     for ms in 0..=last_ms {
         if ms == zero_ms {
@@ -115,6 +127,9 @@ pub fn run<H: FiveFingerEngine>(
         }
         for (_, fault) in injections.iter().filter(|(at_ms, _)| *at_ms == ms) {
             engine.inject(fault)?;
+        }
+        if is_triggered(ms) {
+            engine.trigger().map_err(RunError::Stop)?;
         }
         for index in 0..FINGERS {
             engine.run_to(index).map_err(RunError::Stop)?;

@@ -34,7 +34,15 @@ pub(super) struct File {
     #[serde(default)]
     pub fault: Vec<Spanned<Fault>>,
     #[serde(default)]
+    pub trigger: Vec<Trigger>,
+    #[serde(default)]
     pub host: Vec<Host>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Trigger {
+    pub t_s: Number,
 }
 
 #[derive(Deserialize)]

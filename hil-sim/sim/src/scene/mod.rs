@@ -16,6 +16,7 @@ use std::path::Path;
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, interface_temperature};
+use thermal_client::course::Course;
 pub use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
@@ -84,8 +85,12 @@ pub struct Scene {
     pub faults: Vec<ScheduledFault>,
     /// Faults of the processor.
     pub injections: Vec<Injection>,
+    /// Times of the rising edges at the trigger input, s; counted to a microsecond.
+    pub triggers_s: Vec<f64>,
     /// Lines that the host sends.
     pub host: Vec<HostLine>,
+    /// Temperatures that the display follows from the landing on, in place of those of the object. No scene file has one.
+    pub course: Option<Course>,
 }
 
 /// The object that the display imitates.

@@ -77,6 +77,9 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         forces: forces(&source, &file.force, duration_s)?,
         faults,
         injections,
+        triggers_s: (file.trigger.iter())
+            .map(|trigger| source.time("trigger.t_s", &trigger.t_s, duration_s))
+            .collect::<Result<_, _>>()?,
         host: (file.host.iter())
             .map(|host| {
                 let t_s = source.time("host.t_s", &host.t_s, duration_s)?;
@@ -86,6 +89,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
                 })
             })
             .collect::<Result<_, _>>()?,
+        course: None,
     };
     let object_at = match &file.object.get_ref().start_c {
         Some(start_c) => start_c.span(),

@@ -78,7 +78,12 @@ impl ActiveDefects {
             FaultKind::ChillerOff => cooling.coolant_c = Some(value),
             FaultKind::SinkHot => cooling.held_c = Some(value),
             // These act in the host.
-            FaultKind::HostGarbage | FaultKind::HostSilent | FaultKind::HostFlood => {}
+            FaultKind::HostGarbage
+            | FaultKind::HostSilent
+            | FaultKind::HostFlood
+            | FaultKind::HostPlays => {}
+            // These act at the trigger input.
+            FaultKind::TriggerStuck | FaultKind::TriggerChatter => {}
         }
     }
 }

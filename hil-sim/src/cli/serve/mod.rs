@@ -161,7 +161,10 @@ fn note_host_lines(scene: &Scene) {
     let host_fault = |kind| {
         matches!(
             kind,
-            FaultKind::HostGarbage | FaultKind::HostSilent | FaultKind::HostFlood
+            FaultKind::HostGarbage
+                | FaultKind::HostSilent
+                | FaultKind::HostFlood
+                | FaultKind::HostPlays
         )
     };
     if !scene.host.is_empty() || kinds.any(host_fault) {

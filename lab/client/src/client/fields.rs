@@ -86,6 +86,7 @@ pub fn state(word: &str, fault_word: &str) -> Option<StateName> {
         StateName::Armed,
         StateName::Preset,
         StateName::Contact,
+        StateName::Stimulus,
     ]
     .into_iter()
     .find(|state| state.name() == word)

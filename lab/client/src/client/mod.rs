@@ -5,6 +5,7 @@
 
 mod clock;
 mod error;
+mod event;
 mod fields;
 mod plain_command;
 mod query;
@@ -17,15 +18,19 @@ use std::fmt;
 use std::hash::{BuildHasher, RandomState};
 use std::time::Duration;
 
+use thermal_device::TelemetryFields;
 use thermal_protocol::{LINE_MAX_BYTES, line_checksum, strip_checksum};
 
 use crate::link::{Link, LinkError, ReceivedLine};
-use streams::TelemetryStreams;
+use streams::{Stream, TelemetryStreams};
 
 pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
+pub use event::ReceivedEvent;
 pub use fields::Fields;
-pub use plain_command::{PlainCommand, THERMISTORS, thermistor, thermistor_word, upload};
+pub use plain_command::{
+    PlainCommand, THERMISTORS, thermistor, thermistor_word, upload, upload_course,
+};
 pub use query::{
     Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryIdentity, QueryLaw,
     QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState, TuneResult,
@@ -40,8 +45,13 @@ pub use telemetry::{ReceivedTelemetry, Telemetry};
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
 /// Longest silence of the client while the device streams, half of what trips the device.
 const SILENCE_MAX: Duration = Duration::from_secs(1);
+/// Number of times a line that may be repeated is sent.
+const ATTEMPTS: u32 = 3;
 /// Bytes that a checksum adds to a line.
 const CHECKSUM_BYTES: usize = "*00".len();
+/// Time after the answer to a `stream` that changes the fields within which a tick may have been reported with the old ones.
+/// The answer overtakes the telemetry that waits, and a line with all fields takes a millisecond longer than it on the way.
+const FIELD_CHANGE_TIME: Duration = Duration::from_millis(10);
 /// Telemetry lines that are kept until they are fetched; then the oldest is dropped.
 const TELEMETRY_KEPT_MAX: usize = 100_000;
 
@@ -61,7 +71,8 @@ pub struct LineCounts {
     pub lost: u64,
     /// Lines that are neither telemetry nor an answer.
     pub damaged: u64,
-    /// Telemetry lines that came and were not fetched in time.
+    /// Telemetry lines that came and were not fetched in time, or that may still have had the fields of before a `stream`
+    /// that has changed them.
     pub dropped: u64,
 }
 
@@ -71,6 +82,7 @@ pub struct LineCounts {
 pub struct Client<L> {
     link: L,
     telemetry: VecDeque<ReceivedTelemetry>,
+    events: VecDeque<ReceivedEvent>,
     streams: TelemetryStreams,
     clock: DeviceClock,
     counts: LineCounts,
@@ -90,6 +102,7 @@ impl<L: Link> Client<L> {
             last_sent: link.now(),
             link,
             telemetry: VecDeque::new(),
+            events: VecDeque::new(),
             streams: TelemetryStreams::default(),
             clock: DeviceClock::default(),
             counts: LineCounts::default(),
@@ -108,6 +121,8 @@ impl<L: Link> Client<L> {
     pub fn attach(link: L) -> Result<Self, ClientError> {
         let mut client = Self::new(link);
         client.transmit("")?;
+        // Whatever an earlier client has left on, the device takes a line with a checksum.
+        client.transmit("checksum off*42")?;
         client.synchronize()?;
         Ok(client)
     }
@@ -190,11 +205,31 @@ impl<L: Link> Client<L> {
         }
     }
 
-    /// Sends a line and waits for its answer, `ok …` or `err …`, perhaps with the finger before it.
+    /// Sends a line and waits for its answer, `ok …` or `err …`, perhaps with the finger before it. Questions and the rows of
+    /// an upload, which have numbers, are sent again if the line or its answer is lost or damaged; another line might then be
+    /// executed twice.
     ///
     /// # Errors
     /// The line cannot be sent, the device does not answer, or the link is gone.
     pub fn query(&mut self, line: &str) -> Result<String, ClientError> {
+        let mut answer = self.query_once(line);
+        for _ in 1..ATTEMPTS {
+            let lost = match &answer {
+                Ok(answer) => split_finger(answer).1.starts_with("err checksum "),
+                Err(error) => matches!(
+                    error,
+                    ClientError::TimedOut { .. } | ClientError::NotUnderstood { .. }
+                ),
+            };
+            if !self.checksums || !lost || !may_be_repeated(line) {
+                break;
+            }
+            answer = self.query_once(line);
+        }
+        answer
+    }
+
+    fn query_once(&mut self, line: &str) -> Result<String, ClientError> {
         let sendable = |byte: u8| matches!(byte, b' '..=b'~');
         let max = LINE_MAX_BYTES - if self.checksums { CHECKSUM_BYTES } else { 0 };
         if line.trim().is_empty() || line.len() > max || !line.bytes().all(sendable) {
@@ -250,6 +285,11 @@ impl<L: Link> Client<L> {
             };
         }
         Ok(self.telemetry.pop_front())
+    }
+
+    /// The oldest event that was received and not fetched yet. Events are received while any of the client's functions waits.
+    pub fn take_event(&mut self) -> Option<ReceivedEvent> {
+        self.events.pop_front()
     }
 
     /// Makes sure that the next answer is that of the next line. A line is sent whose answer, an error, repeats a word that
@@ -350,7 +390,21 @@ impl<L: Link> Client<L> {
         if is_answer(content) {
             return Some(Sorted::Answer(line.text));
         }
-        let Some(telemetry) = Telemetry::parse(content) else {
+        if let Some((event, tick)) = ReceivedEvent::parse(finger, content, line.at) {
+            self.clock.observe(tick, line.at);
+            if self.events.len() == TELEMETRY_KEPT_MAX {
+                self.events.pop_front();
+                self.counts.dropped += 1;
+            }
+            self.events.push_back(event);
+            return None;
+        }
+        if self.may_have_old_fields(finger, content, line.at) {
+            self.counts.dropped += 1;
+            return None;
+        }
+        let fields = self.streams.fields(finger);
+        let Some(telemetry) = Telemetry::parse_fields(content, fields) else {
             self.counts.damaged += 1;
             return Some(Sorted::Damaged(line.text));
         };
@@ -370,6 +424,21 @@ impl<L: Link> Client<L> {
         None
     }
 
+    /// Whether a line is telemetry of a tick before a change of its fields, or so soon after it that this is not certain.
+    /// When it arrived does not tell, because lines wait while nobody receives them.
+    fn may_have_old_fields(&mut self, finger: Option<u8>, content: &str, at: Duration) -> bool {
+        let Some(changed_at) = self.streams.fields_changed_at(finger) else {
+            return false;
+        };
+        let Some(tick) = Telemetry::tick_of(content) else {
+            return false;
+        };
+        self.clock.observe(tick, at);
+        let new_from_s = (changed_at + FIELD_CHANGE_TIME).as_secs_f64();
+        let time = self.clock.time_of(tick);
+        time.is_some_and(|time| time.at_s - time.error_s <= new_from_s)
+    }
+
     /// Takes note of what an accepted line has changed that the client must know.
     fn note_accepted(&mut self, line: &str) {
         let (finger, line) = split_finger(line);
@@ -377,7 +446,20 @@ impl<L: Link> Client<L> {
         match (words.next(), words.next()) {
             (Some("stream"), Some(interval)) => {
                 let interval_ms = interval.parse().map_or(0.0, f64::ceil);
-                self.streams.set(finger, interval_ms as u32);
+                let mut fields = TelemetryFields::NONE;
+                for word in words {
+                    let known = TelemetryFields::NAMES.iter();
+                    let index = known.clone().position(|name| *name == word);
+                    fields = index.map_or(fields, |index| fields.with(index));
+                }
+                if fields == TelemetryFields::NONE {
+                    fields = TelemetryFields::ALL;
+                }
+                let stream = Stream {
+                    interval_ms: interval_ms as u32,
+                    fields,
+                };
+                self.streams.set(finger, stream, self.link.now());
             }
             (Some("checksum"), Some(switch)) => self.checksums = switch == "on",
             (Some("save" | "forget"), None) => {
@@ -393,6 +475,17 @@ impl<L: Link> Client<L> {
 enum Sorted {
     Answer(String),
     Damaged(String),
+}
+
+/// Whether a line may be executed twice: a question, or a row of an upload.
+fn may_be_repeated(line: &str) -> bool {
+    let words: Vec<_> = split_finger(line).1.split_ascii_whitespace().collect();
+    matches!(
+        words.as_slice(),
+        ["id" | "state" | "cause" | "board" | "raw" | "self-test" | "law" | "finger" | "margins"]
+            | ["settings", ..]
+            | ["upload", "row", ..]
+    )
 }
 
 /// Whether an answer is that of an accepted line.

@@ -6,10 +6,13 @@ use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::Material;
 use contact_model::slab::Back;
 use thermal_commissioning::{StorageOrder, THERMISTOR_WORDS};
+use thermal_device::TelemetryFields;
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
+use thermal_device::events::DeviceEventKind;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
+use thermal_device::stimulus::{CourseEnd, PlayOrder, TemperatureKind};
 use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
 use thermal_settings::CRC_32;
 
@@ -51,12 +54,35 @@ pub enum PlainCommand {
     Abort,
     /// Clear a fault that is no longer present.
     Clear,
-    /// Telemetry at this interval, ms; 0 ends it.
-    Stream(u32),
+    /// Telemetry at this interval, ms, with these fields; an interval of 0 ends it.
+    Stream(u32, TelemetryFields),
     /// Checksums on the lines from the device from now on, or not.
     Checksum(bool),
-    /// Move the set-point of the armed display to this temperature, °C.
-    Hold(f64),
+    /// Move the set-point to this temperature, °C, at this rate, K/s, or without one at the device's own, and hold it.
+    Hold(f64, Option<f64>),
+    /// Play the loaded course.
+    Play(PlayOrder),
+    /// Load and play a course of four points.
+    Pulse {
+        /// First and last temperature, °C.
+        base_c: f64,
+        /// Temperature that is held, °C.
+        target_c: f64,
+        /// Rate to it, K/s.
+        rise_k_s: f64,
+        /// How long it is held, s.
+        hold_s: f64,
+        /// Rate back, K/s.
+        return_k_s: f64,
+        /// When it begins.
+        order: PlayOrder,
+    },
+    /// Assume this temperature of the skin, °C, or that of the sensor.
+    Skin(Option<f64>),
+    /// Report events, or none.
+    Events(bool),
+    /// Mark these events at the trigger output; none of them switches it off.
+    TriggerOutput(Vec<DeviceEventKind>),
     /// Begin to identify the tile.
     Tune,
     /// Delete calibration points and correction of a thermistor.
@@ -69,6 +95,10 @@ pub enum PlainCommand {
     UploadBegin(usize, f64),
     /// A row of an upload by its index.
     UploadRow(usize, Relaxation),
+    /// Begin the upload of a course: number of points, and what its temperatures are.
+    UploadCourse(usize, TemperatureKind),
+    /// A point of a course by its index: time, s, and temperature, °C or K above the skin.
+    UploadPoint(usize, f64, f64),
     /// End an upload with the checksum of its lines.
     UploadCommit(u32),
 }
@@ -93,6 +123,14 @@ pub fn thermistor(word: &str) -> Option<ThermistorId> {
 #[must_use]
 pub const fn thermistor_word(thermistor: ThermistorId) -> &'static str {
     THERMISTOR_WORDS[thermistor as usize]
+}
+
+impl PlainCommand {
+    /// Telemetry at this interval, ms, with all fields; 0 ends it.
+    #[must_use]
+    pub const fn stream(interval_ms: u32) -> Self {
+        Self::Stream(interval_ms, TelemetryFields::ALL)
+    }
 }
 
 impl fmt::Display for PlainCommand {
@@ -124,18 +162,58 @@ impl fmt::Display for PlainCommand {
             }
             Self::AssumedFinger(finger) => write!(f, "finger {}", finger.name()),
             Self::Mode(mode) => {
-                let mut words = CONTACT_MODEL_WORDS.iter();
-                let word = words.find(|(_, known)| known == mode);
-                write!(f, "mode {}", word.map_or("", |(word, _)| *word))
+                write!(f, "mode {}", word_in(&CONTACT_MODEL_WORDS, mode))
             }
             Self::Law(law) => write!(f, "law {}", law.name()),
             Self::Arm => f.write_str("arm"),
             Self::Start => f.write_str("start"),
             Self::Abort => f.write_str("abort"),
             Self::Clear => f.write_str("clear"),
-            Self::Stream(interval_ms) => write!(f, "stream {interval_ms}"),
             Self::Checksum(on) => f.write_str(if *on { "checksum on" } else { "checksum off" }),
-            Self::Hold(celsius) => write!(f, "hold {celsius:.2}"),
+            Self::Hold(celsius, None) => write!(f, "hold {celsius}"),
+            Self::Hold(celsius, Some(rate_k_s)) => write!(f, "hold {celsius} {rate_k_s}"),
+            Self::Play(order) => {
+                f.write_str("play ")?;
+                write_order(f, order)
+            }
+            Self::Pulse {
+                base_c,
+                target_c,
+                rise_k_s,
+                hold_s,
+                return_k_s,
+                order,
+            } => {
+                write!(
+                    f,
+                    "pulse {base_c} {target_c} {rise_k_s} {hold_s} {return_k_s} "
+                )?;
+                write_order(f, order)
+            }
+            Self::Skin(Some(celsius)) => write!(f, "skin {celsius}"),
+            Self::Skin(None) => f.write_str("skin sensor"),
+            Self::Events(on) => f.write_str(if *on { "events on" } else { "events off" }),
+            Self::TriggerOutput(kinds) if kinds.is_empty() => f.write_str("trigger-out none"),
+            Self::TriggerOutput(kinds) => {
+                let words: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
+                write!(f, "trigger-out {}", words.join(","))
+            }
+            Self::Stream(interval_ms, fields) => {
+                write!(f, "stream {interval_ms}")?;
+                if *fields == TelemetryFields::ALL {
+                    return Ok(());
+                }
+                let names = TelemetryFields::NAMES.iter().enumerate();
+                let mut chosen = names.filter(|(index, _)| fields.contains(*index));
+                chosen.try_for_each(|(_, name)| write!(f, " {name}"))
+            }
+            Self::UploadCourse(count, temperatures) => {
+                let word = word_in(&TemperatureKind::PROTOCOL_WORDS, temperatures);
+                write!(f, "upload begin course {count} {word}")
+            }
+            Self::UploadPoint(index, time_s, temperature) => {
+                write!(f, "upload row {index} {time_s:.3} {temperature:.6}")
+            }
             Self::Tune => f.write_str("tune"),
             Self::ClearCalibration(thermistor) => {
                 write!(f, "calibrate {} clear", thermistor_word(*thermistor))
@@ -176,6 +254,34 @@ pub fn upload(object: &Impedance<'_>) -> Vec<PlainCommand> {
     )];
     let rows = relaxations.iter().enumerate();
     commands.extend(rows.map(|(index, row)| PlainCommand::UploadRow(index, *row)));
+    with_commit(commands)
+}
+
+/// The commands that upload a course of points, s and °C (or K above the skin): begin, one row for each point, and commit.
+#[must_use]
+pub fn upload_course(temperatures: TemperatureKind, points: &[(f64, f64)]) -> Vec<PlainCommand> {
+    let mut commands = vec![PlainCommand::UploadCourse(points.len(), temperatures)];
+    let rows = points.iter().enumerate();
+    commands.extend(
+        rows.map(|(index, (t_s, celsius))| PlainCommand::UploadPoint(index, *t_s, *celsius)),
+    );
+    with_commit(commands)
+}
+
+/// The word of a value in a table of the protocol.
+fn word_in<T: PartialEq>(table: &[(&'static str, T)], value: &T) -> &'static str {
+    let found = table.iter().find(|(_, known)| known == value);
+    found.map_or("", |(word, _)| *word)
+}
+
+fn write_order(f: &mut fmt::Formatter<'_>, order: &PlayOrder) -> fmt::Result {
+    let start = order.start.name();
+    let end = word_in(&CourseEnd::PROTOCOL_WORDS, &order.end);
+    write!(f, "{start} {} {end}", order.play_count)
+}
+
+/// The lines of an upload with their commit.
+fn with_commit(mut commands: Vec<PlainCommand>) -> Vec<PlainCommand> {
     let sent: String = commands
         .iter()
         .map(|command| format!("{command}\n"))

@@ -3,12 +3,12 @@
 use std::time::Duration;
 
 use serde::Serialize;
-use thermal_device::StateName;
 use thermal_device::safety::Fault;
+use thermal_device::{StateName, TelemetryFields};
 
 use super::fields::{number_or_unknown, state, state_word};
 
-/// All fields of a telemetry line; what the device does not know is `None`.
+/// All fields of a telemetry line; what the device does not know, or was not asked for, is `None`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Telemetry {
     /// Ticks of 1 ms since the device's reset.
@@ -33,7 +33,7 @@ pub struct Telemetry {
     /// Magnitude of the measured current, A.
     pub current_a: Option<f64>,
     /// Evaluations of `erfcx` since the device's reset.
-    pub evaluations: u32,
+    pub evaluations: Option<u32>,
     /// Whether the set-point was limited to its safe range.
     pub limited: bool,
 }
@@ -55,11 +55,28 @@ impl Telemetry {
     /// Reads a line without its finger; `None` if it is not telemetry. Words after the known ones are ignored.
     #[must_use]
     pub fn parse(line: &str) -> Option<Self> {
-        let words: Vec<_> = line.split(' ').collect();
-        let &[
-            "T",
-            tick,
-            state_name,
+        Self::parse_fields(line, TelemetryFields::ALL)
+    }
+
+    /// The same of a line with these fields only; those that are left out are `None`. If there are any, the line has no other
+    /// words, so that one with more fields is not taken for it.
+    #[must_use]
+    pub fn parse_fields(line: &str, fields: TelemetryFields) -> Option<Self> {
+        let mut words = line.split(' ');
+        let ("T", tick, state_name) = (words.next()?, words.next()?, words.next()?) else {
+            return None;
+        };
+        let mut values = ["-"; TelemetryFields::NAMES.len()];
+        for (index, value) in values.iter_mut().enumerate() {
+            if fields.contains(index) {
+                *value = words.next()?;
+            }
+        }
+        let remark = words.next()?;
+        if fields != TelemetryFields::ALL && words.next().is_some() {
+            return None;
+        }
+        let [
             setpoint,
             display,
             sink,
@@ -69,12 +86,7 @@ impl Telemetry {
             demand,
             current,
             evaluations,
-            remark,
-            ..,
-        ] = words.as_slice()
-        else {
-            return None;
-        };
+        ] = values;
         Some(Self {
             tick: tick.parse().ok()?,
             state: state(state_name, remark)?,
@@ -86,9 +98,17 @@ impl Telemetry {
             force_n: number_or_unknown(force)?,
             demand_a: number_or_unknown(demand)?,
             current_a: number_or_unknown(current)?,
-            evaluations: evaluations.parse().ok()?,
+            evaluations: match evaluations {
+                "-" => None,
+                count => Some(count.parse().ok()?),
+            },
             limited: remark == "limited",
         })
+    }
+
+    /// The tick that a telemetry line names, whatever its fields; `None` if it is not telemetry.
+    pub(super) fn tick_of(line: &str) -> Option<u32> {
+        line.strip_prefix("T ")?.split(' ').next()?.parse().ok()
     }
 
     /// The last word of the line: the fault by which the device is tripped, or `limited`.

@@ -250,8 +250,10 @@ impl<L: Link> Procedure<'_, L> {
         let (mut points, mut check_points, mut why) = (0, 0, String::new());
         for hold_c in hold_temperatures_c() {
             let distance_k = (hold_c - self.reference_c(ThermistorId::Display)?).abs();
+            // The decimals that a person at the bench is told.
+            let sent_c = (hold_c * 100.0).round() / 100.0;
             self.client
-                .ask_finger(self.finger, &PlainCommand::Hold(hold_c))?;
+                .ask_finger(self.finger, &PlainCommand::Hold(sent_c, None))?;
             self.surroundings
                 .notice(&CommissioningEvent::HoldStarted(hold_c));
             self.wait_ms((distance_k * MS_PER_DEGREE) as u64 + SETTLE_MS)?;

@@ -6,11 +6,13 @@ use std::time::Duration;
 
 use thermal_client::client::{
     BoardReport, Client, ClientError, PlainCommand, QueryBoard, QueryCause, QueryIdentity,
-    QueryRaw, QuerySelfTest, QueryState,
+    QueryRaw, QuerySelfTest, QueryState, upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
-use thermal_device::StateName;
+use thermal_device::events::DeviceEventKind;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
+use thermal_device::stimulus::TemperatureKind;
+use thermal_device::{StateName, TelemetryFields};
 
 use crate::fake_device::{FakeDevice, answers, knows};
 
@@ -225,7 +227,7 @@ fn with_checksums_damaged_answers_are_not_taken() {
 #[test]
 fn abort_is_sent_to_a_device_whose_answers_do_not_come_through() {
     let mut client = FakeDevice::client(|_| Vec::new());
-    client.ask(&PlainCommand::Hold(41.0)).unwrap_err();
+    client.ask(&PlainCommand::Hold(41.0, None)).unwrap_err();
     client.ask(&PlainCommand::Abort).unwrap_err();
     client
         .ask_finger(Some(2), &PlainCommand::Abort)
@@ -259,8 +261,109 @@ fn a_device_that_restarts_while_checksums_are_on_is_reached_again() {
     client.ask(&PlainCommand::Checksum(true)).unwrap();
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
     // Restarts before this line.
-    assert!(client.query("law").is_err());
+    assert!(client.query("law model").is_err());
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
+}
+
+/// A `save` that is sent again could be executed twice, a question and a row of an upload cannot do harm.
+#[test]
+fn only_questions_and_numbered_lines_are_sent_again_after_a_damaged_line() {
+    let sent_as_often = |line: &'static str| {
+        let mut damaged = false;
+        let mut client = FakeDevice::client(move |received| {
+            let (content, _) = received.split_once('*').unwrap_or((received, ""));
+            let answer = match content {
+                _ if content == line && !damaged => {
+                    damaged = true;
+                    "err checksum 00 is wrong, the line has 01; send the line again".into()
+                }
+                _ if content.starts_with("sync") => format!("err unknown command '{content}'"),
+                _ => String::from("ok"),
+            };
+            let sum = answer.bytes().fold(0, |sum, byte| sum ^ byte);
+            answers(&format!("{answer}*{sum:02X}"))
+        });
+        client.ask(&PlainCommand::Checksum(true)).unwrap();
+        let accepted = client.query(line).unwrap() == "ok";
+        let sent = &client.link().sent;
+        let times = sent
+            .iter()
+            .filter(|(_, sent)| sent.starts_with(line))
+            .count();
+        (times, accepted)
+    };
+    for line in [
+        "state",
+        "@2 cause",
+        "settings 3",
+        "upload row 5 1.000 30.000000",
+    ] {
+        assert_eq!(sent_as_often(line), (2, true), "{line}");
+    }
+    for line in [
+        "save",
+        "arm",
+        "play now",
+        "law pi",
+        "calibrate display 30",
+        "tune result",
+    ] {
+        assert_eq!(sent_as_often(line), (1, false), "{line}");
+    }
+}
+
+#[test]
+fn events_and_telemetry_of_chosen_fields_are_read() {
+    let mut client = knows(&[("stream 5 setpoint demand", "ok"), ("events on", "ok")]);
+    let fields = TelemetryFields::NONE.with(0).with(6);
+    client.ask(&PlainCommand::Stream(5, fields)).unwrap();
+    client.ask(&PlainCommand::Events(true)).unwrap();
+    client.link().sends(1, "E 1000 437 trigger");
+    client
+        .link()
+        .sends(2, "T 1005 stimulus 30.50000 -1.250 limited");
+    let received = client
+        .next_telemetry(Duration::from_millis(10))
+        .unwrap()
+        .unwrap();
+    let telemetry = received.telemetry;
+    assert_eq!(
+        (telemetry.setpoint_c, telemetry.display_c),
+        (Some(30.5), None)
+    );
+    assert!(telemetry.limited && telemetry.state == StateName::Stimulus);
+    assert_eq!(
+        (telemetry.demand_a, telemetry.current_a),
+        (Some(-1.25), None)
+    );
+    assert_eq!(telemetry.evaluations, None);
+    let event = client.take_event().unwrap().event;
+    assert_eq!(
+        (event.tick, event.microseconds, event.kind),
+        (1000, 437, DeviceEventKind::Trigger)
+    );
+    assert_eq!(client.take_event(), None);
+    assert_eq!(client.counts().damaged, 0);
+}
+
+#[test]
+fn a_course_is_uploaded_as_the_device_reads_it() {
+    let points = [(0.0, 33.0), (2.0, 25.0), (12.0, 25.0)];
+    let lines: Vec<_> = upload_course(TemperatureKind::Absolute, &points)
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    // The checksum is that of Python's `zlib.crc32`.
+    assert_eq!(
+        lines,
+        [
+            "upload begin course 3 absolute",
+            "upload row 0 0.000 33.000000",
+            "upload row 1 2.000 25.000000",
+            "upload row 2 12.000 25.000000",
+            "upload commit d60e5903",
+        ]
+    );
 }
 
 #[test]

@@ -2,5 +2,6 @@
 
 mod answers;
 mod clock;
+mod course;
 mod fake_device;
 mod telemetry;

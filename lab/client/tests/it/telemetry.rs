@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{Client, PlainCommand};
-use thermal_device::StateName;
+use thermal_client::client::{Client, PlainCommand, Telemetry};
 use thermal_device::safety::Fault;
+use thermal_device::{StateName, TelemetryFields};
 
 use crate::fake_device::{FakeDevice, answers, knows};
 
@@ -21,7 +21,7 @@ fn streaming(interval_ms: u32) -> Client<FakeDevice> {
         "" => Vec::new(),
         _ => answers("ok"),
     });
-    client.ask(&PlainCommand::Stream(interval_ms)).unwrap();
+    client.ask(&PlainCommand::stream(interval_ms)).unwrap();
     client
 }
 
@@ -46,7 +46,7 @@ fn telemetry_between_lines_and_answers_is_kept_apart_and_in_order() {
         assert_eq!((one.sink_c, one.skin_c), (Some(24.1), Some(33.2)));
         assert_eq!((one.room_c, one.force_n), (Some(24.0), Some(0.001)));
         assert_eq!((one.demand_a, one.current_a), (Some(-1.25), Some(1.24)));
-        assert_eq!((one.evaluations, one.limited), (17, false));
+        assert_eq!((one.evaluations, one.limited), (Some(17), false));
     }
     assert_eq!(ticks, [10, 11, 12]);
 }
@@ -89,7 +89,7 @@ fn a_client_that_waits_gives_a_sign_of_life_while_the_device_streams_and_only_th
     ]);
     client.wait(Duration::from_secs(10)).unwrap();
     assert!(client.link().blank_ms().is_empty());
-    client.ask(&PlainCommand::Stream(50)).unwrap();
+    client.ask(&PlainCommand::stream(50)).unwrap();
     let from_ms = client.link().sent[0].0.as_millis();
     client.wait(Duration::from_secs(7)).unwrap();
     client.query("law").unwrap();
@@ -105,7 +105,7 @@ fn a_client_that_waits_gives_a_sign_of_life_while_the_device_streams_and_only_th
         last_ms = at.as_millis();
     }
     assert!(last_ms > 24_000, "{last_ms}");
-    client.ask(&PlainCommand::Stream(0)).unwrap();
+    client.ask(&PlainCommand::stream(0)).unwrap();
     let before = client.link().blank_ms().len();
     client.wait(Duration::from_secs(10)).unwrap();
     assert_eq!(client.link().blank_ms().len(), before);
@@ -154,4 +154,59 @@ fn a_line_that_was_damaged_on_its_way_is_counted_and_not_taken() {
     assert!(client.next_telemetry(Duration::ZERO).unwrap().is_some());
     assert!(client.next_telemetry(Duration::ZERO).unwrap().is_none());
     assert_eq!(client.counts().damaged, 6);
+}
+
+/// Fields whose lines have the same number of words.
+const SETPOINT: TelemetryFields = TelemetryFields::NONE.with(0);
+const DISPLAY: TelemetryFields = TelemetryFields::NONE.with(1);
+
+#[test]
+fn a_line_with_fields_that_were_not_chosen_is_not_taken() {
+    let mut client = FakeDevice::client(|_| answers("ok"));
+    client.ask(&PlainCommand::Stream(5, SETPOINT)).unwrap();
+    client.link().sends(1, &line(5));
+    client.link().sends(2, "T 10 armed 33.00000 33.0123 -");
+    client.link().sends(3, "T 15 armed 33.00000 -");
+    client.wait(Duration::from_millis(5)).unwrap();
+    let taken = client.next_telemetry(Duration::ZERO).unwrap().unwrap();
+    assert_eq!(taken.telemetry.tick, 15);
+    assert!(client.next_telemetry(Duration::ZERO).unwrap().is_none());
+    assert_eq!(client.counts().damaged, 2);
+}
+
+#[test]
+fn a_line_that_waited_while_its_fields_were_changed_is_dropped() {
+    let mut client = FakeDevice::client(|line| match line {
+        "" => Vec::new(),
+        _ => answers("ok"),
+    });
+    client.ask(&PlainCommand::Stream(5, SETPOINT)).unwrap();
+    for tick in (100u32..200).step_by(5) {
+        let after_ms = u64::from(tick) - 100;
+        (client.link()).sends(after_ms, &format!("T {tick} armed 33.00000 -"));
+    }
+    client.wait(Duration::from_millis(101)).unwrap();
+    while client.next_telemetry(Duration::ZERO).unwrap().is_some() {}
+    client.ask(&PlainCommand::Stream(5, DISPLAY)).unwrap();
+    // Those of the old kind that the answer has overtaken, received late because nobody waited.
+    for tick in [195, 200] {
+        (client.link()).sends(50, &format!("T {tick} armed 33.00000 -"));
+    }
+    for tick in [230, 235] {
+        (client.link()).sends(50, &format!("T {tick} armed 32.9000 -"));
+    }
+    client.wait(Duration::from_millis(60)).unwrap();
+    let mut taken = Vec::new();
+    while let Some(line) = client.next_telemetry(Duration::ZERO).unwrap() {
+        let Telemetry {
+            tick,
+            setpoint_c,
+            display_c,
+            ..
+        } = line.telemetry;
+        taken.push((tick, setpoint_c, display_c));
+    }
+    assert_eq!(taken, [(230, None, Some(32.9)), (235, None, Some(32.9))]);
+    let counts = client.counts();
+    assert_eq!((counts.dropped, counts.damaged, counts.lost), (2, 0, 0));
 }

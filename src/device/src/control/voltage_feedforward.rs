@@ -33,6 +33,18 @@ const DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS: u32 = 10;
 /// lost = V_dead (I - from) / (dead_time_a / 2), from 0 to V_dead      from = ripple_a w (1 - w) - dead_time_a
 /// ```
 ///
+/// A current that the Seebeck voltage drives against the bridge's voltage, as of a display that is warmer than its sink and
+/// cools slowly, is opposite to the pulses. The dead times then lengthen the pulses, and even the shortest pulse applies
+/// the voltage
+///
+/// ```text
+/// shortest = -min(V_dead, |S (T_hot - T_cold)| k / (R + k))      k = V_dead / (dead_time_a / 2)
+/// ```
+///
+/// because the inductor's current rests at zero for a part of the dead time while `I` is small. No duty cycle gives a
+/// voltage between that and zero. Ticks without pulses and ticks with short pulses then take turns, so that their mean is
+/// the needed voltage.
+///
 /// Here `w` is the fraction of the PWM period that a pulse takes, `I` is positive in the direction of the pulses,
 /// `dead_time_a` is the change of the inductor's current during one dead time, A, and `ripple_a w (1 - w)` is half of
 /// the peak-to-peak ripple of the inductor's current, A.
@@ -58,6 +70,10 @@ pub struct VoltageFeedforward {
     /// Rise of the dead-time loss per ampere of the module's current, in the range of currents in which the loss rises
     /// from zero to its largest value, as a fraction of the supply voltage, 1/A.
     dead_time_per_a: VoltagePerSupply,
+    /// Part of the Seebeck voltage that short pulses apply against the current that it drives, `k / (R + k)`, from 0 to 1.
+    counter_voltage_ratio: VoltagePerSupply,
+    /// Sum of needed minus applied voltage (first-order sigma-delta), per supply voltage; zero while pulses suffice.
+    voltage_deficit: VoltagePerSupply,
 }
 
 impl VoltageFeedforward {
@@ -67,6 +83,8 @@ impl VoltageFeedforward {
     pub fn new(module: &PeltierModule) -> Self {
         let resistance = |ohm: f64| to_fixed(ohm / module.supply_v);
         let dead_time = module.dead_time_v / module.supply_v;
+        let dead_time_ohm = 2.0 * module.dead_time_v / module.dead_time_a;
+        let path_ohm = module.legs_ohm + module.leads_ohm;
         Self {
             per_ampere: resistance(module.legs_ohm + module.leads_ohm),
             rise_per_k: resistance(module.legs_ohm * RESISTIVITY_RISE_PER_K),
@@ -75,21 +93,35 @@ impl VoltageFeedforward {
             ripple_a: to_fixed(module.ripple_a),
             dead_time_a: to_fixed(module.dead_time_a),
             dead_time_per_a: to_fixed(2.0 * dead_time / module.dead_time_a),
+            counter_voltage_ratio: to_fixed(dead_time_ohm / (dead_time_ohm + path_ohm)),
+            voltage_deficit: VoltagePerSupply::ZERO,
         }
     }
 
     /// Duty cycle of the bridge, positive for cooling, that drives `current` through the module while its legs have the
     /// temperatures `legs`. Sum of resistive voltage, Seebeck voltage and dead-time loss, divided by the supply voltage
-    /// and limited to ±0.9.
+    /// and limited to ±0.9. To be called once in each tick that drives the bridge, because ticks with and without pulses
+    /// may have to take turns.
     #[must_use]
-    pub fn duty_for_current(&self, current: SafeCurrent, legs: &LegTemperatures) -> Duty {
+    pub fn duty_for_current(&mut self, current: SafeCurrent, legs: &LegTemperatures) -> Duty {
         let current = current.ampere();
         let difference: Celsius = legs.hot.saturating_sub(legs.cold);
         let above_data_sheet = legs.mean.saturating_sub(DATA_SHEET_TEMPERATURE);
         let rise = product(above_data_sheet, self.rise_per_k);
         let resistive: VoltagePerSupply = product(current, self.per_ampere.saturating_add(rise));
-        let needed = resistive.saturating_add(product(difference, self.per_k));
-        let voltage = if needed < 0 {
+        let seebeck: VoltagePerSupply = product(difference, self.per_k);
+        let needed = resistive.saturating_add(seebeck);
+        let opposed = if (needed < 0) == (current < 0) {
+            None
+        } else {
+            self.opposed_voltage(needed, seebeck)
+        };
+        if opposed.is_none() {
+            self.voltage_deficit = VoltagePerSupply::ZERO;
+        }
+        let voltage = if let Some(opposed) = opposed {
+            opposed
+        } else if needed < 0 {
             needed.saturating_sub(
                 self.dead_time_loss(needed.saturating_neg(), current.saturating_neg()),
             )
@@ -103,6 +135,31 @@ impl VoltageFeedforward {
         Duty::saturating(I1F15::from_bits(
             (fraction.to_bits() >> (VoltagePerSupply::FRAC_NBITS - I1F15::FRAC_NBITS)) as i16,
         ))
+    }
+
+    /// Voltage to command in this tick, as a fraction of the supply voltage, if `needed` opposes the current and is weaker
+    /// than the voltage of the shortest pulses; else `None`. `seebeck` is the Seebeck voltage, which drives the current.
+    #[inline(never)]
+    fn opposed_voltage(
+        &mut self,
+        needed: VoltagePerSupply,
+        seebeck: VoltagePerSupply,
+    ) -> Option<VoltagePerSupply> {
+        let magnitude = |voltage: VoltagePerSupply| voltage.max(voltage.saturating_neg());
+        let part: VoltagePerSupply = product(magnitude(seebeck), self.counter_voltage_ratio);
+        let shortest = part.min(self.dead_time);
+        let wanted = magnitude(needed);
+        if wanted >= shortest {
+            return None;
+        }
+        self.voltage_deficit = self.voltage_deficit.saturating_add(wanted);
+        if self.voltage_deficit <= shortest >> 1u32 {
+            return Some(VoltagePerSupply::ZERO);
+        }
+        self.voltage_deficit = self.voltage_deficit.saturating_sub(shortest);
+        // A pulse of half a dead time, which the dead time lengthens to the same voltage as any other pulse so short.
+        let pulse = self.dead_time >> 1u32;
+        Some(if needed < 0 { -pulse } else { pulse })
     }
 
     /// Voltage that the bridge loses in its dead times, as a fraction of the supply voltage, from zero to the largest
@@ -152,7 +209,7 @@ mod tests {
     /// time: corners of the straight lines, and currents far from them.
     #[test]
     fn the_duty_compensates_the_loss_of_the_dead_times() {
-        let voltage = VoltageFeedforward::new(&Settings::default().module);
+        let mut voltage = VoltageFeedforward::new(&Settings::default().module);
         for (width, current_a, lost_v) in [
             (0.1, 0.401, 0.0),
             (0.1, 0.516, 0.212),
@@ -179,12 +236,12 @@ mod tests {
     /// Legs 10 K warmer have 4.9 % more resistance.
     #[test]
     fn warm_legs_need_more_voltage() {
-        let voltage = VoltageFeedforward::new(&Settings::default().module);
+        let mut voltage = VoltageFeedforward::new(&Settings::default().module);
         let warm = LegTemperatures {
             mean: DATA_SHEET_TEMPERATURE + Celsius::lit("10"),
             ..legs(0.0)
         };
-        let part = |legs| {
+        let mut part = |legs| {
             voltage
                 .duty_for_current(SafeCurrent::saturating(Current::lit("4")), legs)
                 .fraction()

@@ -7,6 +7,7 @@ use contact_model::fixed_point::{
 use fixed::types::{I2F30, I10F22};
 
 use super::Watt;
+use super::assumed_skin::AssumedSkin;
 use super::force_means::{ForceChange, ForceMeans};
 use super::skin_state::{Bodies, SkinState};
 
@@ -43,7 +44,8 @@ const SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2: I2F30 = I2F30::from_bits(39_728_000
 /// computed from these initial temperatures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PreContactTemperatures {
-    /// Filtered temperature, °C, of the skin beside the area that touches the display, where the skin's thermistor is.
+    /// Filtered temperature, °C, of the skin beside the area that touches the display, where the skin's thermistor is;
+    /// while the host assumes a skin, the temperature that it assumes.
     pub skin: Celsius,
     /// Filtered temperature of the room, °C. It is also the initial temperature of the presented object if the host has
     /// not set one.
@@ -52,7 +54,7 @@ pub struct PreContactTemperatures {
 
 /// Updates the filtered temperature `state` of skin or room by the reading `input` of one tick, all in °C. The time
 /// constant is 2^[`SKIN_AND_ROOM_FILTER_SHIFT`] ticks of 1 ms (0.26 s).
-fn filter_skin_or_room(state: Celsius, input: Celsius) -> Celsius {
+pub(super) fn filter_skin_or_room(state: Celsius, input: Celsius) -> Celsius {
     state.saturating_add(input.saturating_sub(state) >> SKIN_AND_ROOM_FILTER_SHIFT)
 }
 
@@ -235,6 +237,9 @@ pub struct FingerEstimator {
     /// Thermal state of the skin. Its output is the cooling of the skin's surface, K, by the heat that the skin has
     /// given to the display: positive where the skin is colder than before contact. Decays to zero after lifting.
     skin_state_on_display: SkinState,
+    /// The skin that the host assumes for set-points, to which `before_contact` and `skin_state_on_display` then belong,
+    /// and the sensed skin beside it; `None` without an assumption.
+    assumed_skin: Option<AssumedSkin>,
 }
 
 impl FingerEstimator {
@@ -254,9 +259,14 @@ impl FingerEstimator {
         landed_ticks: u32,
     ) {
         let recovered = self.lifted_ticks >= SKIN_RECOVERY_TICKS;
+        let is_undisturbed = touch.is_none() && recovered;
+        let skin = match &mut self.assumed_skin {
+            None => skin,
+            Some(assumed) => assumed.update_by_reading(skin, is_undisturbed),
+        };
         self.before_contact = Some(match self.before_contact {
             None => PreContactTemperatures { skin, room },
-            Some(before) if touch.is_some() || !recovered => before,
+            Some(before) if !is_undisturbed => before,
             Some(before) => PreContactTemperatures {
                 skin: filter_skin_or_room(before.skin, skin),
                 room: filter_skin_or_room(before.room, room),
@@ -279,12 +289,38 @@ impl FingerEstimator {
         };
     }
 
+    /// From now on takes `assumed`, °C, for the temperature of the skin before contact, also during a contact; the
+    /// cooling by the contact so far stays. The heat into the display remains that of the sensed skin. With `None` all
+    /// estimates become those without an assumption, also during a contact.
+    pub fn assume_skin(&mut self, assumed: Option<Celsius>) {
+        let skin = match assumed {
+            Some(temperature) => {
+                let sensed = AssumedSkin {
+                    temperature,
+                    sensed: self.before_contact.map(|before| before.skin),
+                    sensed_state: self.skin_state_on_display,
+                };
+                self.assumed_skin.get_or_insert(sensed).temperature = temperature;
+                Some(temperature)
+            }
+            None => self.assumed_skin.take().and_then(|assumed| {
+                self.skin_state_on_display = assumed.sensed_state;
+                assumed.sensed
+            }),
+        };
+        if let (Some(before), Some(skin)) = (&mut self.before_contact, skin) {
+            before.skin = skin;
+        }
+    }
+
     /// Discards the temperatures before contact, the contact, and the cooling of the skin; the next call of
-    /// [`Self::update_by_readings`] starts from its readings. Called in each tick whose readings are invalid or in
-    /// which a fault detector finds a fault, because such a tick does not update the estimates, and a landing or
-    /// lifting of the finger would be missed.
+    /// [`Self::update_by_readings`] starts from its readings. An assumed temperature of the skin stays. Called in each
+    /// tick whose readings are invalid or in which a fault detector finds a fault, because such a tick does not update
+    /// the estimates, and a landing or lifting of the finger would be missed.
     pub fn invalidate(&mut self) {
+        let assumed = self.assumed_skin.as_ref().map(|skin| skin.temperature);
         *self = Self::default();
+        self.assume_skin(assumed);
     }
 
     /// Filtered temperatures of skin and room, °C: those before the present or last contact, or, once no finger has
@@ -321,6 +357,9 @@ impl FingerEstimator {
     /// Makes the skin's tissue uniform, as if it had recovered, because another tissue is assumed from now on.
     pub fn forget_tissue_history(&mut self) {
         self.skin_state_on_display.forget_tissue_history();
+        if let Some(assumed) = &mut self.assumed_skin {
+            assumed.sensed_state.forget_tissue_history();
+        }
     }
 
     /// Discards the contact conductances of the present contact, if there is one, because the host presents another
@@ -333,37 +372,41 @@ impl FingerEstimator {
 
     /// Advances the thermal state of the skin by one tick, in contact with a display whose surface has the temperature
     /// `surface`, °C, or without contact. Returns the heat flow from the finger into the display, W: negative if the
-    /// display is warmer than the skin's surface, 0 without contact. Computes the contact conductances again if the
-    /// mean force has changed by more than 1/1024. Of `pair` only the properties of skin and display matter here, so
-    /// the caller may give a pair with any object.
+    /// display is warmer than the skin's surface, 0 without contact. It is that of the sensed skin, also while another
+    /// one is assumed. Computes the contact conductances again if the mean force has changed by more than 1/1024. Of
+    /// `pair` only the properties of skin and display matter here, so the caller may give a pair with any object.
     pub fn step_skin_heat_flow(
         &mut self,
         pair: &ContactPair,
         bodies: &Bodies<'_>,
         surface: Celsius,
     ) -> Watt {
-        let Some(PreContactTemperatures { skin, room }) = self.before_contact else {
+        let Some(before) = self.before_contact else {
             return Watt::ZERO;
         };
-        let skin_above_room = skin.saturating_sub(room);
-        let Some(contact) = &mut self.contact else {
-            (self.skin_state_on_display).step(None, bodies, skin_above_room);
-            return Watt::ZERO;
-        };
-        let force = contact.force.long_mean();
-        let conductances = match &mut contact.conductances {
-            Some(conductances) if conductances.are_valid_for_force(force) => conductances,
-            outdated => {
-                let bodies = (!bodies.are_half_spaces).then_some(bodies);
-                outdated.insert(ContactConductances::new(pair, bodies, force))
+        let (force, display) = match &mut self.contact {
+            None => (Force::ZERO, None),
+            Some(contact) => {
+                let force = contact.force.long_mean();
+                let conductances = match &mut contact.conductances {
+                    Some(conductances) if conductances.are_valid_for_force(force) => conductances,
+                    outdated => {
+                        let bodies = (!bodies.are_half_spaces).then_some(bodies);
+                        outdated.insert(ContactConductances::new(pair, bodies, force))
+                    }
+                };
+                (force, Some(&conductances.display))
             }
         };
-        let above_display = skin.saturating_sub(surface);
-        let cooling = self.skin_state_on_display.free_response();
-        let scaled_flux =
-            (conductances.display).scaled_flux_by(above_display.saturating_sub(cooling));
-        (self.skin_state_on_display).step(Some(scaled_flux), bodies, skin_above_room);
+        let mut scaled_flux =
+            (self.skin_state_on_display).step_on_display(display, bodies, &before, surface);
+        if let Some(assumed) = &mut self.assumed_skin {
+            scaled_flux = assumed.step_sensed_skin(display, bodies, before.room, surface);
+        }
         let flux_w_mm2: I10F22 = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
         saturating_product(flux_w_mm2, contact_area(force))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,7 @@
 //! Estimates of what no thermistor measures: temperatures of the display's surface and of the module's legs, the skin's
 //! temperature under the finger, and the contact.
 
+mod assumed_skin;
 mod finger;
 mod force_means;
 mod plate_model;

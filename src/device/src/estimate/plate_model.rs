@@ -73,9 +73,9 @@ const CLASS_RELAXATIONS: [RelaxationParameters; RELAXATION_COUNT] = [
 const FINGER_FEEDTHROUGH_K_W: f64 = 0.023_80;
 /// Rise of the legs' mean temperature above the mean of their two ends, K per watt of Joule heat, in the steady state.
 const LEG_MEAN_RISE_PER_JOULE_HEAT_K_W: I4F28 = I4F28::lit("0.292");
-/// Time constant, s, with which the rise of the legs' mean temperature ([`LEG_MEAN_RISE_PER_JOULE_HEAT_K_W`]) follows
-/// the Joule heat.
-const LEG_HEATING_TIME_CONSTANT_S: f64 = 0.186;
+/// Time constant, s, with which the legs' mean temperature follows the temperatures of their ends and the Joule heat
+/// ([`LEG_MEAN_RISE_PER_JOULE_HEAT_K_W`]).
+const LEG_MEAN_TIME_CONSTANT_S: f64 = 0.186;
 /// Thermal resistance, K/W, from the hot ends of the legs through the hot plate to the sink.
 const HOT_SIDE_THERMAL_RESISTANCE_K_W: I4F28 = I4F28::lit("0.0285");
 const ZERO_C_IN_K: Celsius = Celsius::lit("273.15");
@@ -323,9 +323,10 @@ pub struct PlateModel {
     horizon_gains: HeatInputGains<I6F26>,
     /// Immediate rise of this tile's surface temperature, K, per watt of heat from the finger, within one tick.
     finger_feedthrough: I4F28,
-    /// Rise of the legs' mean temperature above the mean of their two ends, K: proportional to the Joule heat, with a
-    /// first-order lag of [`LEG_HEATING_TIME_CONSTANT_S`].
-    leg_heating: LowPass,
+    /// Mean temperature of the legs, °C: the mean of their two ends plus a rise in proportion to the Joule heat, with a
+    /// first-order lag of [`LEG_MEAN_TIME_CONSTANT_S`]. Without the lag a ramp of 5 K/s would make the resistance 0.3 %
+    /// wrong.
+    leg_mean: LowPass,
     /// Temperature of the leg ends at the sink, °C, after the last step of the model.
     hot: Celsius,
     surface: Celsius,
@@ -367,9 +368,7 @@ impl PlateModel {
             relaxations: relaxations.map(FixedPointRelaxation::new),
             horizon_gains: HeatInputGains::new(horizon_gains),
             finger_feedthrough: to_fixed(ratios.finger * FINGER_FEEDTHROUGH_K_W),
-            leg_heating: LowPass::new(Coefficient::from_time_constant_s(
-                LEG_HEATING_TIME_CONSTANT_S,
-            )),
+            leg_mean: LowPass::new(Coefficient::from_time_constant_s(LEG_MEAN_TIME_CONSTANT_S)),
             hot: DATA_SHEET_TEMPERATURE,
             surface: DATA_SHEET_TEMPERATURE,
             seebeck: LinearInLegTemperature::new(module.seebeck_v_k, SEEBECK_RISE_PER_K),
@@ -389,8 +388,9 @@ impl PlateModel {
         finger: Watt,
         sink: Celsius,
     ) -> PlateInputs {
-        self.leg_heating.set_output(Celsius::ZERO);
         (self.hot, self.surface) = (sink, surface);
+        self.leg_mean
+            .set_output(LegTemperatures::between_display_and_sink(surface, sink).mean);
         let inputs = self.inputs_of_tick(current, finger, sink);
         let mut remainder = to_model_temperature(surface)
             .saturating_sub(product(inputs.finger, self.finger_feedthrough));
@@ -413,7 +413,7 @@ impl PlateModel {
         for (relaxation, previous) in self.relaxations.iter_mut().zip(&previous.relaxations) {
             relaxation.state = previous.state;
         }
-        self.leg_heating = previous.leg_heating;
+        self.leg_mean = previous.leg_mean;
         (self.hot, self.surface) = (previous.hot, previous.surface);
     }
 
@@ -436,12 +436,10 @@ impl PlateModel {
     /// Modelled temperatures of the legs' two ends and their mean, °C, after the last step of the model.
     #[must_use]
     pub fn leg_end_and_mean_temperatures(&self) -> LegTemperatures {
-        let LegTemperatures { cold, hot, mean } =
-            LegTemperatures::between_display_and_sink(self.surface, self.hot);
         LegTemperatures {
-            cold,
-            hot,
-            mean: mean.saturating_add(self.leg_heating.output()),
+            cold: self.surface,
+            hot: self.hot,
+            mean: self.leg_mean.output(),
         }
     }
 
@@ -452,9 +450,7 @@ impl PlateModel {
     #[must_use]
     #[inline(always)]
     pub fn inputs_of_tick(&self, current: Current, finger: Watt, sink: Celsius) -> PlateInputs {
-        let above_data_sheet = self
-            .leg_end_and_mean_temperatures()
-            .mean
+        let above_data_sheet = (self.leg_mean.output())
             .saturating_sub(DATA_SHEET_TEMPERATURE)
             .clamp(
                 -LEG_DEVIATION_FROM_27_C_MAX_MAGNITUDE,
@@ -518,8 +514,10 @@ impl PlateModel {
             surface += relaxation.state_temperature();
         }
         self.surface = to_celsius(surface);
-        self.leg_heating
-            .update_by_input(product(inputs.joule, LEG_MEAN_RISE_PER_JOULE_HEAT_K_W));
+        let rise: Celsius = product(inputs.joule, LEG_MEAN_RISE_PER_JOULE_HEAT_K_W);
+        let between = LegTemperatures::between_display_and_sink(self.surface, self.hot);
+        self.leg_mean
+            .update_by_input(between.mean.saturating_add(rise));
         let heat_out = inputs.joule.saturating_add(inputs.pumped);
         let hot_side_rise = product(heat_out, HOT_SIDE_THERMAL_RESISTANCE_K_W);
         self.hot = inputs.sink.saturating_add(hot_side_rise);

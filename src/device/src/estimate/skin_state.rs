@@ -1,9 +1,11 @@
 //! Thermal state of the skin: the thesis's half-space, or the tissue of another finger.
 
 use contact_model::fixed_point::{
-    Celsius, FingerBody, HalfSpace, ScaledBody, TissueState, product,
+    Celsius, ContactConductance, FingerBody, HalfSpace, ScaledBody, TissueState, product,
 };
 use fixed::types::U16F16;
+
+use super::PreContactTemperatures;
 
 /// Assumed finger and presented object. Where they are not both half-spaces, the thesis's equations do not hold, and
 /// finger and object are each followed by relaxations of their own.
@@ -57,6 +59,26 @@ impl SkinState {
         } else if let Some(state) = self.half_space() {
             state.step(into_object.unwrap_or(Celsius::ZERO));
         }
+    }
+
+    /// Advances the skin by one tick in contact with a display whose surface has the temperature `surface`, °C, by the
+    /// conductance `display`, or without contact for `None`. Returns the scaled flux into the display, K, 0 without
+    /// contact.
+    #[inline(always)]
+    pub fn step_on_display(
+        &mut self,
+        display: Option<&ContactConductance>,
+        bodies: &Bodies<'_>,
+        before: &PreContactTemperatures,
+        surface: Celsius,
+    ) -> Celsius {
+        let skin_above_room = before.skin.saturating_sub(before.room);
+        let scaled_flux = display.map(|conductance| {
+            let above_display = before.skin.saturating_sub(surface);
+            conductance.scaled_flux_by(above_display.saturating_sub(self.free_response()))
+        });
+        self.step(scaled_flux, bodies, skin_above_room);
+        scaled_flux.unwrap_or(Celsius::ZERO)
     }
 
     /// [`Self::step`] of a finger that is no half-space, apart from the code of the thesis's.

@@ -147,6 +147,7 @@ impl AbortReason {
 /// Phase of an identification. `Settling`, `Baseline`, `Pulses` and `Done` follow each other in this order. An
 /// identification that ends early changes from `Settling`, `Baseline` or `Pulses` to `Aborted`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
 enum IdentificationPhase {
     /// The PI loop brings the display to the operating point, for `ticks` ticks of 1 ms so far. `near` counts
     /// the ticks in a row, up to the present one, in which the display's reading was within 0.06 K of it.
@@ -240,8 +241,8 @@ impl Identification {
     }
 
     /// Runs one tick of the identification, and returns the current to demand in this tick, A (positive cools). During
-    /// the pulses the tick is added to `equations`, which must be empty when the identification begins. `touching` is
-    /// true while a finger touches the display, which ends the identification early.
+    /// the pulses the tick is added to `equations`, which are emptied when the pulses begin. `touching` is true while a
+    /// finger touches the display, which ends the identification early.
     ///
     /// `None` in the tick that ends the identification early and in all later ticks; but in the tick that ends it with
     /// [`AbortReason::NotSettled`], still the current of the PI loop.
@@ -304,6 +305,8 @@ impl Identification {
             IdentificationPhase::Baseline { .. } => {
                 self.baseline_reading /= i64::from(TICKS_PER_BASELINE_HALF);
                 self.baseline_measured /= i64::from(TICKS_PER_BASELINE_HALF);
+                // Here, and not in the command, which locks out the tick of the next finger.
+                *equations = NormalEquationAccumulator::default();
                 self.phase = IdentificationPhase::Pulses { pulse: 0, ticks: 0 };
                 return Some(self.baseline_current_plus_eighths(0));
             }

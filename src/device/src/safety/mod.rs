@@ -67,7 +67,7 @@ pub use fault_latch::FaultLatch;
 pub use self_test::{SelfTest, SelfTestStep};
 pub use self_test_report::{ComparatorSideReport, SelfTestReport, SelfTestResult, SideLine};
 pub use setpoint::Setpoint;
-pub use thermal_dose::ThermalDose;
+pub use thermal_dose::{PredictedDose, ThermalDose};
 pub use tick_rate::TickRateMonitor;
 pub use trip_cause::TripCause;
 pub use validate_readings::{ValidReadings, validate_readings};

@@ -36,6 +36,43 @@ pub struct ThermalDose {
     ticks: u16,
 }
 
+/// Thermal dose that something would give, in the units of [`ThermalDose`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PredictedDose(u32);
+
+impl PredictedDose {
+    /// Smallest dose that trips, ms at 43 °C.
+    pub const LIMIT_MS: u32 = DOSE_LIMIT_TICKS;
+
+    /// A dose in units of 2^-8 ms at 43 °C.
+    #[must_use]
+    pub const fn from_sum(sum: u32) -> Self {
+        Self(sum)
+    }
+
+    /// This dose several times, on top of one that was taken before.
+    #[must_use]
+    pub const fn repeated_on_top_of(self, times: u16, before: &ThermalDose) -> Self {
+        Self(
+            self.0
+                .saturating_mul(times as u32)
+                .saturating_add(before.sum),
+        )
+    }
+
+    /// Whether the station would trip by [`Fault::Dose`].
+    #[must_use]
+    pub const fn reaches_limit(self) -> bool {
+        self.milliseconds_at_43() >= DOSE_LIMIT_TICKS
+    }
+
+    /// The dose, ms at 43 °C.
+    #[must_use]
+    pub const fn milliseconds_at_43(self) -> u32 {
+        self.0 >> 8
+    }
+}
+
 impl ThermalDose {
     /// The dose in units of 2^-8 ms at 43 °C, as one 32-bit word, in which the board keeps it in RAM through a reset.
     #[must_use]

@@ -6,7 +6,7 @@ use crate::command::{Command, Refused, Reply, Status};
 use crate::identification::Identification;
 use crate::safety::{SelfTestReport, SelfTestResult};
 use crate::sense::ThermistorAverages;
-use crate::temperature_hold::TemperatureHold;
+use crate::stimulus::Stimulus;
 
 impl Station {
     /// Executes a command of the host between two ticks, in bounded and short time; its effect begins in the next tick.
@@ -15,7 +15,7 @@ impl Station {
     /// Why the station's state does not permit the command; nothing has changed then. One exception: if the board has
     /// raised a second fault while a first one was latched, `clear` clears the first, trips the station by the second,
     /// and returns the second as [`Refused::StillFaulty`].
-    pub fn execute(&mut self, command: &Command) -> Result<Reply, Refused> {
+    pub fn execute(&mut self, command: &Command<'_>) -> Result<Reply, Refused> {
         match *command {
             Command::Status => return Ok(Reply::Status(self.status())),
             Command::Cause => return Ok(Reply::Cause(self.latch.last_trip_cause().copied())),
@@ -25,7 +25,13 @@ impl Station {
             Command::Average(thermistor) => return self.thermistor_average(thermistor),
             Command::NormalEquation(row) => return self.normal_equation_row(row),
             Command::Law(Some(law)) => self.controller.select_law(law),
-            Command::Stream { interval_ms } => {
+            Command::ReportEvents(on) => self.events.switch_reports(on),
+            Command::TriggerOutput(kinds) => self.events.marked = kinds,
+            Command::Stream {
+                interval_ms,
+                fields,
+            } => {
+                self.telemetry_fields = fields;
                 self.telemetry_ticks = interval_ms * (TICK_HZ / 1000);
             }
             Command::MaterialProperties => {
@@ -38,7 +44,7 @@ impl Station {
             Command::Finger(Some(finger)) => {
                 let before = self.object.assumed_finger();
                 if finger != before {
-                    if finger.body().tissue != before.body().tissue {
+                    if finger.is_layered() != before.is_layered() {
                         self.estimator.finger.forget_tissue_history();
                     }
                     self.object.choose_finger(finger);
@@ -64,13 +70,12 @@ impl Station {
                 self.object.mode = mode;
             }
             Command::Arm => self.execute_arm_by_self_test_if_off()?,
-            Command::Hold(setpoint) => {
-                self.require_armed("hold")?;
-                self.identified.outcome = None;
-                self.state = State::Armed(match self.last.readings.display {
-                    Ok(reading) => ArmedTask::Hold(TemperatureHold::new(setpoint, reading)),
-                    Err(_) => ArmedTask::Neutral,
-                });
+            Command::Hold { target, rate_k_s } => self.execute_hold(target, rate_k_s)?,
+            Command::LoadCourse(part) => self.execute_load_course(part)?,
+            Command::Play(ref order) => self.execute_play(order)?,
+            Command::AssumeSkin(skin) => {
+                self.estimator.finger.assume_skin(skin);
+                self.contact_restart_is_due = true;
             }
             Command::Start => self.execute_start_presentation()?,
             // Never refused: the bridge is off afterwards.
@@ -117,11 +122,11 @@ impl Station {
         }
     }
 
-    /// Returns [`Refused::Presenting`] while an object is presented. For the commands that change parameters or
+    /// Returns [`Refused::Presenting`] while an object or a course is presented. For the commands that change parameters or
     /// calibration, because the finger would feel the change, and for the query of a thermistor's average, which the
     /// finger would disturb.
     fn require_no_object_presented(&self) -> Result<(), Refused> {
-        if self.state.is_presenting_object() {
+        if self.state.is_presenting_object() || self.state.is_presenting_course() {
             Err(Refused::Presenting)
         } else {
             Ok(())
@@ -191,7 +196,7 @@ impl Station {
             (State::SelfTest(_), _) => return Err(Refused::Testing),
             (_, None) => return Err(Refused::NoMaterial),
             (State::Preset | State::Contact, Some(_)) => return Err(Refused::AlreadyStarted),
-            (State::Armed(_), Some(_)) => {}
+            (State::Armed(_) | State::Stimulus(_), Some(_)) => {}
         }
         self.contact_restart_is_due = true;
         self.averages = ThermistorAverages::default();
@@ -216,16 +221,12 @@ impl Station {
         }
     }
 
-    fn require_armed(&self, command: &'static str) -> Result<(), Refused> {
-        match self.state {
-            State::Tripped(fault) => Err(Refused::Tripped(fault)),
-            State::Armed(_) => Ok(()),
-            _ => Err(Refused::NeedsArmed(command)),
-        }
-    }
-
     fn execute_tune_identification(&mut self) -> Result<(), Refused> {
-        self.require_armed("tune")?;
+        match self.state {
+            State::Tripped(fault) => return Err(Refused::Tripped(fault)),
+            State::Armed(_) | State::Stimulus(Stimulus::Hold(_)) => {}
+            _ => return Err(Refused::TuneNeedsArmed),
+        }
         if self.contact.touching() {
             return Err(Refused::Touched);
         }
@@ -233,8 +234,8 @@ impl Station {
             .last
             .readings
             .sink
-            .map_err(|_| Refused::NeedsArmed("tune"))?;
-        self.identified = super::IdentificationResult::default();
+            .map_err(|_| Refused::TuneNeedsArmed)?;
+        self.identified.outcome = None;
         self.state = State::Armed(ArmedTask::Identify(
             Identification::begin_at_sink_temperature(sink),
         ));

@@ -14,6 +14,7 @@
 
 mod chosen_object;
 mod execute_command;
+mod follow_stimulus;
 mod state;
 
 use contact_model::fixed_point::to_fixed;
@@ -26,6 +27,7 @@ use crate::drive::{BoardOutputs, ComparatorTest, Current, Drive, SafeCurrent};
 use crate::estimate::{
     Estimator, FingerEstimator, LegTemperatures, PlateEstimateBeforeReading, PlateObserver,
 };
+use crate::events::{DeviceEvent, EventReporter};
 use crate::identification::{AbortReason, NormalEquationAccumulator};
 use crate::reference::{Reference, ReferenceGenerator};
 use crate::safety::{
@@ -35,36 +37,44 @@ use crate::safety::{
 use crate::sense::{
     CalibrationTables, ContactDetector, Readings, SampleConverter, Samples, ThermistorAverages,
 };
-use crate::{StateName, Telemetry};
+use crate::stimulus::CourseMemory;
+use crate::{StateName, Telemetry, TelemetryFields};
 use chosen_object::ChosenObject;
 
 /// The control of one finger without its hardware. Takes the samples of each tick of 1 ms and returns what the bridge
 /// must do, and executes the host's commands between ticks. Independent of the stations of other fingers.
 #[derive(Clone, Debug)]
+// In this order, because a load reaches 4 KB from the start of the struct: the courses come last. A tick takes 40 instructions less.
+#[repr(C)]
 pub struct Station {
-    sensors: SampleConverter,
-    averages: ThermistorAverages,
-    contact: ContactDetector,
-    detectors: FaultDetectors,
-    latch: FaultLatch,
-    estimator: Estimator,
-    object: ChosenObject,
-    reference: ReferenceGenerator,
     /// Whether the next tick begins a new contact for a finger that already touches, because the host has chosen another
     /// object, finger or contact model, or `start` has presented the object. Done in the tick: it takes 7 us, for which a
     /// command would lock out the next finger's tick (`cargo test -p image-tests five_finger_locks`).
     contact_restart_is_due: bool,
-    controller: Controller,
-    voltage: VoltageFeedforward,
-    state: State,
-    /// What the last self-test has measured.
-    self_test_report: SelfTestReport,
-    identified: IdentificationResult,
+    /// Whether the last reference is one of the present state stimulus, if that is the state.
+    stimulus_has_reference: bool,
     /// Number of the last tick: ticks of 1 ms since the start of the program; wraps after 49 days.
     tick: u32,
     /// Ticks of 1 ms from one line of telemetry to the next; 0 while telemetry is off.
     telemetry_ticks: u32,
+    telemetry_fields: TelemetryFields,
+    latch: FaultLatch,
+    contact: ContactDetector,
     last: LastTickValues,
+    controller: Controller,
+    voltage: VoltageFeedforward,
+    state: State,
+    reference: ReferenceGenerator,
+    estimator: Estimator,
+    averages: ThermistorAverages,
+    detectors: FaultDetectors,
+    sensors: SampleConverter,
+    events: EventReporter,
+    object: ChosenObject,
+    identified: IdentificationResult,
+    /// What the last self-test has measured.
+    self_test_report: SelfTestReport,
+    courses: CourseMemory,
 }
 
 /// Normal equations and outcome of the last identification of the tile. The host can request them, unless the station
@@ -131,8 +141,12 @@ impl Station {
             state: State::Off,
             self_test_report: SelfTestReport::default(),
             identified: IdentificationResult::default(),
+            courses: CourseMemory::default(),
+            stimulus_has_reference: false,
             tick: 0,
             telemetry_ticks: 0,
+            telemetry_fields: TelemetryFields::ALL,
+            events: EventReporter::default(),
             last: LastTickValues {
                 samples: Samples::default(),
                 readings: Readings::ALL_OPEN,
@@ -300,12 +314,24 @@ impl Station {
         self.sensors
             .track_force_zero_unless_touching(samples, &self.contact);
         let touching = self.contact.touching();
-        self.apply_event(if touching { Event::Land } else { Event::Lift });
+        // The table is asked only in the states in which a touch changes something, which saves 30 instructions a tick.
+        match (&self.state, touching) {
+            (State::Preset, true) => {
+                self.apply_known_event(Event::Land);
+            }
+            (State::Contact, false) => {
+                self.apply_known_event(Event::Lift);
+            }
+            _ => {}
+        }
         let landed_ticks = if previously_touching {
             0
         } else {
             self.contact.detection_delay_ticks()
         };
+        if touching != previously_touching {
+            self.note_touch_change(touching, landed_ticks);
+        }
         let force = touching.then_some(valid.force);
         let pair = self.object.contact_pair();
         let bodies = self.object.bodies();
@@ -323,8 +349,8 @@ impl Station {
         let setpoint = match &mut self.state {
             State::Off | State::SelfTest(_) | State::Ready | State::Tripped(_) => return None,
             State::Armed(ArmedTask::Neutral) => finger.temperatures_before_contact()?.skin,
-            State::Armed(ArmedTask::Hold(hold)) => hold.next_setpoint().celsius(),
             State::Armed(ArmedTask::Identify(tile)) => tile.operating_point().celsius(),
+            State::Stimulus(_) => return self.reference_of_stimulus(estimate),
             State::Preset | State::Contact => {
                 let scene = self.object.presented_object_if_chosen()?;
                 let surface = estimate.previous_surface;
@@ -441,6 +467,7 @@ impl Station {
                 let outputs = BoardOutputs {
                     drive: Drive::On(self.voltage.duty_for_current(current, &previous_legs)),
                     comparator_test: ComparatorTest::None,
+                    trigger_output: self.events.next_trigger_output(),
                 };
                 (outputs, current.ampere())
             }
@@ -451,6 +478,7 @@ impl Station {
                 let outputs = BoardOutputs {
                     drive: Drive::Off,
                     comparator_test,
+                    trigger_output: self.events.next_trigger_output(),
                 };
                 (outputs, Current::ZERO)
             }
@@ -477,7 +505,15 @@ impl Station {
 
     /// Moves the station to the state that [`State::state_after`] gives for `event`, and ends an identification of the
     /// tile that is still running. Returns false, and does nothing, if the event has no effect in the present state.
-    fn apply_event(&mut self, event: Event) -> bool {
+    #[inline(never)]
+    fn apply_event(&mut self, event: Event<'_>) -> bool {
+        self.apply_known_event(event)
+    }
+
+    /// [`Self::apply_event`] for an event that the compiler knows: it then moves only the contents that the new state has, which
+    /// saves 200 cycles in the tick of a landing.
+    #[inline(always)]
+    fn apply_known_event(&mut self, event: Event<'_>) -> bool {
         let Some(state) = self.state.state_after(event) else {
             return false;
         };
@@ -579,6 +615,18 @@ impl Station {
             demand: *demanded,
             current: readings.current,
             evaluations: self.reference.erfcx_evaluations(),
+            fields: self.telemetry_fields,
         })
+    }
+
+    /// Whether an event was not fetched yet.
+    #[must_use]
+    pub fn has_event(&self) -> bool {
+        self.events.has_event()
+    }
+
+    /// The oldest event that was not fetched yet. `None` while events are not reported.
+    pub fn take_event(&mut self) -> Option<DeviceEvent> {
+        self.events.take()
     }
 }

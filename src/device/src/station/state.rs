@@ -3,10 +3,12 @@
 use crate::StateName;
 use crate::identification::Identification;
 use crate::safety::{Fault, SelfTest};
-use crate::temperature_hold::TemperatureHold;
+use crate::stimulus::Stimulus;
 
 /// State of one finger's station, with the data that exist only in that state.
+// Tags of words, also in the contents: after a tag of a byte the compiler moves the contents by bytes.
 #[derive(Clone, Debug)]
+#[repr(u32)]
 pub enum State {
     /// The bridge is off: after a start of the program without a trip, after `clear`, or after `abort` of the
     /// self-test. `arm` leads to the self-test.
@@ -18,13 +20,15 @@ pub enum State {
     /// armed at once.
     Ready,
     /// The bridge drives the display, and no object is presented. The [`ArmedTask`] says what the display does: stay at
-    /// skin temperature, hold a temperature, or be identified.
+    /// skin temperature, or be identified.
     Armed(ArmedTask),
     /// An object is presented and no finger touches the display, which waits at the preset: the temperature at which a
     /// contact with the object begins.
     Preset,
     /// An object is presented and a finger touches the display, whose temperature follows the contact model.
     Contact,
+    /// The display follows temperatures that the host prescribes, with or without a finger on it; no object is presented.
+    Stimulus(Stimulus),
     /// The bridge is off because of this fault, the first since the last `clear`. The bridge stays off until the host
     /// sends `clear` when no fault is present any more.
     Tripped(Fault),
@@ -32,13 +36,12 @@ pub enum State {
 
 /// What the display does while the station is armed, with the data that each task needs.
 #[derive(Clone, Debug)]
+#[repr(u32)]
 pub enum ArmedTask {
     /// Stay at the temperature of the finger's skin, so that the finger feels no object. That temperature is the
     /// filtered reading of the skin's thermistor, kept constant from landing until 2 s after lifting, and for 2 s after
     /// the estimates have started or restarted.
     Neutral,
-    /// Move the set-point by 1 K/s to a temperature that the host has chosen, and stay there.
-    Hold(TemperatureHold),
     /// Identify the tile: move to an operating point near the sink's temperature and apply current pulses there. Then
     /// stay at the operating point until a command, such as `arm`, or a fault ends this task. An identification that
     /// ends early changes the task to neutral.
@@ -49,20 +52,25 @@ pub enum ArmedTask {
 /// that lands or lifts, the passing of the self-test, or a fault.
 /// [`State::state_after`] is the table of the transitions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
-    /// The host has sent `arm`: leads from off to the self-test, and from ready, armed, preset and contact to armed, at
-    /// skin temperature.
+pub enum Event<'a> {
+    /// The host has sent `arm`: leads from off to the self-test, and from ready, armed, preset, contact and stimulus to
+    /// armed, at skin temperature.
     Arm,
     /// The self-test has passed: leads from the self-test to armed, at skin temperature.
     Pass,
-    /// The host has sent `start` in the state armed, and a material is chosen: leads to preset.
+    /// The host has sent `start` in the state armed or stimulus, and a material is chosen: leads to preset.
     Start,
+    /// The host has sent `hold`, `play` or `pulse`, which then says what the display does: leads from armed, preset,
+    /// contact and stimulus to stimulus.
+    Stimulate(&'a Stimulus),
+    /// A course has ended after which the display shall be neutral: leads from stimulus to armed.
+    EndNeutral,
     /// A finger touches the display; reported in every fault-free tick of a contact. Leads from preset to contact.
     Land,
     /// No finger touches the display; reported in every fault-free tick without contact. Leads from contact to preset.
     Lift,
     /// The host has sent `abort`, which switches the bridge off: leads from the self-test to off, and from armed,
-    /// preset and contact to ready. No effect in off, ready and tripped.
+    /// preset, contact and stimulus to ready. No effect in off, ready and tripped.
     Abort,
     /// The host has sent `clear`, and no fault is present any more: leads from tripped to off.
     Clear,
@@ -83,6 +91,7 @@ impl State {
             Self::Armed(_) => StateName::Armed,
             Self::Preset => StateName::Preset,
             Self::Contact => StateName::Contact,
+            Self::Stimulus(_) => StateName::Stimulus,
             Self::Tripped(fault) => StateName::Tripped(*fault),
         }
     }
@@ -90,7 +99,8 @@ impl State {
     /// The transition table: the state to which `event` leads from this state, with the initial data of the new state;
     /// `None` if the event has no effect here. docs/safety.md shows the same table, and a unit test compares the two.
     #[must_use]
-    pub fn state_after(&self, event: Event) -> Option<Self> {
+    #[inline(always)]
+    pub fn state_after(&self, event: Event<'_>) -> Option<Self> {
         Some(match (self, event) {
             (Self::Tripped(_), Event::Clear) => Self::Off,
             // The first fault stays latched.
@@ -99,12 +109,22 @@ impl State {
             (Self::Off, Event::Arm) => Self::SelfTest(SelfTest::default()),
             (Self::SelfTest(_), Event::Pass) => Self::Armed(ArmedTask::Neutral),
             (Self::SelfTest(_), Event::Abort) => Self::Off,
-            (Self::Ready | Self::Armed(_) | Self::Preset | Self::Contact, Event::Arm) => {
-                Self::Armed(ArmedTask::Neutral)
+            (
+                Self::Ready | Self::Armed(_) | Self::Preset | Self::Contact | Self::Stimulus(_),
+                Event::Arm,
+            )
+            | (Self::Stimulus(_), Event::EndNeutral) => Self::Armed(ArmedTask::Neutral),
+            (Self::Armed(_) | Self::Stimulus(_), Event::Start) | (Self::Contact, Event::Lift) => {
+                Self::Preset
             }
-            (Self::Armed(_), Event::Start) | (Self::Contact, Event::Lift) => Self::Preset,
             (Self::Preset, Event::Land) => Self::Contact,
-            (Self::Armed(_) | Self::Preset | Self::Contact, Event::Abort) => Self::Ready,
+            (
+                Self::Armed(_) | Self::Preset | Self::Contact | Self::Stimulus(_),
+                Event::Stimulate(stimulus),
+            ) => Self::Stimulus(*stimulus),
+            (Self::Armed(_) | Self::Preset | Self::Contact | Self::Stimulus(_), Event::Abort) => {
+                Self::Ready
+            }
             _ => return None,
         })
     }
@@ -114,6 +134,12 @@ impl State {
     #[must_use]
     pub const fn is_presenting_object(&self) -> bool {
         matches!(self, Self::Preset | Self::Contact)
+    }
+
+    /// Whether a course plays or waits to begin. What would disturb it is refused, as while an object is presented.
+    #[must_use]
+    pub const fn is_presenting_course(&self) -> bool {
+        matches!(self, Self::Stimulus(Stimulus::Wait(..) | Stimulus::Play(_)))
     }
 
     /// The fault that has tripped the station; `None` in every state other than tripped.

@@ -63,14 +63,38 @@ fn every_line_to_the_host_has_a_checksum_from_the_answer_to_on_until_the_answer_
         assert_eq!(line.send("checksum on"), "ok*04");
         assert_eq!(line.send("checksum on*2C"), "ok*04");
         assert_eq!(line.send("stream 20*3e"), "ok*04");
-        assert_eq!(line.send("stream 20"), "ok*04");
+        assert_eq!(
+            line.send("stream 20"),
+            "err checksum missing, the line has 3E; send the line again with it*74"
+        );
         assert_eq!(line.send("@2 abort*38"), "@2 ok*56");
         assert_eq!(
-            line.send("law x"),
+            line.send("law x*22"),
             "err unknown law 'x'; known: pi-10hz pi model*0C"
         );
         assert_eq!(line.written(&telemetry), "T 5 off - 24.0000*0B");
         assert_eq!(line.send("checksum off*42"), "ok");
+    }
+}
+
+#[test]
+fn abort_is_executed_without_a_checksum_and_nothing_else() {
+    let mut line = Line::<5>::new();
+    assert_eq!(line.send("checksum on"), "ok*04");
+    for (sent, answer) in [
+        ("abort", "ok"),
+        ("@2 abort", "@2 ok"),
+        (" abort ", "ok"),
+        ("@2  abort", "@2 ok"),
+        ("abort now", "err checksum missing"),
+        ("aborts", "err checksum missing"),
+        ("@7 abort", "err checksum missing"),
+        ("abort*00", "err checksum 00 is wrong"),
+        ("arm", "err checksum missing"),
+    ] {
+        let received = line.send(sent);
+        assert!(received.starts_with(answer), "{sent}: {received}");
+        assert_eq!(received.as_bytes()[received.len() - 3], b'*');
     }
 }
 

@@ -81,7 +81,7 @@ fn the_record_has_the_documented_layout() {
     assert_eq!(bytes.len(), 140);
     assert_eq!(bytes[..4], [1, 0, 1, 1]);
     // 28 zeros, then the nominal tile in millionths.
-    let tile = [2_910_000, 58_500, 103_000, 100_000, 16_000]
+    let tile = [2_957_000, 58_500, 103_000, 100_000, 16_000]
         .map(i32::to_le_bytes)
         .concat();
     assert_eq!(

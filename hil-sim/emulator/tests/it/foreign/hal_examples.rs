@@ -166,12 +166,9 @@ fn other_examples_end_at_the_register_that_is_not_modelled() {
         ),
         (
             "pwm-input",
-            "TIM8_CCMR1 (TIM CCMR.CCxS (input capture)) at 0x40010418",
+            "TIM8_CCMR1 (TIM CCMR.CCxS (capture from another channel's input, or from TRC)) at 0x40010418",
         ),
-        (
-            "qei",
-            "TIM2_CCMR1 (TIM CCMR.CCxS (input capture)) at 0x40000018",
-        ),
+        ("qei", "TIM2_SMCR (TIM SMCR (slave modes)) at 0x40000008"),
         (
             "rtc",
             "RCC_BDCR (oscillator and clock of the RTC) at 0x40023870",

@@ -92,6 +92,12 @@ named_enum! {
         HostSilent = "host-silent",
         /// The host sends as many lines as the serial line carries.
         HostFlood = "host-flood",
+        /// The host uploads courses and plays them without pause: in turn one that begins at 42 °C and one at 15 °C.
+        HostPlays = "host-plays",
+        /// The trigger input stays low below 0.5 and high from there on, which is a rising edge when it comes.
+        TriggerStuck = "trigger-stuck",
+        /// The trigger input has rising edges at a rate.
+        TriggerChatter = "trigger-chatter",
     }
 }
 
@@ -145,6 +151,8 @@ impl FaultKind {
             Self::FanOff => factor(10.0),
             Self::ChillerOff => required("°C", 5.0, 60.0),
             Self::SinkHot => required("°C", 0.0, 90.0),
+            Self::TriggerStuck => required("level", 0.0, 1.0),
+            Self::TriggerChatter => required("Hz", 1.0, 200e3),
             _ => None,
         }
     }

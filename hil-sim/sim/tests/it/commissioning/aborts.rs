@@ -104,7 +104,7 @@ fn hot_sink_ends_tuning_before_it_trips() {
 fn other_commands_end_tuning() {
     for (line, state) in [
         ("abort", STATE_OFF),
-        ("hold 30", "state=armed"),
+        ("hold 30", "state=stimulus"),
         // A reading that jumps would be taken for the tile's.
         ("set correction display 0.1 0 0", "state=armed"),
         ("set tile 2.9 0.06 0.1 0.1 0.01", "state=armed"),
@@ -163,7 +163,7 @@ fn what_does_not_fit_the_state_is_refused() {
     wait(&mut bench, 5);
     for (line, answer) in [
         ("tune", "err tune needs the state armed"),
-        ("hold 30", "err hold needs the state armed"),
+        ("hold 30", "err hold needs a driven display: arm first"),
         ("tune result", "err nothing was tuned since arm; tune first"),
         (
             "calibrate display 24",
@@ -224,7 +224,7 @@ fn corrections_cannot_hide_a_hot_display() {
     arm(&mut bench, None).expect("armed");
     bench.command("hold 42").expect("held");
     wait(&mut bench, 30_000);
-    assert!(ask(&mut bench, "state").starts_with("ok state=armed"));
+    assert!(ask(&mut bench, "state").starts_with("ok state=stimulus"));
     let display_c = bench.link().world().plant().display_c();
     assert!((43.0..45.0).contains(&display_c), "{display_c}");
 }

@@ -1,12 +1,16 @@
 use std::string::String;
 use std::{format, vec};
 
+use contact_model::fixed_point::Celsius;
+
 use super::*;
+use crate::stimulus::Hold;
 
 /// The table in the documentation is the one that the code has.
 #[test]
 fn the_documented_transitions_are_those_of_the_code() {
     let fault = Fault::Dose;
+    let hold = Hold::at(Celsius::lit("30"));
     let states = [
         State::Off,
         State::SelfTest(SelfTest::default()),
@@ -14,12 +18,15 @@ fn the_documented_transitions_are_those_of_the_code() {
         State::Armed(ArmedTask::Neutral),
         State::Preset,
         State::Contact,
+        State::Stimulus(Stimulus::Hold(hold)),
         State::Tripped(fault),
     ];
     let events = [
         ("`arm`", Event::Arm),
         ("self-test passes", Event::Pass),
         ("`start`", Event::Start),
+        ("`hold`, `play`", Event::Stimulate(&Stimulus::Hold(hold))),
+        ("course ends on neutral", Event::EndNeutral),
         ("finger lands", Event::Land),
         ("finger lifts", Event::Lift),
         ("`abort`", Event::Abort),
