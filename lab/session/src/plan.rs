@@ -1,7 +1,6 @@
 //! The trials of a session in their order: a pure function of session file, participant and seed.
 
 use std::collections::HashMap;
-use std::fmt;
 
 use contact_model::material::Material;
 
@@ -86,29 +85,29 @@ pub enum Presented {
     },
 }
 
-impl fmt::Display for Presented {
-    /// Its words in [`Plan::csv`].
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Presented {
+    /// Its cell in [`Plan::csv`].
+    fn cell(&self) -> String {
         match self {
-            Self::Nothing => write!(f, "nothing"),
-            Self::Sample { material } => write!(f, "sample {material}"),
+            Self::Nothing => "nothing".into(),
+            Self::Sample { material } => format!("sample {material}"),
             Self::Material {
                 device_finger,
                 material,
-            } => write!(f, "display {device_finger} {material}"),
+            } => format!("display {device_finger} {material}"),
             Self::Hold {
                 device_finger,
                 celsius,
-            } => write!(f, "hold {device_finger} {celsius}"),
+            } => format!("hold {device_finger} {celsius}"),
             Self::Pulses {
                 device_finger,
                 base_c,
-                departures_k: [first_k, second_k],
+                departures_k,
                 rate_k_s,
-            } => write!(
-                f,
-                "pulses {device_finger} {base_c} {first_k} {second_k} {rate_k_s}"
-            ),
+            } => {
+                let [first, second] = departures_k.map(Departure::word);
+                format!("pulses {device_finger} {base_c} {first} {second} {rate_k_s}")
+            }
         }
     }
 }
@@ -127,14 +126,13 @@ pub enum Departure {
     },
 }
 
-impl fmt::Display for Departure {
+impl Departure {
     /// Its word in [`Plan::csv`]: `x` is the level of the staircase.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn word(self) -> String {
         match self {
-            Self::Fixed(departure_k) => write!(f, "{departure_k}"),
-            Self::Staircase { standard_k, sign } => {
-                write!(f, "{standard_k}{}x", if *sign < 0.0 { '-' } else { '+' })
-            }
+            Self::Fixed(departure_k) => departure_k.to_string(),
+            Self::Staircase { standard_k, sign } if sign < 0.0 => format!("{standard_k}-x"),
+            Self::Staircase { standard_k, .. } => format!("{standard_k}+x"),
         }
     }
 }
@@ -228,7 +226,7 @@ impl PlannedTrial {
             self.block,
             u8::from(self.break_before)
         );
-        let presented = self.presented.iter().map(ToString::to_string);
+        let presented = self.presented.iter().map(Presented::cell);
         let force_n = self.target_force_n.map(|force_n| force_n.to_string());
         let staircase = self.staircase.and_then(|index| staircases.get(index));
         let last = [force_n, staircase.cloned(), self.correct.clone()];

@@ -20,7 +20,7 @@ pub struct Session {
     pub cite: String,
     /// What the participant reads before the first trial.
     pub instruction: String,
-    /// How displays are set up; `None` if no station presents a display. The device then only measures.
+    /// How displays are set up; `None`: no station presents a display, and the device only measures.
     pub device: Option<DeviceSetup>,
     /// Materials that this session describes, by name; [`Session::material`] finds them and the named ones.
     pub materials: Vec<(String, Material)>,

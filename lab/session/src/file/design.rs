@@ -198,6 +198,7 @@ pub(super) fn design<'a>(
         staircase_at,
     };
     same_factors(&parts)?;
+    balanced(&parts, &tables)?;
     Ok(parts)
 }
 
@@ -209,6 +210,40 @@ fn combinations(part: &Part) -> usize {
         .map_or(1, |pairs| pairs.combinations().len());
     let levels = part.factors.iter().map(|factor| factor.levels.len());
     levels.fold(pairs, usize::saturating_mul)
+}
+
+/// The levels of a balanced factor occur equally often only if the number of trials is a multiple of theirs.
+fn balanced(parts: &Parts<'_>, tables: &[Table<'_>]) -> Result<(), SessionError> {
+    for (part, table) in parts.design.parts.iter().zip(tables) {
+        let names = |factor: &&Factor| part.balance.contains(&factor.name);
+        for factor in part.random.iter().filter(names) {
+            let count = factor.levels.len();
+            let problem = |key: String, given: u32| {
+                format!(
+                    "{key} = {given} with {:?} in balance; allowed is a multiple of its {count} levels",
+                    factor.name
+                )
+            };
+            let of_part = |(staircase, _): &(&StaircaseRule, _)| staircase.part == part.name;
+            let staircases = parts.staircases.iter().zip(&parts.staircase_at);
+            let mut staircases = staircases.filter(of_part).peekable();
+            let repeats = staircases.peek().is_none();
+            if repeats && !(part.repeat as usize).is_multiple_of(count) {
+                let problem = problem(table.key(REPEAT.key), part.repeat);
+                let at = table.get(REPEAT.key).or(table.get("balance"));
+                return Err(at.map_or_else(|| table.error(&*problem), |at| at.error(&*problem)));
+            }
+            for (staircase, at) in staircases {
+                if !(staircase.trials_max as usize).is_multiple_of(count) {
+                    return Err(at.error(problem(
+                        at.key.clone() + ".trials_max",
+                        staircase.trials_max,
+                    )));
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 /// All staircases of a part must tell the levels of the same factors.
@@ -468,21 +503,6 @@ impl<'a> Reader<'a, '_> {
                 }
             }
         }
-        let unequal = part
-            .random
-            .iter()
-            .filter(|factor| part.balance.contains(&factor.name));
-        for factor in unequal {
-            if !(rule.trials_max as usize).is_multiple_of(factor.levels.len()) {
-                let problem = format!(
-                    "staircase.trials_max = {}; allowed is a multiple of the {} levels of {:?}, which is in balance",
-                    rule.trials_max,
-                    factor.levels.len(),
-                    factor.name
-                );
-                return Err(at("trials_max").error(problem));
-            }
-        }
         Ok(rule)
     }
 }
@@ -514,7 +534,7 @@ fn texts(levels: &[(String, Value<'_>)]) -> Vec<String> {
     levels.iter().map(|(level, _)| level.clone()).collect()
 }
 
-/// The factors that are balanced, and can be.
+/// The factors that are balanced.
 fn balance(table: &Table<'_>, part: &Part) -> Result<Vec<String>, SessionError> {
     let Some(list) = table.get("balance") else {
         return Ok(Vec::new());
@@ -524,19 +544,8 @@ fn balance(table: &Table<'_>, part: &Part) -> Result<Vec<String>, SessionError> 
     let mut balance: Vec<String> = Vec::new();
     for value in list.list(&allowed)? {
         let name = value.string(&allowed)?;
-        let Some(factor) = part.random.iter().find(|factor| factor.name == name) else {
+        if !names.contains(&name) {
             return Err(value.wrong(allowed));
-        };
-        // A staircase has its own number of trials.
-        let count = factor.levels.len();
-        if table.get("repeat").is_some() && !(part.repeat as usize).is_multiple_of(count) {
-            let problem = format!(
-                "{} = {} with {:?} in balance; allowed is a multiple of its {count} levels",
-                table.key("repeat"),
-                part.repeat,
-                factor.name
-            );
-            return Err(table.get("repeat").unwrap_or(&value).error(problem));
         }
         if !balance.iter().any(|known| known == name) {
             balance.push(name.into());

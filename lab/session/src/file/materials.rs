@@ -1,9 +1,7 @@
 //! Materials that a session describes, and names of materials.
 
 use contact_model::material::{self, MATERIALS, Material, Surface};
-use thermal_client::client::PlainCommand;
-use thermal_protocol::{CUSTOM_MATERIAL_WORD, Request};
-use thermal_settings::Settings;
+use thermal_protocol::CUSTOM_MATERIAL_WORD;
 
 use super::source::SessionError;
 use super::value::{LEVEL, Number, Value};
@@ -42,7 +40,7 @@ pub(super) fn materials(file: Option<&Value<'_>>) -> Result<Vec<(String, Materia
 fn properties(value: &Value<'_>) -> Result<Material, SessionError> {
     let table = value.table(&PROPERTIES.each_ref().map(|property| property.key))?;
     let [k, rho, c, rq, slope] = &PROPERTIES;
-    let material = Material {
+    Ok(Material {
         surface: Surface {
             conductivity_w_mk: table.number(k)?,
             roughness_um: table.number(rq)?,
@@ -50,20 +48,7 @@ fn properties(value: &Value<'_>) -> Result<Material, SessionError> {
         },
         density_kg_m3: table.number(rho)?,
         specific_heat_j_kgk: table.number(c)?,
-    };
-    // The device refuses some combinations of values that are each within their range.
-    let line = PlainCommand::CustomMaterial(material).to_string();
-    match Request::parse(&line, &Settings::default()) {
-        Ok(_) => Ok(material),
-        Err(refused) => {
-            let problem = format!(
-                "{}: the device would answer {:?}",
-                value.key,
-                refused.to_string()
-            );
-            Err(value.error(problem))
-        }
-    }
+    })
 }
 
 /// Names of all materials, as errors list them.

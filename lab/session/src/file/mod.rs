@@ -20,11 +20,11 @@ use toml::de::DeTable;
 use self::design::Parts;
 pub use self::source::SessionError;
 use self::source::Source;
-use self::value::{Table, Value};
+use self::value::{Table, Value, Whole};
 use crate::Session;
 
 /// Number of the form of session files.
-const FORMAT: (u32, u32) = (1, 1);
+const FORMAT: Whole = Whole::new("format", 1, 1, None);
 /// Largest file, bytes.
 const BYTES_MAX: u64 = 1 << 20;
 /// Longest text for people, characters.
@@ -64,12 +64,20 @@ pub(crate) fn parse(text: &str, path: &Path) -> Result<Session, SessionError> {
     let source = Source { file: path, text };
     nesting::check(&source)?;
     let document = DeTable::parse(text).map_err(|error| {
-        let at = error.span().map_or(0, |span| span.start);
-        source.error(at, error.message())
+        let span = error.span().unwrap_or_default();
+        let problem = match error.message() {
+            "duplicate key" => {
+                let key = source.quote(span.clone());
+                format!("{key} again; allowed is each key once")
+            }
+            other => other.into(),
+        };
+        source.error(span.start, problem)
     })?;
     let file = Table::new(&source, String::new(), 0, document.get_ref());
     file.only(&KEYS)?;
-    (file.need("format", "1")?).number((f64::from(FORMAT.0), f64::from(FORMAT.1)))?;
+    let format = file.need(FORMAT.key, "1")?;
+    format.whole(&FORMAT).map_err(|_| format.wrong("1"))?;
     let text_of = |key: &str, most| file.need(key, "a text")?.text(most);
     let materials = materials::materials(file.get("materials"))?;
     let stations = setup::stations(file.need("stations", "a table for each station")?)?;

@@ -24,6 +24,8 @@ pub(super) const STANDARD_K: Number = Number::new("standard_k", -20.0, 20.0, Som
 pub(super) const CHANGE_K: Number = Number::new("change_k", 0.0, 20.0, None);
 pub(super) const RATE_K_S: Number = Number::new("rate_k_s", 0.01, 100.0, None);
 
+const STIMULUS: &str = "\"nothing\" or a table with sample, display, hold_c or pulses";
+
 /// What the stations present, with what other tables point to in their errors.
 pub(super) struct Presentation<'a> {
     pub present: Present,
@@ -67,7 +69,7 @@ pub(super) fn present<'a>(
         .iter()
         .any(|(stimulus, _)| matches!(stimulus, Stimulus::Pulses(_)));
     if let (Some(staircase), false) = (parts.staircase_at.first(), pulses) {
-        let problem = "a staircase without pulses, whose change it decides; allowed is it beside pulses in [present]";
+        let problem = "a staircase without pulses, whose change it decides; it is allowed beside pulses in [present]";
         return Err(staircase.error(problem));
     }
     Ok(Presentation {
@@ -161,10 +163,7 @@ impl<'a> Reader<'a, '_> {
         }
         let mut stimuli: Vec<Stimulus> = Vec::new();
         for name in names {
-            let value = table.need(
-                name,
-                "\"nothing\" or a table with sample, display, hold_c or pulses",
-            )?;
+            let value = table.need(name, STIMULUS)?;
             let stimulus = self.stimulus(value, parts)?;
             let finger = stimulus.device_finger();
             if finger.is_some() && stimuli.iter().any(|other| other.device_finger() == finger) {
@@ -190,9 +189,9 @@ impl<'a> Reader<'a, '_> {
     }
 
     fn stimulus(&self, value: &Value<'a>, parts: &[usize]) -> Result<Stimulus, SessionError> {
-        if value.is_string() {
-            value.word(&[("nothing", ())])?;
-            return Ok(Stimulus::Nothing);
+        if !value.is_table() {
+            let nothing = value.word(&[("nothing", Stimulus::Nothing)]);
+            return nothing.map_err(|_| value.wrong(STIMULUS));
         }
         let table = value.table(&STIMULUS_KEYS)?;
         let kinds = STIMULUS_KEYS
@@ -239,7 +238,10 @@ impl<'a> Reader<'a, '_> {
                 .filter_map(|part| self.parts.factor(*part, name));
             for (level, at) in factors.flat_map(|factor| &factor.levels) {
                 if !materials::is_known(self.materials, level) {
-                    let problem = format!("{} = {level:?}; allowed are materials: {known}", at.key);
+                    let problem = format!(
+                        "{} = {level:?}; allowed are materials, because {} takes it: {known}",
+                        at.key, value.key
+                    );
                     return Err(at.error(problem));
                 }
             }

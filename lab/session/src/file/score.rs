@@ -41,7 +41,7 @@ pub(super) fn score<'a>(
         return Err(feedback.wrong("false, or true beside score.correct"));
     }
     if let (CorrectAnswer::None, Some(staircase)) = (&correct, facts.design.staircase_at.first()) {
-        let problem = "a staircase follows correct answers; allowed is it beside score.correct";
+        let problem = "a staircase follows correct answers; it is allowed beside score.correct";
         return Err(staircase.error(problem));
     }
     if correct == CorrectAnswer::None {
@@ -103,7 +103,7 @@ fn correct(value: &Value<'_>, facts: &Facts<'_, '_>) -> Result<CorrectAnswer, Se
     let words: Vec<_> = facts.trial.words.iter().map(|(word, _)| &**word).collect();
     let needs_words = |what: &str| {
         value.error(format!(
-            "{} = {what} without answers; allowed is it beside trial.answer.one_of",
+            "{} = {what} without answers; it is allowed beside trial.answer.one_of",
             value.key
         ))
     };
@@ -153,7 +153,7 @@ fn correct(value: &Value<'_>, facts: &Facts<'_, '_>) -> Result<CorrectAnswer, Se
     }
     if least_materials(facts.present) < 2 {
         let problem = format!(
-            "{} compares materials; allowed is it if each trial presents two materials or more",
+            "{} compares materials; it is allowed if each trial presents two materials or more",
             value.key
         );
         return Err(value.error(problem));
@@ -196,7 +196,7 @@ fn correct(value: &Value<'_>, facts: &Facts<'_, '_>) -> Result<CorrectAnswer, Se
     let unanswered = |(index, name): &(usize, &&str)| presents(*index) && !words.contains(*name);
     if let Some((_, station)) = stations.iter().enumerate().find(unanswered) {
         let problem = format!(
-            "{} = \"colder\", but {station:?} is no answer; allowed is it if trial.answer.one_of names each station \
+            "{} = \"colder\", but {station:?} is no answer; it is allowed if trial.answer.one_of names each station \
              that presents a material",
             value.key
         );

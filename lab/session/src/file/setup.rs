@@ -48,7 +48,7 @@ pub(super) fn device(
             None => Ok(None),
             Some(display) => {
                 let problem = format!(
-                    "{} is a display; allowed is it beside a table [device]",
+                    "{} is a display; it is allowed beside a table [device]",
                     display.key
                 );
                 Err(display.error(problem))

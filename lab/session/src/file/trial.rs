@@ -110,7 +110,7 @@ pub(super) fn trial<'a>(
         match (kind, stimulus) {
             (Kind::Touch, Stimulus::Pulses(_)) => {
                 let problem = format!(
-                    "{} presents pulses; allowed are they with trial.procedure = \"intervals\"",
+                    "{} presents pulses; they are allowed with trial.procedure = \"intervals\"",
                     value.key
                 );
                 return Err(value.error(problem));
@@ -188,7 +188,7 @@ fn fits(
         );
         if !(least..=most).contains(&reached_c) {
             let problem = format!(
-                "{} reaches {reached_c} C; allowed is {least} to {most} C",
+                "{} reaches {reached_c:.2} C; allowed is {least} to {most} C",
                 value.key
             );
             return Err(value.error(problem));
@@ -245,7 +245,7 @@ fn answer<'a>(
     let Some(value) = table.get("answer") else {
         table.without(&["answer_s", "feedback"], "beside trial.answer")?;
         if let Some(staircase) = parts.staircase_at.first() {
-            let problem = "a staircase follows answers; allowed is it beside trial.answer";
+            let problem = "a staircase follows answers; it is allowed beside trial.answer";
             return Err(staircase.error(problem));
         }
         return Ok((None, Vec::new()));

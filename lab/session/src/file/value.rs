@@ -164,13 +164,13 @@ impl<'a> Value<'a> {
     }
 
     /// One of these words, with what it stands for.
-    pub fn word<T: Copy>(&self, words: &[(&str, T)]) -> Result<T, SessionError> {
+    pub fn word<T: Clone>(&self, words: &[(&str, T)]) -> Result<T, SessionError> {
         let quoted: Vec<_> = words.iter().map(|(word, _)| format!("{word:?}")).collect();
         let allowed = quoted.join(" or ");
         let given = self.string(&allowed)?;
         let found = words.iter().find(|(word, _)| *word == given);
         found
-            .map(|(_, meaning)| *meaning)
+            .map(|(_, meaning)| meaning.clone())
             .ok_or_else(|| self.wrong(allowed))
     }
 
@@ -320,7 +320,7 @@ impl<'a> Table<'a> {
         match self.values.iter().find(|(key, _)| keys.contains(key)) {
             None => Ok(()),
             Some((_, value)) => {
-                let problem = format!("{} has no meaning here; allowed is it {needed}", value.key);
+                let problem = format!("{} has no meaning here; it is allowed {needed}", value.key);
                 Err(self.source.error(value.key_at, problem))
             }
         }
@@ -362,7 +362,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    pub fn word_or<T: Copy>(
+    pub fn word_or<T: Clone>(
         &self,
         key: &str,
         words: &[(&str, T)],
