@@ -156,15 +156,12 @@ pub(super) fn design<'a>(
     let (mut staircases, mut staircase_at) = (Vec::new(), Vec::new());
     for value in staircase_list {
         let staircase = reader.staircase(&value, &mut parts, &tables)?;
-        if staircases
-            .iter()
-            .any(|other: &StaircaseRule| other.name == staircase.name)
-        {
-            let problem = format!(
-                "staircase.name = {:?} again; allowed is a name that no other has",
-                staircase.name
-            );
-            return Err(value.error(problem));
+        let named = |other: &StaircaseRule| other.name == staircase.name;
+        if staircases.iter().any(named) {
+            let table = value.table(&STAIRCASE_KEYS)?;
+            return Err(table
+                .need("name", NAME)?
+                .wrong("a name that no other staircase has"));
         }
         staircases.push(staircase);
         staircase_at.push(value);
@@ -239,10 +236,10 @@ fn balanced(parts: &Parts<'_>, tables: &[Table<'_>]) -> Result<(), SessionError>
             }
             for (staircase, at) in staircases {
                 if !(staircase.initial.rule().trials_max as usize).is_multiple_of(count) {
-                    return Err(at.error(problem(
-                        at.key.clone() + ".trials_max",
-                        staircase.initial.rule().trials_max,
-                    )));
+                    let table = at.table(&STAIRCASE_KEYS)?;
+                    let key = table.key(TRIALS_MAX.key);
+                    let at = table.get(TRIALS_MAX.key).unwrap_or(at);
+                    return Err(at.error(problem(key, staircase.initial.rule().trials_max)));
                 }
             }
         }

@@ -8,8 +8,15 @@ use thermal_session::{
 
 use crate::{folder, plan, ready};
 
-/// The ready sessions: name, trials of each part, blocks of each part, and trials before which a break comes.
-const SESSIONS: [(&str, &[usize], &[u32], &[u32]); 13] = [
+/// A ready session: name, trials of each part, blocks of each part, and trials before which a break comes.
+type Expected = (
+    &'static str,
+    &'static [usize],
+    &'static [u32],
+    &'static [u32],
+);
+
+const SESSIONS: [Expected; 13] = [
     ("p1-discrimination", &[84], &[4], &[22, 43, 64]),
     ("p2-skin-temperature-fall", &[21], &[1], &[]),
     ("p3-localisation", &[180], &[3], &[61, 121]),
