@@ -148,7 +148,7 @@ impl Recorder {
         root: &Path,
         session: &Session,
         plan: &Plan,
-        (participant, _seed): (&str, u64),
+        (participant, seed): (&str, u64),
     ) -> Result<Self, RecordingError> {
         let folder = Folder::new(root, participant, &session.task);
         let log_path = folder.source(LOG);
@@ -161,8 +161,22 @@ impl Recorder {
             serde_json::from_slice(&info).map_err(|error| RecordingError::Content {
                 line: error.line(),
                 problem: error.to_string(),
-                path: info_path,
+                path: info_path.clone(),
             })?;
+        let hash = sha256(session.text.as_bytes());
+        for (what, recorded, given) in [
+            ("the session file of SHA-256", &info.session_sha256, &hash),
+            ("the seed", &info.seed.to_string(), &seed.to_string()),
+        ] {
+            if recorded != given {
+                return Err(RecordingError::OtherSession {
+                    path: info_path,
+                    what,
+                    recorded: recorded.clone(),
+                    given: given.clone(),
+                });
+            }
+        }
         let (lines, whole) = read_log(&log_path)?;
         let (records, telemetry_bytes) = records_of(&lines);
         let log = AppendFile::open(&log_path, whole)?;
