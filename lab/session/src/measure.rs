@@ -61,7 +61,7 @@ pub fn measure(
                 .force_n
                 .is_none_or(|force_n| (force_n - target_n).abs() > SETTLED * target_n)
         };
-        let last_off = contact().filter(is_off).last().copied();
+        let last_off = contact().rfind(is_off).copied();
         let settled = match last_off {
             None => Some(0.0),
             // Off at the very end means that it never settled.

@@ -22,6 +22,7 @@ mod log;
 mod physio;
 mod read;
 mod recorder;
+mod telemetry;
 
 use std::io;
 use std::path::PathBuf;
