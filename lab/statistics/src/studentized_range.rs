@@ -26,7 +26,7 @@ pub fn studentized_range_tail(q: f64, means: u32, df: f64) -> Result<f64> {
     // Over x = ln s, where s is the estimated over the true standard error: the density of x is proportional to
     // exp(df (x - e^2x / 2)), an analytic function that vanishes at both ends, for which the trapezoidal rule converges
     // exponentially. Its peak is at 0, its width about 1 / sqrt(2 df).
-    let step = (0.5 / df.sqrt()).min(0.1);
+    let step = (0.25 / df.sqrt()).min(0.05);
     let log_density = |x: f64| df * (x - 0.5 * ((2.0 * x).exp() - 1.0));
     let (mut weights, mut tail) = (0.0, 0.0);
     let mut add = |x: f64| {
