@@ -3,6 +3,7 @@
 
 mod people;
 mod plan;
+mod presented;
 mod session;
 
 pub use people::{Cue, Decision, OperatorQuestion, People, Phase, Question, Response, Update};

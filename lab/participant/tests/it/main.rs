@@ -1,0 +1,4 @@
+//! Whole sessions of simulated participants.
+
+mod driver;
+mod samples;
