@@ -19,7 +19,7 @@ use thermal_session::{
 };
 
 use crate::device::{PreparedDevice, RunningDevice};
-use crate::falls::{TouchSetup, mean_fall};
+use crate::falls::{TouchSetup, mean_fall_k};
 use crate::observer::Task;
 use crate::operator::{Happening, Operator, SimulatedEvent};
 use crate::participant::{Participant, SkinParams};
@@ -36,6 +36,9 @@ pub enum BenchError {
     /// The simulated device cannot be commissioned.
     #[error("the simulated device cannot be commissioned: {0}")]
     Commissioning(String),
+    /// The simulated device refuses a command, or does not do what it should.
+    #[error("the simulated device: {0}")]
+    Device(String),
     /// A material whose properties are not known.
     #[error("material {0} is not known; give its properties with the bench's options")]
     Material(String),
@@ -469,7 +472,7 @@ fn task(
         .iter()
         .map(|word| {
             let material = options.material(word).map_err(|_| not_understood())?;
-            Ok(mean_fall(&setup, &material)?.mean_k)
+            mean_fall_k(&setup, &material)
         })
         .collect();
     Ok(Some(Task::Identify(expected_k?)))

@@ -1,5 +1,6 @@
 //! The simulated device of a bench: with one finger or with five, commissioned, and switched on anew for each trial.
 
+use std::collections::VecDeque;
 use std::time::Duration;
 
 use contact_model::material::MATERIALS;
@@ -193,24 +194,38 @@ impl RunningDevice {
     }
 }
 
-/// The line to a device without anybody at it.
-struct DeviceLink {
+/// The line to a device without a session.
+#[derive(Debug)]
+pub struct DeviceLink {
     device: RunningDevice,
+    force_n: f64,
     to_send: Vec<u8>,
     splitter: LineSplitter,
-    received: std::collections::VecDeque<ReceivedLine>,
+    received: VecDeque<ReceivedLine>,
     ms: u64,
 }
 
 impl DeviceLink {
-    fn new(device: RunningDevice) -> Self {
+    /// The line to a device that nobody touches.
+    pub fn new(device: RunningDevice) -> Self {
         Self {
             device,
+            force_n: 0.0,
             to_send: Vec::new(),
             splitter: LineSplitter::default(),
-            received: std::collections::VecDeque::new(),
+            received: VecDeque::new(),
             ms: 0,
         }
+    }
+
+    /// Presses a finger on the first display, N.
+    pub const fn press(&mut self, force_n: f64) {
+        self.force_n = force_n;
+    }
+
+    /// The plant of the first display.
+    pub fn plant(&mut self) -> &Plant {
+        self.device.plant(0)
     }
 }
 
@@ -224,7 +239,7 @@ impl Link for DeviceLink {
         let end = self.now() + timeout;
         while self.received.is_empty() && self.now() < end {
             let bytes = std::mem::take(&mut self.to_send);
-            self.device.run_1_ms(&bytes, &[], &[]);
+            self.device.run_1_ms(&bytes, &[self.force_n], &[]);
             self.ms += 1;
             self.device.receive(self.splitter.received());
             let at = self.now();

@@ -2,12 +2,13 @@
 #![forbid(unsafe_code)]
 
 pub mod bench;
-mod device;
+pub mod device;
 pub mod falls;
 pub mod hand;
 pub mod observer;
 pub mod operator;
 pub mod participant;
+pub mod predictions;
 mod random;
 
 pub use bench::{Bench, BenchError, BenchLink, BenchOptions, BenchPeople, Observation};
