@@ -1,5 +1,6 @@
 //! The participant and the operator, as the executor sees them: it informs them, and asks what they have pressed.
 
+use serde::{Deserialize, Serialize};
 use thermal_client::client::{ReceivedEvent, ReceivedTelemetry};
 
 use crate::PlannedTrial;
@@ -20,7 +21,8 @@ pub trait People {
 }
 
 /// What the participant and the operator are told.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Update {
     /// A trial begins: the trial, the number of its attempt from 1, and how many trials the plan has.
     Trial {
@@ -45,9 +47,16 @@ pub enum Update {
     Decide(OperatorQuestion),
     /// The force that the participant is to follow, N; `None` from the end of the contact on.
     TargetForce(Option<f64>),
+    /// Whether the answer was correct, for the participant.
+    Feedback {
+        /// Whether it was.
+        is_correct: bool,
+    },
     /// A line of telemetry.
+    #[serde(skip)]
     Telemetry(ReceivedTelemetry),
     /// An event of the device.
+    #[serde(skip)]
     Event(ReceivedEvent),
     /// The trial has ended; the reason if it is void.
     TrialEnded {
@@ -61,7 +70,8 @@ pub enum Update {
 }
 
 /// Phases of a session, in the order of a trial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Phase {
     /// The device is asked who it is, and set up.
     Connect,
@@ -102,7 +112,8 @@ impl Phase {
 }
 
 /// Tones for the participant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Cue {
     /// Move the fingers above the stimuli: 880 Hz.
     Reach,
@@ -127,7 +138,7 @@ impl Cue {
 }
 
 /// What the participant is asked.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Question {
     /// The text.
     pub ask: String,
@@ -136,7 +147,8 @@ pub struct Question {
 }
 
 /// What the participant answers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Response {
     /// The answer with this index, from 0 on.
     Choice(usize),
@@ -145,7 +157,8 @@ pub enum Response {
 }
 
 /// What the operator is asked. Each has an answer [`Decision`]; [`Decision::Stop`] always ends the session.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum OperatorQuestion {
     /// Is the participant ready, and is everything that this text names in place? Answered by [`Decision::Continue`].
     Ready(String),
@@ -168,7 +181,8 @@ pub enum OperatorQuestion {
 }
 
 /// What the operator decides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Decision {
     /// Go on: everything is ready, in spite of the gate, or after clearing a fault.
     Continue,

@@ -1,5 +1,7 @@
 //! The trials of a session in their order: a pure function of session file, participant and seed.
 
+use serde::{Deserialize, Serialize};
+
 use crate::Session;
 
 /// All trials of a session for one participant.
@@ -12,7 +14,7 @@ pub struct Plan {
 }
 
 /// A trial of a plan.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlannedTrial {
     /// Its number, from 1.
     pub number: u32,
@@ -35,7 +37,8 @@ pub struct PlannedTrial {
 }
 
 /// What a station presents in a trial.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Presented {
     /// Nothing: no finger goes there.
     Nothing,
@@ -72,7 +75,8 @@ pub enum Presented {
 }
 
 /// Departure from the base temperature in an interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Departure {
     /// This one, K.
     Fixed(f64),
@@ -92,6 +96,10 @@ impl Plan {
     /// A constraint of the session that no order of the trials fulfils.
     pub fn new(session: &Session, participant: &str, seed: u64) -> Result<Self, PlanError> {
         todo!("{session:?} {participant} {seed}")
+    }
+
+    pub fn csv(&self, session: &Session) -> String {
+        todo!("{session:?}")
     }
 
     /// The level of a factor in a trial; `None` if there is no such factor.

@@ -1,5 +1,7 @@
 //! What a session file says, checked: everything that the plan and the executor need.
 
+use experiment_statistics::staircase::Staircase;
+use serde::{Deserialize, Serialize};
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
@@ -28,7 +30,7 @@ pub struct Session {
     /// Which trials there are and in which order.
     pub design: Design,
     /// Staircases, whose trials the plan numbers.
-    pub staircases: Vec<StaircaseRule>,
+    pub staircases: Vec<NamedStaircase>,
     /// Shortest break between two blocks, s.
     pub break_s: f64,
     /// What makes a trial void.
@@ -146,7 +148,8 @@ pub struct Answer {
 }
 
 /// The answers that are allowed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum AnswerKind {
     /// One of these words.
     OneOf(Vec<String>),
@@ -197,27 +200,24 @@ pub struct Score {
     pub analyses: Vec<String>,
 }
 
-/// A rule by which levels follow the answers (transformed up-down method).
+/// A staircase, whose level follows the answers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StaircaseRule {
+pub struct NamedStaircase {
     /// Its name.
     pub name: String,
-    /// First level, K.
-    pub start_k: f64,
-    /// Largest level, K.
-    pub max_k: f64,
-    /// Factor between levels.
-    pub factor: f64,
-    /// Correct answers in sequence after which the level falls.
-    pub down: u32,
-    /// Wrong answers in sequence after which the level rises.
-    pub up: u32,
-    /// Reversals after which it has finished.
-    pub reversals: u32,
-    /// Last reversals whose geometric mean is the threshold.
-    pub counted: u32,
+    /// The staircase before its first trial; its levels are K.
+    pub initial: Staircase,
 }
 
 /// Which trials there are and in which order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {}
+
+impl Session {
+    pub fn parse(text: &str, path: &std::path::Path) -> Result<Self, std::io::Error> {
+        todo!("{text} {path:?}")
+    }
+    pub fn custom_material(&self, name: &str) -> Option<contact_model::material::Material> {
+        todo!("{name}")
+    }
+}

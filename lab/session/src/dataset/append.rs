@@ -1,0 +1,62 @@
+//! A file that grows.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use super::{RecordingError, at};
+
+/// A file to which whole pieces are appended, and which no other program appends to meanwhile.
+#[derive(Debug)]
+pub struct AppendFile {
+    path: PathBuf,
+    file: File,
+    bytes: u64,
+}
+
+impl AppendFile {
+    /// Opens a file, or creates it, and keeps its first `bytes`; what a program that was killed has written after them is
+    /// removed.
+    ///
+    /// # Errors
+    /// The file cannot be opened, or another program has it.
+    pub fn open(path: &Path, bytes: u64) -> Result<Self, RecordingError> {
+        let options = OpenOptions::new()
+            .create(true)
+            .truncate(false)
+            .write(true)
+            .clone();
+        let mut file = options.open(path).map_err(at(path))?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(RecordingError::InUse(path.into())),
+            Err(TryLockError::Error(error)) => return Err(at(path)(error)),
+        }
+        file.set_len(bytes).map_err(at(path))?;
+        file.seek(SeekFrom::End(0)).map_err(at(path))?;
+        Ok(Self {
+            path: path.into(),
+            file,
+            bytes,
+        })
+    }
+
+    /// Appends, and waits until it is on the disk.
+    ///
+    /// # Errors
+    /// There is no room, or the disk does not work.
+    pub fn append(&mut self, contents: &[u8]) -> Result<(), RecordingError> {
+        let written = self
+            .file
+            .write_all(contents)
+            .and_then(|()| self.file.sync_data());
+        written.map_err(at(&self.path))?;
+        self.bytes += contents.len() as u64;
+        Ok(())
+    }
+
+    /// Its length, bytes.
+    pub const fn bytes(&self) -> u64 {
+        self.bytes
+    }
+}

@@ -1,0 +1,76 @@
+//! The recorded data of a session, as a data set after BIDS (Brain Imaging Data Structure, behavioural data).
+//!
+//! ```text
+//! dataset_description.json, README.md, participants.tsv, participants.json
+//! sub-01/beh/sub-01_task-p5_events.tsv (+ .json)                      a row for each trial
+//! sub-01/beh/sub-01_task-p5_recording-finger0_physio.tsv.gz (+ .json) telemetry of a finger of the device
+//! sourcedata/sub-01/task-p5/                                          what the files above are written from
+//!     session.toml, plan.csv, session.json    what was to be done, with which device
+//!     log.jsonl                               everything that happened, in lines of JSON
+//!     telemetry.csv                           all telemetry
+//!     clock.json                              what only clock and computer say
+//! ```
+//!
+//! `log.jsonl` and `telemetry.csv` grow by one trial at a time and are then forced to the disk. A power cut loses the trial
+//! that runs, and nothing else.
+
+mod append;
+mod bids;
+mod events;
+mod folder;
+mod log;
+mod physio;
+mod read;
+mod recorder;
+
+use std::io;
+use std::path::PathBuf;
+
+pub use folder::Folder;
+pub use log::{Entry, LogLine};
+pub use read::{RecordedSession, recorded_sessions};
+pub use recorder::{DeviceReport, Recorder, SessionInfo};
+
+/// Why data cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// The operating system refuses.
+    #[error("{}: {error}. What was recorded before is whole; --resume goes on when there is room", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// Another program records the same session.
+    #[error("{}: another program records this session", .0.display())]
+    InUse(PathBuf),
+    /// There are data of this participant and task.
+    #[error(
+        "{}: this participant has done this task; --resume goes on where it was interrupted, another --out or --participant \
+         begins anew",
+        .0.display()
+    )]
+    Exists(PathBuf),
+    /// There is nothing to go on with.
+    #[error("{}: there is no session to resume", .0.display())]
+    Missing(PathBuf),
+    /// A file does not say what it should.
+    #[error("{}:{line}: {problem}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// Its line, from 1.
+        line: usize,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+/// Names the file of an error of the operating system.
+fn at(path: &std::path::Path) -> impl Fn(io::Error) -> RecordingError + '_ {
+    move |error| RecordingError::File {
+        path: path.into(),
+        error,
+    }
+}

@@ -1,0 +1,313 @@
+//! Records a session while it runs.
+
+use std::fs;
+use std::path::Path;
+use std::time::SystemTime;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use thermal_client::client::{Identity, Telemetry};
+
+use super::append::AppendFile;
+use super::folder::write_whole;
+use super::log::{Entry, LogLine};
+use super::read::{read_log, records_of};
+use super::{Folder, RecordingError, at, bids};
+use crate::record::TrialRecord;
+use crate::{Plan, Session, Update};
+
+/// What a session was, for whoever reads its data.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SessionInfo {
+    /// Title of the session.
+    pub title: String,
+    /// Name of the task.
+    pub task: String,
+    /// Where the experiment comes from.
+    pub cite: String,
+    /// Code of the participant.
+    pub participant: String,
+    /// Seed of the plan.
+    pub seed: u64,
+    /// Whether participant and device were simulated.
+    pub is_simulated: bool,
+    /// Version of this program.
+    pub program_version: String,
+    /// SHA-256 of `session.toml`.
+    pub session_sha256: String,
+    /// SHA-256 of `plan.csv`.
+    pub plan_sha256: String,
+    /// The device; none if the session has no displays.
+    pub device: Option<Value>,
+}
+
+/// What a device says of itself.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DeviceReport {
+    /// Name, version, fingers, capabilities.
+    pub identity: Identity,
+    /// Lines of the settings of each finger.
+    pub settings: Vec<Vec<String>>,
+}
+
+/// What only clock and computer say: the one file that differs between two runs of the same simulated session.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct ClockReport {
+    /// When the session was begun, and each time when it was resumed, UTC.
+    began: Vec<String>,
+    /// When it last ended, UTC.
+    ended: Option<String>,
+    /// Operating system and processor.
+    computer: String,
+}
+
+/// Records a session.
+#[derive(Debug)]
+pub struct Recorder {
+    folder: Folder,
+    session: Session,
+    plan: Plan,
+    info: SessionInfo,
+    clock: ClockReport,
+    log: AppendFile,
+    telemetry: AppendFile,
+    /// Lines since the last trial ended.
+    pending: Vec<LogLine>,
+    records: Vec<TrialRecord>,
+}
+
+/// Names of the files.
+pub(super) const SESSION: &str = "session.toml";
+const PLAN: &str = "plan.csv";
+pub(super) const INFO: &str = "session.json";
+pub(super) const LOG: &str = "log.jsonl";
+pub(super) const TELEMETRY: &str = "telemetry.csv";
+const CLOCK: &str = "clock.json";
+
+/// Columns of the telemetry.
+const COLUMNS: &str = "t_s,finger,tick,state,fault,limited,setpoint_c,display_c,sink_c,skin_c,room_c,force_n,demand_a,current_a,evaluations\n";
+
+impl Recorder {
+    /// Begins to record a participant's session in a data set, which is created if it is not there.
+    ///
+    /// # Errors
+    /// The files cannot be written, or there are data of this participant and task.
+    pub fn create(
+        root: &Path,
+        session: &Session,
+        plan: &Plan,
+        (participant, seed): (&str, u64),
+        is_simulated: bool,
+    ) -> Result<Self, RecordingError> {
+        let folder = Folder::new(root, participant, &session.task);
+        let log_path = folder.source(LOG);
+        if log_path.exists() {
+            return Err(RecordingError::Exists(log_path));
+        }
+        let plan_csv = plan.csv(session);
+        let info = SessionInfo {
+            title: session.title.clone(),
+            task: session.task.clone(),
+            cite: session.cite.clone(),
+            participant: participant.into(),
+            seed,
+            is_simulated,
+            program_version: env!("CARGO_PKG_VERSION").into(),
+            session_sha256: sha256(session.text.as_bytes()),
+            plan_sha256: sha256(plan_csv.as_bytes()),
+            device: None,
+        };
+        write_whole(&folder.source(SESSION), session.text.as_bytes())?;
+        write_whole(&folder.source(PLAN), plan_csv.as_bytes())?;
+        bids::describe(&folder)?;
+        let log = AppendFile::open(&log_path, 0)?;
+        let mut telemetry = AppendFile::open(&folder.source(TELEMETRY), 0)?;
+        telemetry.append(COLUMNS.as_bytes())?;
+        let mut recorder = Self {
+            folder,
+            session: session.clone(),
+            plan: plan.clone(),
+            info,
+            clock: ClockReport::default(),
+            log,
+            telemetry,
+            pending: Vec::new(),
+            records: Vec::new(),
+        };
+        recorder.write_info()?;
+        recorder.begin_now()?;
+        Ok(recorder)
+    }
+
+    /// Goes on with a session that was interrupted: what a program that was killed has written of its last trial is removed.
+    ///
+    /// # Errors
+    /// There is no such session, or its files cannot be read or written.
+    pub fn resume(
+        root: &Path,
+        session: &Session,
+        plan: &Plan,
+        (participant, _seed): (&str, u64),
+    ) -> Result<Self, RecordingError> {
+        let folder = Folder::new(root, participant, &session.task);
+        let log_path = folder.source(LOG);
+        if !log_path.exists() {
+            return Err(RecordingError::Missing(log_path));
+        }
+        let info_path = folder.source(INFO);
+        let info = fs::read(&info_path).map_err(at(&info_path))?;
+        let info: SessionInfo =
+            serde_json::from_slice(&info).map_err(|error| RecordingError::Content {
+                line: error.line(),
+                problem: error.to_string(),
+                path: info_path,
+            })?;
+        let (lines, whole) = read_log(&log_path)?;
+        let (records, telemetry_bytes) = records_of(&lines);
+        let log = AppendFile::open(&log_path, whole)?;
+        let telemetry_bytes = telemetry_bytes.unwrap_or(COLUMNS.len() as u64);
+        let telemetry = AppendFile::open(&folder.source(TELEMETRY), telemetry_bytes)?;
+        let clock_path = folder.source(CLOCK);
+        let clock = fs::read(&clock_path).map_err(at(&clock_path))?;
+        let mut recorder = Self {
+            folder,
+            session: session.clone(),
+            plan: plan.clone(),
+            info,
+            clock: serde_json::from_slice(&clock).unwrap_or_default(),
+            log,
+            telemetry,
+            pending: Vec::new(),
+            records,
+        };
+        recorder.begin_now()?;
+        Ok(recorder)
+    }
+
+    fn begin_now(&mut self) -> Result<(), RecordingError> {
+        self.clock.began.push(utc_now());
+        self.clock.computer = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
+        self.write_clock()
+    }
+
+    fn write_clock(&self) -> Result<(), RecordingError> {
+        write_whole(&self.folder.source(CLOCK), &pretty(&self.clock))
+    }
+
+    fn write_info(&self) -> Result<(), RecordingError> {
+        write_whole(&self.folder.source(INFO), &pretty(&self.info))
+    }
+
+    /// The records so far, also those of the runs before.
+    #[must_use]
+    pub fn records(&self) -> &[TrialRecord] {
+        &self.records
+    }
+
+    /// End of the last recorded trial by the session's clock, ns.
+    pub(crate) fn end_ns(&self) -> i64 {
+        let end_s = self.records.last().map_or(0.0, |record| record.end_s);
+        // Times are recorded in steps of 0.1 ms.
+        (end_s * 1e4).round() as i64 * 100_000
+    }
+
+    /// Takes note of what the device says of itself.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn device(&mut self, report: &DeviceReport) -> Result<(), RecordingError> {
+        self.info.device = serde_json::to_value(report).ok();
+        self.write_info()
+    }
+
+    /// Takes note of what participant and operator are told at a time of the session, s.
+    pub fn update(&mut self, t_s: f64, update: &Update) {
+        if let Some(entry) = Entry::of(update) {
+            self.pending.push(LogLine { t_s, entry });
+        }
+    }
+
+    /// Records a trial that has ended, with its telemetry: times, s, fingers and lines.
+    ///
+    /// # Errors
+    /// The files cannot be written. The trials before are whole.
+    pub fn trial_ended<'t>(
+        &mut self,
+        record: &TrialRecord,
+        telemetry: impl Iterator<Item = (f64, u8, &'t Telemetry)>,
+    ) -> Result<(), RecordingError> {
+        let rows: String = telemetry.map(row).collect();
+        self.telemetry.append(rows.as_bytes())?;
+        self.pending.push(LogLine {
+            t_s: record.end_s,
+            entry: Entry::Record {
+                record: Box::new(record.clone()),
+                telemetry_bytes: self.telemetry.bytes(),
+            },
+        });
+        let mut lines = Vec::new();
+        for line in self.pending.drain(..) {
+            // Maps have text keys and numbers are finite, so nothing fails.
+            lines.extend(serde_json::to_vec(&line).unwrap_or_default());
+            lines.push(b'\n');
+        }
+        self.log.append(&lines)?;
+        self.records.push(record.clone());
+        Ok(())
+    }
+
+    /// Writes the files of the data set from what is recorded.
+    ///
+    /// # Errors
+    /// They cannot be written. What is recorded stays.
+    pub fn finish(&mut self) -> Result<(), RecordingError> {
+        self.clock.ended = Some(utc_now());
+        self.write_clock()?;
+        bids::write(&self.folder, &self.session, &self.plan, &self.records)
+    }
+
+    /// The folder of the session.
+    #[must_use]
+    pub const fn folder(&self) -> &Folder {
+        &self.folder
+    }
+}
+
+/// A line of telemetry as a row.
+fn row((t_s, finger, line): (f64, u8, &Telemetry)) -> String {
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+    let fault = line.fault().map_or("", |fault| fault.name());
+    format!(
+        "{t_s:.4},{finger},{},{},{fault},{},{},{},{},{},{},{},{},{},{}\n",
+        line.tick,
+        line.state.name(),
+        u8::from(line.limited),
+        number(line.setpoint_c),
+        number(line.display_c),
+        number(line.sink_c),
+        number(line.skin_c),
+        number(line.room_c),
+        number(line.force_n),
+        number(line.demand_a),
+        number(line.current_a),
+        line.evaluations
+            .map_or(String::new(), |count| count.to_string()),
+    )
+}
+
+/// JSON for people, with a line end.
+pub(super) fn pretty<T: Serialize>(value: &T) -> Vec<u8> {
+    let mut text = serde_json::to_vec_pretty(value).unwrap_or_default();
+    text.push(b'\n');
+    text
+}
+
+fn sha256(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn utc_now() -> String {
+    humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
+}

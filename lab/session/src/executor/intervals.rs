@@ -1,0 +1,97 @@
+//! A trial with two intervals: the finger stays on the display, which departs from its base temperature in one or both.
+
+use thermal_client::client::PlainCommand;
+use thermal_client::link::Link;
+use thermal_device::stimulus::{CourseEnd, CourseStart, PlayOrder};
+
+use super::{Executor, TrialEnd};
+use crate::schedule::Next;
+use crate::{Cue, Departure, Phase, Presented, Update};
+
+/// Departures below this are none, K: a course has steps of 1 ms.
+const DEPARTURE_MIN_K: f64 = 0.002;
+
+impl<L: Link> Executor<'_, L> {
+    /// The trial from the first interval to the answer.
+    pub(super) fn intervals(
+        &mut self,
+        next: &Next<'_>,
+        interval_s: f64,
+        gap_s: f64,
+    ) -> Result<(), TrialEnd> {
+        let Some(&Presented::Pulses {
+            device_finger,
+            base_c,
+            departures_k,
+            rate_k_s,
+        }) = next
+            .trial
+            .presented
+            .iter()
+            .find(|presented| matches!(presented, Presented::Pulses { .. }))
+        else {
+            return Err(TrialEnd::Void("no station presents pulses".into()));
+        };
+        self.phase(Phase::Contact);
+        self.wait_for_finger(device_finger)?;
+        for (index, departure) in (0u8..).zip(departures_k) {
+            if index > 0 {
+                let gap_end_s = self.now_s() + gap_s;
+                self.wait_until(gap_end_s)?;
+            }
+            let begin_s = self.now_s();
+            self.trial.touch_cue_s.get_or_insert(begin_s);
+            self.inform(Update::Cue(Cue::Interval(index)));
+            let departure_k = match departure {
+                Departure::Fixed(departure_k) => departure_k,
+                Departure::Staircase { standard_k, sign } => {
+                    standard_k + sign * next.level_k.unwrap_or(0.0)
+                }
+            };
+            if departure_k.abs() >= DEPARTURE_MIN_K {
+                let ramps_s = 2.0 * departure_k.abs() / rate_k_s;
+                let pulse = PlainCommand::Pulse {
+                    base_c,
+                    target_c: base_c + departure_k,
+                    rise_k_s: rate_k_s,
+                    hold_s: (interval_s - ramps_s).max(0.001),
+                    return_k_s: rate_k_s,
+                    order: PlayOrder {
+                        start: CourseStart::Now,
+                        play_count: 1,
+                        end: CourseEnd::Hold,
+                    },
+                };
+                self.command(Some(device_finger), &pulse)?;
+            }
+            self.wait_until(begin_s + interval_s)?;
+        }
+        let now_s = self.now_s();
+        self.trial.contact_end_s = Some(now_s);
+        self.respond(next.trial)
+    }
+
+    /// Waits for the finger on the display, where it stays from trial to trial.
+    fn wait_for_finger(&mut self, finger: u8) -> Result<(), TrialEnd> {
+        let contact_n = 0.05;
+        let presses = |executor: &mut Self| {
+            let line = executor.trial.last_line(finger);
+            line.and_then(|line| line.force_n)
+                .is_some_and(|force_n| force_n > contact_n)
+        };
+        if !presses(self) {
+            self.inform(Update::Instruction(
+                "Rest your finger on the display.".into(),
+            ));
+        }
+        let land_s = self.session.trial.land_s;
+        let until_s = self.now_s() + land_s;
+        if self.wait_for(until_s, presses)? {
+            Ok(())
+        } else {
+            Err(TrialEnd::Void(format!(
+                "no finger on the display within {land_s} s"
+            )))
+        }
+    }
+}

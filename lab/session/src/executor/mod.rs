@@ -1,0 +1,235 @@
+//! Runs a session: sets up the device, leads participant and operator through the trials, and records each.
+//!
+//! ```text
+//! connect -> [ rest -> prepare -> reach -> contact -> respond -> return ] ... break ... -> end
+//! ```
+//!
+//! The device is set up anew at each trial, so one that has restarted between two trials is no problem. A trip, a refused line
+//! or a restart within a trial makes that trial void.
+
+mod connect;
+mod fingers;
+mod gate;
+mod intervals;
+mod set_up;
+mod touch;
+mod trial;
+mod wait;
+
+use thermal_client::client::{Client, ClientError};
+use thermal_client::link::{Link, LinkError};
+
+use crate::dataset::{Recorder, RecordingError};
+use crate::record::TrialRecord;
+use crate::schedule::{Next, Schedule};
+use crate::{Decision, OperatorQuestion, People, Phase, Plan, Procedure, Session, Update};
+
+use fingers::Fingers;
+use trial::RunningTrial;
+
+/// Why a session has ended before its last trial. What was recorded until then is whole, and the session can be resumed.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionEnd {
+    /// The operator has stopped it, or the program was asked to end.
+    #[error("stopped by the operator; --resume goes on with the trial that was running")]
+    Stopped,
+    /// The device can no longer be reached.
+    #[error(
+        "the device is gone: {0}. Check cable and power; a device without a host switches its bridge off after 2 s. \
+         --resume goes on with the trial that was running"
+    )]
+    Gone(String),
+    /// The device cannot run the session.
+    #[error("the device cannot run this session: {0}")]
+    Unsuitable(String),
+    /// The data cannot be written.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+}
+
+/// Why a trial does not go on.
+#[derive(Debug)]
+enum TrialEnd {
+    /// Its data do not count, for this reason; the session goes on.
+    Void(String),
+    /// The device has tripped by the fault with this word.
+    Tripped(&'static str),
+    /// The session ends.
+    Session(SessionEnd),
+}
+
+impl<E: Into<SessionEnd>> From<E> for TrialEnd {
+    fn from(end: E) -> Self {
+        Self::Session(end.into())
+    }
+}
+
+impl From<LinkError> for SessionEnd {
+    fn from(error: LinkError) -> Self {
+        match error {
+            LinkError::Gone(why) => Self::Gone(why),
+            LinkError::Interrupted => Self::Stopped,
+        }
+    }
+}
+
+/// What a line without its reply means for the trial.
+fn unanswered(error: ClientError) -> TrialEnd {
+    match error {
+        ClientError::Link(error) => error.into(),
+        ClientError::TimedOut { .. } => SessionEnd::Gone(error.to_string()).into(),
+        refused => TrialEnd::Void(refused.to_string()),
+    }
+}
+
+/// A session while it runs.
+pub struct Executor<'a, L> {
+    session: &'a Session,
+    client: Client<L>,
+    people: &'a mut dyn People,
+    recorder: &'a mut Recorder,
+    /// What is added to the link's clock to give that of the session, ns.
+    clock_offset_ns: i64,
+    /// The device's fingers.
+    fingers: Fingers,
+    /// The trial that runs, or has run last.
+    trial: RunningTrial,
+    /// What the operator has decided, until it is used.
+    decision: Option<Decision>,
+}
+
+impl<'a, L: Link> Executor<'a, L> {
+    /// A session on the device at a link, recorded by a recorder, which knows the trials of an earlier run. A session without
+    /// displays sends nothing on the link, and only its clock counts.
+    pub fn new(
+        session: &'a Session,
+        link: L,
+        people: &'a mut dyn People,
+        recorder: &'a mut Recorder,
+    ) -> Self {
+        Self {
+            session,
+            client: Client::new(link),
+            people,
+            recorder,
+            clock_offset_ns: 0,
+            fingers: Fingers::default(),
+            trial: RunningTrial::default(),
+            decision: None,
+        }
+    }
+
+    /// Runs the trials that the recorder does not have yet. Whatever happens, the bridge is switched off at the end, and what
+    /// was recorded is written out as a data set.
+    ///
+    /// # Errors
+    /// The session has ended early.
+    pub fn run(mut self, plan: &Plan, schedule: Schedule<'_>) -> Result<(), SessionEnd> {
+        let ended = self.run_trials(plan, schedule);
+        self.phase(Phase::End);
+        let off = self.switch_off();
+        let written = self.recorder.finish().map_err(SessionEnd::from);
+        let ended = ended.and(off).and(written);
+        let why = ended.as_ref().err().map(ToString::to_string);
+        self.people.inform(&Update::Ended(why));
+        ended
+    }
+
+    fn run_trials(&mut self, plan: &Plan, mut schedule: Schedule<'_>) -> Result<(), SessionEnd> {
+        self.phase(Phase::Connect);
+        if self.session.device.is_some() {
+            self.connect(plan)?;
+        }
+        // The session's clock goes on where the last recorded trial has ended.
+        self.clock_offset_ns = self.recorder.end_ns() - self.link_ns();
+        while let Some(next) = schedule.next_trial() {
+            if next.trial.break_before && next.attempt == 1 {
+                self.take_a_break()?;
+            }
+            let record = self.run_trial(&next, plan.trials.len())?;
+            schedule.ended(&record);
+        }
+        for number in schedule.given_up() {
+            let attempts = self.session.voids.attempts_max;
+            self.inform(Update::Notice(format!(
+                "trial {number} was void {attempts} times and is left out"
+            )));
+        }
+        Ok(())
+    }
+
+    /// Runs a trial and records it.
+    fn run_trial(&mut self, next: &Next<'_>, of: usize) -> Result<TrialRecord, SessionEnd> {
+        self.drop_late_lines()?;
+        self.trial = RunningTrial::new(next, self.now_s(), self.fingers.count());
+        self.inform(Update::Trial {
+            trial: next.trial.clone(),
+            attempt: next.attempt,
+            of,
+        });
+        let void = match self.conduct(next) {
+            Ok(()) => self.trial.void.take(),
+            Err(TrialEnd::Void(why)) => Some(why),
+            Err(TrialEnd::Tripped(fault)) => {
+                self.recover(fault)?;
+                Some(format!("the device tripped: {fault}"))
+            }
+            Err(TrialEnd::Session(end)) => return Err(end),
+        };
+        self.take_late_lines()?;
+        self.inform(Update::TargetForce(None));
+        self.inform(Update::TrialEnded { void: void.clone() });
+        let end_s = self.now_s();
+        let record = self.trial.record(self.session, next.trial, void, end_s);
+        (self.recorder).trial_ended(&record, self.trial.telemetry())?;
+        Ok(record)
+    }
+
+    fn conduct(&mut self, next: &Next<'_>) -> Result<(), TrialEnd> {
+        self.set_up_device(next.trial)?;
+        match self.session.trial.procedure {
+            Procedure::Touch {
+                reach_s,
+                contact,
+                max_s,
+            } => self.touch(next.trial, reach_s, contact, max_s),
+            Procedure::Intervals { interval_s, gap_s } => self.intervals(next, interval_s, gap_s),
+        }
+    }
+
+    /// Waits for the shortest break, and then for the operator.
+    fn take_a_break(&mut self) -> Result<(), SessionEnd> {
+        self.switch_off()?;
+        self.phase(Phase::Break);
+        let end_s = self.now_s() + self.session.break_s;
+        self.outside_of_trials(|executor| executor.wait_until(end_s))?;
+        self.operator(OperatorQuestion::BreakOver)?;
+        Ok(())
+    }
+
+    /// Tells participant and operator, and records it.
+    fn inform(&mut self, update: Update) {
+        let now_s = self.now_s();
+        self.recorder.update(now_s, &update);
+        self.people.inform(&update);
+    }
+
+    fn phase(&mut self, phase: Phase) {
+        self.inform(Update::Phase(phase));
+    }
+
+    /// Time by the link's clock, ns.
+    fn link_ns(&mut self) -> i64 {
+        self.client.link().now().as_nanos() as i64
+    }
+
+    /// Time by the session's clock, s.
+    fn now_s(&mut self) -> f64 {
+        seconds(self.link_ns() + self.clock_offset_ns)
+    }
+}
+
+/// Seconds of a time in ns, in steps of 0.1 ms: finer than any clock here, and the same whatever the times before.
+fn seconds(ns: i64) -> f64 {
+    (ns as f64 / 1e5).round() / 1e4
+}

@@ -1,0 +1,188 @@
+//! Brings the device from any state to the one that a trial needs.
+
+use thermal_client::client::{PlainCommand, QueryState, Telemetry};
+use thermal_client::link::Link;
+use thermal_device::StateName;
+
+use super::{Executor, TrialEnd, unanswered};
+use crate::{OperatorQuestion, Phase, PlannedTrial, Presented, Procedure};
+
+/// Longest time from `arm` until the device is armed, s; a self-test under a finger takes 1.8 s.
+const ARM_S: f64 = 5.0;
+/// Distance of the display from its set-point at which it waits, K, for how long, s, and the longest time until then, s.
+const AT_SETPOINT_K: f64 = 0.1;
+const AT_SETPOINT_MS: u32 = 300;
+const PREPARE_S: f64 = 20.0;
+/// Most time in which the device is watched before an object is presented, s, so that it knows the skin.
+const WATCH_S: f64 = 2.6;
+
+impl<L: Link> Executor<'_, L> {
+    /// Sets the device up for a trial, and arms it; then tells the operator what goes where, and waits for the skin.
+    pub(super) fn set_up_device(&mut self, trial: &PlannedTrial) -> Result<(), TrialEnd> {
+        let session = self.session;
+        let displays: Vec<u8> = device_fingers(trial).collect();
+        if let Some(device) = &session.device
+            && !displays.is_empty()
+        {
+            let common = [
+                PlainCommand::Checksum(true),
+                PlainCommand::Events(true),
+                PlainCommand::stream(device.stream_ms),
+                PlainCommand::Law(device.law),
+                PlainCommand::Mode(device.mode),
+                PlainCommand::AssumedFinger(device.assumed_finger),
+                PlainCommand::Skin(device.assumed_skin_c),
+                PlainCommand::ObjectTemperature(device.object_c),
+            ];
+            for command in &common {
+                self.command(None, command)?;
+            }
+            self.choose_materials(trial)?;
+        }
+        // A finger that stays on the display from trial to trial is not disturbed.
+        if !self.continues(&displays)? {
+            self.arm(&displays)?;
+            self.phase(Phase::Rest);
+            self.place_samples(trial)?;
+            self.wait_for_skin(&displays)?;
+        }
+        self.phase(Phase::Prepare);
+        self.present(trial, &displays)
+    }
+
+    /// Whether the fingers stay on displays that have presented intervals in the trial before.
+    fn continues(&mut self, displays: &[u8]) -> Result<bool, TrialEnd> {
+        if !matches!(self.session.trial.procedure, Procedure::Intervals { .. }) {
+            return Ok(false);
+        }
+        for finger in displays {
+            let address = self.fingers.address(*finger);
+            let status = self
+                .client
+                .ask_finger(address, &QueryState)
+                .map_err(unanswered)?;
+            if status.state != StateName::Stimulus {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    fn choose_materials(&mut self, trial: &PlannedTrial) -> Result<(), TrialEnd> {
+        for presented in &trial.presented {
+            if let Presented::Material {
+                device_finger,
+                material,
+            } = presented
+            {
+                let command = match self.session.custom_material(material) {
+                    Some(custom) => PlainCommand::CustomMaterial(custom),
+                    None => PlainCommand::Material(material.clone()),
+                };
+                self.command(Some(*device_finger), &command)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Arms the displays and waits until they are driven to skin temperature.
+    pub(super) fn arm(&mut self, displays: &[u8]) -> Result<(), TrialEnd> {
+        self.fingers.forget_states();
+        for finger in displays {
+            self.command(Some(*finger), &PlainCommand::Arm)?;
+        }
+        let until_s = self.now_s() + ARM_S;
+        let is_armed = |executor: &mut Self| {
+            let mut all = displays.iter();
+            all.all(|finger| executor.fingers.state(*finger) == Some(StateName::Armed))
+        };
+        if self.wait_for(until_s, is_armed)? {
+            Ok(())
+        } else {
+            Err(TrialEnd::Void(format!(
+                "the device is not armed {ARM_S} s after `arm`"
+            )))
+        }
+    }
+
+    /// Tells the operator which samples go where.
+    fn place_samples(&mut self, trial: &PlannedTrial) -> Result<(), TrialEnd> {
+        let stations = self.session.stations.iter().zip(&trial.presented);
+        let samples: Vec<_> = stations
+            .filter(|(_, presented)| matches!(presented, Presented::Sample { .. }))
+            .map(|(station, presented)| format!("{}: {presented}", station.name))
+            .collect();
+        if !samples.is_empty() {
+            self.operator(OperatorQuestion::Ready(samples.join("; ")))?;
+        }
+        Ok(())
+    }
+
+    /// Lets the displays present their stimuli, and waits until they are ready for the finger.
+    fn present(&mut self, trial: &PlannedTrial, displays: &[u8]) -> Result<(), TrialEnd> {
+        if displays.is_empty() {
+            return Ok(());
+        }
+        // Time in which the device's filters see the skin of this trial.
+        let since_s = self.trial.begin_s();
+        self.wait_until(since_s + WATCH_S)?;
+        self.fingers.forget_states();
+        for presented in &trial.presented {
+            match *presented {
+                Presented::Nothing | Presented::Sample { .. } => {}
+                Presented::Material { device_finger, .. } => {
+                    self.command(Some(device_finger), &PlainCommand::Start)?;
+                }
+                Presented::Hold {
+                    device_finger,
+                    celsius,
+                } => self.command(Some(device_finger), &PlainCommand::Hold(celsius, None))?,
+                Presented::Pulses {
+                    device_finger,
+                    base_c,
+                    ..
+                } => self.command(Some(device_finger), &PlainCommand::Hold(base_c, None))?,
+            }
+        }
+        let until_s = self.now_s() + PREPARE_S;
+        let is_ready = |executor: &mut Self| {
+            let mut all = displays.iter();
+            all.all(|finger| executor.is_at_setpoint(*finger))
+        };
+        if self.wait_for(until_s, is_ready)? {
+            Ok(())
+        } else {
+            let why = format!("the display is not at its set-point after {PREPARE_S} s");
+            Err(TrialEnd::Void(why))
+        }
+    }
+
+    /// Whether a display presents its stimulus and has been at its set-point for some time.
+    fn is_at_setpoint(&self, finger: u8) -> bool {
+        let presents = matches!(
+            self.fingers.state(finger),
+            Some(StateName::Preset | StateName::Contact | StateName::Stimulus)
+        );
+        let lines = self.trial.last_lines(finger, AT_SETPOINT_MS);
+        let span_ms =
+            (lines.first().zip(lines.last())).map_or(0, |(first, last)| last.tick - first.tick);
+        let stream_ms = self
+            .session
+            .device
+            .as_ref()
+            .map_or(0, |device| device.stream_ms);
+        let near = |line: &Telemetry| {
+            let off = line
+                .display_c
+                .zip(line.setpoint_c)
+                .map(|(display, setpoint)| (display - setpoint).abs());
+            off.is_some_and(|off_k| off_k <= AT_SETPOINT_K) && line.state != StateName::Armed
+        };
+        presents && span_ms + stream_ms >= AT_SETPOINT_MS && lines.iter().all(near)
+    }
+}
+
+/// The fingers of the device whose displays a trial uses.
+pub(super) fn device_fingers(trial: &PlannedTrial) -> impl Iterator<Item = u8> {
+    trial.presented.iter().filter_map(Presented::device_finger)
+}
