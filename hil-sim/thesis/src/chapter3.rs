@@ -2,12 +2,12 @@
 
 use contact_model::material::{Material, SKIN};
 use contact_model::reference::{fourier_number, interface_temperature};
+use experiment_statistics::sensitivity::d_prime;
 use serde::Deserialize;
 
 use super::contact_case::{
     SIMULATION_AREA_M2, SIMULATION_PRESSURE_PA, material, tabulated_effusivity,
 };
-use super::sensitivity::d_prime;
 use super::stated_value::cut;
 use super::statement::{STATEMENTS, Statement, read};
 
@@ -54,7 +54,7 @@ pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
         "ratio of contact coefficients" => ratio(Material::effusivity),
         "ratio of cut contact coefficients" => ratio(tabulated_effusivity),
         "ratio of cut contact coefficients, itself cut" => cut(ratio(tabulated_effusivity), 2),
-        HIGH_LOW | LOW_HIGH | TOTAL => d_prime(3, statement.given() / 100.0),
+        HIGH_LOW | LOW_HIGH | TOTAL => d_prime(3, statement.given() / 100.0).ok()?,
         "mean correct of Table 3-3" => mean(&table_3_3()),
         "mean correct of Table 3-5, total" => mean(&table_3_5(TOTAL)),
         "fall from Table 3-3 to 3-5, materials of both" => {

@@ -4,8 +4,8 @@
 
 use contact_model::material::{Material, SKIN, Surface};
 use contact_model::reference::interface_temperature;
+use experiment_statistics::search::bisect;
 
-use super::bisection::bisect;
 use super::contact_case::material;
 use super::statement::Statement;
 

@@ -2,12 +2,15 @@
 
 use contact_model::material::{REFERENCE_DISPLAY, SKIN};
 use contact_model::reference::{contact_resistance, erfcx, fourier_number, interface_temperature};
+use experiment_statistics::distribution::{
+    binomial_tail, chi_square_tail, correlation_tail, f_tail, t_tail,
+};
+use experiment_statistics::sensitivity::d_prime_oddity;
+use experiment_statistics::studentized_range::studentized_range_tail;
 use thermal_plant::finger::FingerParams;
 
 use super::contact_case::{Case, SIMULATION_PRESSURE_PA};
-use super::sensitivity::d_prime_oddity;
 use super::statement::Statement;
-use super::statistics::{binomial_tail, chi_square_2_tail, f_tail, r_tail, range_tail, t_tail};
 
 /// Thickness of the windows of section 5.2.1, m.
 pub(super) const WINDOW_M: f64 = 10e-3;
@@ -24,7 +27,9 @@ pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
         "fall within 10 s, largest that Eq. 3-1 allows" => {
             interface_fall_k(statement, (34.96, 23.0))
         }
-        "d' of the different one of three from {} %" => d_prime_oddity(statement.given() / 100.0),
+        "d' of the different one of three from {} %" => {
+            d_prime_oddity(statement.given() / 100.0).ok()?
+        }
         // What other sections, or other sentences of the same section, say.
         "mean skin before contact, as section 4.2.1 has it" => 33.0,
         "room, as section 4.2.1 has it" => 24.0,
@@ -54,27 +59,31 @@ fn tail(test: &str, value: f64) -> Option<f64> {
         numbers.collect::<Result<_, _>>().ok()
     };
     if let Some(&[of_effect, of_error]) = degrees("F").as_deref() {
-        return Some(f_tail(value, of_effect, of_error));
+        return f_tail(value, of_effect, of_error).ok();
     }
     if let Some(&[means, of_error]) = degrees("q").as_deref() {
-        return Some(range_tail(value, means, of_error));
+        return studentized_range_tail(value, means as u32, of_error).ok();
     }
     if let Some(&[of_error]) = degrees("t").as_deref() {
-        return Some(t_tail(value, of_error));
+        return t_tail(value, of_error).ok();
     }
-    let share =
-        |percent: f64, chance| binomial_tail(value, (percent / 100.0 * value).round(), chance);
-    Some(match test {
-        "chi²(2) = {}" => chi_square_2_tail(value),
-        "r = {}, n = 5" => r_tail(value, 5.0),
-        "r = {}, n = 5, r rounded up" => r_tail(value + 0.005, 5.0),
-        "r = {}, n = 100" => r_tail(value, 100.0),
+    // The value is a number of answers.
+    let share = |percent: f64, chance| {
+        let correct = (percent / 100.0 * value).round();
+        binomial_tail(value as u32, correct as u32, chance)
+    };
+    let p = match test {
+        "chi²(2) = {}" => chi_square_tail(value, 2.0),
+        "r = {}, n = 5" => correlation_tail(value, 5),
+        "r = {}, n = 5, r rounded up" => correlation_tail(value + 0.005, 5),
+        "r = {}, n = 100" => correlation_tail(value, 100),
         "72 % or more of {} answers by chance" => share(72.0, 0.5),
         "70 % or more of {} answers by chance" => share(70.0, 0.5),
         "54 % or more of {} answers by chance of 1/3" => share(54.0, 1.0 / 3.0),
         "40 % or more of {} answers by chance of 1/5" => share(40.0, 0.2),
         _ => return None,
-    })
+    };
+    p.ok()
 }
 
 /// Fall of the skin to the interface temperature of a perfect contact, K.

@@ -1,6 +1,5 @@
 #![doc = include_str!("../README.md")]
 
-mod bisection;
 mod chapter3;
 mod chapter4;
 mod chapter5;
@@ -14,10 +13,8 @@ pub mod measured;
 mod page;
 pub mod roughness;
 pub mod row;
-mod sensitivity;
 mod stated_value;
 mod statement;
-mod statistics;
 mod table;
 
 pub use contact_case::{Case, ClosedForm, ContactSolver, Surfaces};
@@ -25,7 +22,6 @@ pub use finite_volumes::FiniteVolumes;
 pub use json::{Json, json};
 pub use measured::measurements;
 pub use page::{CSV, HTML, write};
-pub use sensitivity::{d_prime, d_prime_oddity};
 pub use stated_value::Stated;
 pub use table::{Counts, table};
 

@@ -2,41 +2,9 @@
 
 use contact_model::material::{average_slope_rad, find};
 use contact_model::reference::fourier_number;
-use documented_figures::run_generator;
 use serde::Deserialize;
-use thermal_thesis::{d_prime, d_prime_oddity};
 
 use super::{NAMES, all_rows, computed, name, table};
-
-#[test]
-fn committed_golden_values_are_those_that_the_generator_writes() {
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/generate.py");
-    run_generator(script, &["--check"]);
-}
-
-#[test]
-fn sensitivities_meet_golden_values() {
-    #[derive(Deserialize)]
-    struct Golden {
-        n_afc: u32,
-        p_correct: f64,
-        d_prime: f64,
-    }
-    let golden = table::<Golden>(include_str!("../../data/dprime.csv"));
-    assert_eq!(golden.len(), 19);
-    for Golden {
-        n_afc,
-        p_correct,
-        d_prime: exact,
-    } in golden
-    {
-        let error = d_prime(n_afc, p_correct) - exact;
-        assert!(
-            error.abs() < 1e-12,
-            "{n_afc}AFC, {p_correct}: off by {error:e}"
-        );
-    }
-}
 
 #[test]
 fn interface_temperatures_meet_golden_values() {
@@ -169,12 +137,4 @@ fn fourier_numbers_bound_the_characteristic_lengths() {
             assert!(!agree(place, t_s, length_m), "{place}: {length_m} m");
         }
     }
-}
-
-/// One third is chance; a half is the value of tables of the triangular method.
-#[test]
-fn sensitivity_to_the_different_one_of_three_starts_at_chance() {
-    assert!(d_prime_oddity(1.0 / 3.0 + 1e-6) < 1e-2);
-    assert!((d_prime_oddity(0.5) - 1.47).abs() < 5e-3);
-    assert!((d_prime_oddity(0.9) - 4.03).abs() < 5e-3);
 }

@@ -1,0 +1,136 @@
+//! Probabilities and quantiles of the distributions of test statistics. Degrees of freedom need not be whole numbers, because
+//! those of Greenhouse and Geisser are none.
+//!
+//! They rest on the regularised incomplete beta and gamma functions and the error function of the crate `statrs`. What is
+//! computed here is the argument: the complement of a number close to one would lose the digits of a small probability.
+
+use statrs::function::beta::beta_reg;
+use statrs::function::erf::{erfc, erfc_inv};
+use statrs::function::gamma::gamma_ur;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2, TAU};
+
+use crate::Result;
+use crate::error::{checked, inner_probability};
+use crate::search::bisect;
+
+/// Cumulative normal distribution. Error below 1e-14 relative for `z` of -30 or more.
+#[must_use]
+pub fn normal_cdf(z: f64) -> f64 {
+    0.5 * erfc(-z * FRAC_1_SQRT_2)
+}
+
+/// Density of the normal distribution.
+#[must_use]
+pub fn normal_density(z: f64) -> f64 {
+    (-0.5 * z * z).exp() / TAU.sqrt()
+}
+
+/// `z` below which a normal variable is with a probability.
+///
+/// # Errors
+/// A probability that is not between 0 and 1.
+pub fn normal_quantile(probability: f64) -> Result<f64> {
+    let p = inner_probability("probability", probability)?;
+    Ok(-SQRT_2 * erfc_inv(2.0 * p))
+}
+
+/// Probability of `f` or more with degrees of freedom of effect and error, from 0 to 1: the incomplete beta function
+/// `I(error / (error + effect f); error / 2, effect / 2)`.
+///
+/// # Errors
+/// `f` is negative or no number, or degrees of freedom are not positive and finite.
+pub fn f_tail(f: f64, effect_df: f64, error_df: f64) -> Result<f64> {
+    let f = not_negative("F", f)?;
+    let effect_df = degrees(effect_df)?;
+    let error_df = degrees(error_df)?;
+    let explained = effect_df * f;
+    if explained.is_infinite() {
+        return Ok(0.0);
+    }
+    let total = explained + error_df;
+    // Whichever argument is small has all its digits.
+    Ok(if explained > error_df {
+        beta_reg(0.5 * error_df, 0.5 * effect_df, error_df / total)
+    } else {
+        1.0 - beta_reg(0.5 * effect_df, 0.5 * error_df, explained / total)
+    })
+}
+
+/// Probability of `t` or more of either sign, from 0 to 1.
+///
+/// # Errors
+/// `t` is no number, or degrees of freedom are not positive and finite.
+pub fn t_tail(t: f64, df: f64) -> Result<f64> {
+    f_tail(
+        checked("t", t, "a number", |t| !t.is_nan())?.powi(2),
+        1.0,
+        df,
+    )
+}
+
+/// `t` that is exceeded, with either sign, with a probability.
+///
+/// # Errors
+/// A probability that is not between 0 and 1, or degrees of freedom that are not positive and finite.
+pub fn t_quantile(probability: f64, df: f64) -> Result<f64> {
+    /// Above the quantile of 1e-9 with one degree of freedom.
+    const T_MAX: f64 = 1e9;
+    let probability = inner_probability("probability", probability)?;
+    let df = degrees(df)?;
+    let falling = |t: f64| -t_tail(t, df).unwrap_or(0.0);
+    Ok(bisect(falling, -probability, 0.0, T_MAX))
+}
+
+/// Probability of a correlation of `r` or more of either sign between `pairs` uncorrelated pairs: that of
+/// `t = r sqrt((n - 2) / (1 - r²))`.
+///
+/// # Errors
+/// `r` is not from -1 to 1, or there are fewer than three pairs.
+pub fn correlation_tail(r: f64, pairs: usize) -> Result<f64> {
+    let r = checked("r", r, "from -1 to 1", |r| (-1.0..=1.0).contains(&r))?;
+    crate::error::at_least("pairs", pairs, 3)?;
+    let df = (pairs - 2) as f64;
+    f_tail(r * r * df / ((1.0 - r) * (1.0 + r)), 1.0, df)
+}
+
+/// Probability of `chi²` or more, from 0 to 1: the incomplete gamma function.
+///
+/// # Errors
+/// `chi²` is negative or no number, or degrees of freedom are not positive and finite.
+pub fn chi_square_tail(chi_square: f64, df: f64) -> Result<f64> {
+    let chi_square = not_negative("chi²", chi_square)?;
+    let df = degrees(df)?;
+    Ok(match chi_square {
+        0.0 => 1.0,
+        f64::INFINITY => 0.0,
+        _ => gamma_ur(0.5 * df, 0.5 * chi_square),
+    })
+}
+
+/// Probability of at least `least` correct of `total` answers, each of which is correct with the probability `chance`:
+/// `sum over k from least of C(n, k) c^k (1 - c)^(n - k)`, which is the incomplete beta function `I(c; least, n - least + 1)`.
+///
+/// # Errors
+/// A chance that is not from 0 to 1.
+pub fn binomial_tail(total: u32, least: u32, chance: f64) -> Result<f64> {
+    let chance = checked("chance", chance, "from 0 to 1", |c| {
+        (0.0..=1.0).contains(&c)
+    })?;
+    Ok(if least == 0 {
+        1.0
+    } else if least > total {
+        0.0
+    } else {
+        beta_reg(f64::from(least), f64::from(total - least) + 1.0, chance)
+    })
+}
+
+fn not_negative(what: &'static str, value: f64) -> Result<f64> {
+    checked(what, value, "0 or more", |value| value >= 0.0)
+}
+
+pub(crate) fn degrees(df: f64) -> Result<f64> {
+    checked("degrees of freedom", df, "positive and finite", |df| {
+        df > 0.0 && df.is_finite()
+    })
+}
