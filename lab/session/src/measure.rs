@@ -134,7 +134,11 @@ mod tests {
 
     fn near(value: Option<f64>, expected: f64) {
         let value = value.expect("measured");
-        assert!((value - expected).abs() < 1e-2, "{value} is not {expected}");
+        // A line of telemetry comes every 10 ms.
+        assert!(
+            (value - expected).abs() < 1.5e-2,
+            "{value} is not {expected}"
+        );
     }
 
     #[test]

@@ -105,7 +105,7 @@ impl Recorder {
         if log_path.exists() {
             return Err(RecordingError::Exists(log_path));
         }
-        let plan_csv = plan.csv(session);
+        let plan_csv = plan.csv();
         let info = SessionInfo {
             title: session.title.clone(),
             task: session.task.clone(),
