@@ -7,14 +7,14 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use std::time::Duration;
 
-use contact_model::material::{Material, find};
+use contact_model::material::Material;
 use serde::Serialize;
 use thermal_client::link::{LineSplitter, Link, LinkError, ReceivedLine};
 use thermal_plant::finger::FingerParams;
 use thermal_plant::parameters::stream_seed;
 use thermal_plant::{ConfigError, Params};
 use thermal_session::{
-    AnswerKind, Decision, People, Phase, Plan, PlannedTrial, Presented, Procedure, Response,
+    AnswerKind, ContactRule, Decision, Departure, People, Phase, Plan, PlannedTrial, Presented, Procedure, Response,
     Session, Update,
 };
 
@@ -40,7 +40,7 @@ pub enum BenchError {
     #[error("the simulated device: {0}")]
     Device(String),
     /// A material whose properties are not known.
-    #[error("material {0} is not known; give its properties with the bench's options")]
+    #[error("material {0} is not known")]
     Material(String),
     /// The simulated observer does not know what these answers mean.
     #[error(
@@ -70,8 +70,6 @@ pub struct BenchOptions {
     pub edge_share: Option<f64>,
     /// Seed of the device's parts.
     pub device_seed: u64,
-    /// Materials beside those of the thesis.
-    pub materials: Vec<(String, Material)>,
     /// What happens on purpose.
     pub events: Vec<SimulatedEvent>,
 }
@@ -86,21 +84,12 @@ impl Default for BenchOptions {
             room_c: 24.0,
             edge_share: None,
             device_seed: 1,
-            materials: Vec::new(),
             events: Vec::new(),
         }
     }
 }
 
 impl BenchOptions {
-    /// The material with a name.
-    fn material(&self, name: &str) -> Result<Material, BenchError> {
-        let own = self.materials.iter().find(|(known, _)| known == name);
-        own.map(|(_, material)| *material)
-            .or_else(|| find(name).copied())
-            .ok_or_else(|| BenchError::Material(name.into()))
-    }
-
     /// Parameters of plants with this finger.
     fn params(&self) -> Params {
         let mut params = Params::nominal();
@@ -198,7 +187,7 @@ impl Bench {
         let stations = || plan.trials.iter().flat_map(|trial| &trial.presented);
         for presented in stations() {
             if let Presented::Sample { material } = presented {
-                options.material(material)?;
+                known_material(session, material)?;
             }
         }
         let device = match stations().filter_map(device_finger).max() {
@@ -465,33 +454,39 @@ fn task(
         skin_c: participant.rest_c,
         room_c: options.room_c,
         hand: participant.hand,
+        contact: ContactRule::Free,
         decision_median_s: participant.observer.decision_median_s,
         decision_sigma_ln: participant.observer.decision_sigma_ln,
     };
     let expected_k: Result<Vec<f64>, BenchError> = words
         .iter()
         .map(|word| {
-            let material = options.material(word).map_err(|_| not_understood())?;
+            let material = known_material(session, word).map_err(|_| not_understood())?;
             mean_fall_k(&setup, &material)
         })
         .collect();
     Ok(Some(Task::Identify(expected_k?)))
 }
 
-/// 1 if the intervals of the plan depart to the cold, -1 if to the warm.
-fn interval_sign(plan: &Plan) -> f64 {
-    use thermal_session::Departure;
-    let departures = plan.trials.iter().flat_map(|trial| &trial.presented);
-    let sum: f64 = departures
-        .filter_map(|presented| match presented {
-            Presented::Pulses { departures_k, .. } => Some(departures_k),
-            _ => None,
-        })
-        .flatten()
-        .map(|departure| match departure {
+/// The material of a name in a session.
+fn known_material(session: &Session, name: &str) -> Result<Material, BenchError> {
+    (session.material(name)).ok_or_else(|| BenchError::Material(name.into()))
+}
+
+/// The direction that the participant knows: 1 if all intervals of the plan depart to the cold, -1 if all to the warm.
+fn interval_sign(plan: &Plan) -> Option<f64> {
+    let stations = plan.trials.iter().flat_map(|trial| &trial.presented);
+    let pulses = stations.filter_map(|presented| match presented {
+        Presented::Pulses { departures_k, .. } => Some(departures_k),
+        _ => None,
+    });
+    let mut directions = pulses.flatten().filter_map(|departure| {
+        let towards_k = match departure {
             Departure::Fixed(k) => *k,
             Departure::Staircase { standard_k, sign } => standard_k + sign,
-        })
-        .sum();
-    if sum > 0.0 { -1.0 } else { 1.0 }
+        };
+        (towards_k != 0.0).then_some(-towards_k.signum())
+    });
+    let first = directions.next()?;
+    directions.all(|sign| sign == first).then_some(first)
 }

@@ -39,13 +39,15 @@ pub struct TouchSetup {
     pub room_c: f64,
     /// The hand.
     pub hand: HandParams,
+    /// How it touches.
+    pub contact: ContactRule,
     /// Median of the time to the decision, s.
     pub decision_median_s: f64,
     /// Standard deviation of its logarithm.
     pub decision_sigma_ln: f64,
 }
 
-/// Free exploration of one finger until the decision.
+/// What one finger does until the decision.
 #[derive(Clone, Debug)]
 pub struct Exploration {
     course: ForceCourse,
@@ -60,7 +62,7 @@ impl Exploration {
         let decision_s = random
             .log_normal(setup.decision_median_s, setup.decision_sigma_ln)
             .min(CONTACT_MAX_S);
-        let touches = Touches::new(&setup.hand, ContactRule::Free, CONTACT_MAX_S, &mut random);
+        let touches = Touches::new(&setup.hand, setup.contact, CONTACT_MAX_S, &mut random);
         Self {
             course: ForceCourse::new(&setup.hand, &touches, None, &mut random),
             steps: (decision_s * 1e3).round() as u32,

@@ -48,11 +48,11 @@ impl ObserverParams {
     /// Touching materials. Noise, factor of three fingers and lapses are fitted to Tables 3-3 and 3-5 of the thesis together
     /// (35 cells; [`crate::predictions::fit`]); the factor of identification is fitted to the 55 % of section 4.2.
     pub const TOUCH: Self = Self {
-        s0_k: 0.58,
-        w: 0.154,
-        three_finger_factor: 2.1,
-        identification_factor: 1.5,
-        lapse: 0.07,
+        s0_k: 0.59,
+        w: 0.163,
+        three_finger_factor: 1.95,
+        identification_factor: 1.62,
+        lapse: 0.048,
         decision_median_s: 5.0,
         decision_sigma_ln: 0.3,
         right_bias_k: 0.0,
@@ -110,8 +110,8 @@ pub enum Task {
     Identify(Vec<f64>),
     /// Whether both stations feel the same: index of the answer `same`, and of `different`.
     Same(usize, usize),
-    /// In which of two intervals the change was larger: 1 for a fall, -1 for a rise.
-    Interval(f64),
+    /// In which of two intervals the change was larger: 1 if it is known to be a fall, -1 if a rise, `None` if it may be either.
+    Interval(Option<f64>),
     /// How cold each station feels: the numbers of no fall and of [`MAGNITUDE_FULL_K`] or more.
     Magnitude(f64, f64),
 }
@@ -206,7 +206,10 @@ impl Task {
                 let is_different = off_k > params.different_from_sd * factor * noise_k;
                 Some(if is_different { *different } else { *same })
             }
-            Self::Interval(sign) => argmax(felt_k.iter().map(|felt_k| Some(sign * (*felt_k)?))),
+            Self::Interval(sign) => argmax(felt_k.iter().map(|felt_k| {
+                let felt_k = (*felt_k)?;
+                Some(sign.map_or(felt_k.abs(), |sign| sign * felt_k))
+            })),
             Self::Magnitude(..) => None,
         };
         choice.map(Judgement::Choice)

@@ -1,7 +1,7 @@
 //! A participant: skin, hand and observer.
 
 use serde::{Deserialize, Serialize};
-use thermal_session::{Procedure, Session};
+use thermal_session::{Procedure, Session, Station};
 
 use crate::random::Stream;
 use crate::{HandParams, ObserverParams};
@@ -99,10 +99,14 @@ impl Participant {
 }
 
 impl ObserverParams {
-    /// The parameters for a session: those of a thermode where the finger rests on the display, otherwise those of touch.
+    /// The parameters for a session: those of a thermode where the skin rests on the display, otherwise those of touch.
     #[must_use]
-    pub const fn of_session(session: &Session) -> Self {
+    pub fn of_session(session: &Session) -> Self {
+        let is_thenar = |station: &Station| station.finger.contains("thenar");
         match session.trial.procedure {
+            Procedure::Intervals { .. } if session.stations.iter().any(is_thenar) => {
+                Self::THERMODE_THENAR
+            }
             Procedure::Intervals { .. } => Self::THERMODE_FINGERTIP,
             Procedure::Touch { .. } => Self::TOUCH,
         }

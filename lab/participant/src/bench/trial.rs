@@ -6,7 +6,7 @@ use thermal_session::{
 };
 use thermal_sim::scene::ActiveFault;
 
-use super::{BenchError, Observation, Setting, device_finger};
+use super::{BenchError, Observation, Setting, device_finger, known_material};
 use crate::device::RunningDevice;
 use crate::falls::{both, sample_touch};
 use crate::hand::{ForceCourse, Touches};
@@ -119,7 +119,7 @@ impl RunningTrial {
             let stimulus = match presented {
                 Presented::Nothing => Stimulus::Nothing,
                 Presented::Sample { material } => {
-                    let material = options.material(material)?;
+                    let material = known_material(session, material)?;
                     let temperatures_c = (skin_c, options.room_c);
                     let touch = sample_touch(&setting.params, temperatures_c, &material)?;
                     // A finger at rest stays as it is until it lands.

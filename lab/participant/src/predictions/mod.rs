@@ -14,6 +14,7 @@ use serde::Serialize;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_plant::Params;
+use thermal_session::ContactRule;
 
 use crate::device::PreparedDevice;
 use crate::falls::{Exploration, TouchSetup, mean_fall_k};
@@ -180,6 +181,8 @@ pub struct IdenticalResult {
 pub struct RealAgainstSimulated {
     /// Skin and room, °C.
     pub skin_room_c: (f64, f64),
+    /// Whether the participants lift and replace their fingers, as in the thesis.
+    pub lifts: bool,
     /// Pairs of different materials.
     pub pairs: Vec<PairResult>,
     /// Mean per cent correct over them.
@@ -229,19 +232,20 @@ pub struct Report {
     pub tables: Vec<TableResult>,
     /// Section 4.2.
     pub identification: Identification,
-    /// Section 4.3 at its gate, and with the skin that it reports.
-    pub real_against_simulated: [RealAgainstSimulated; 2],
+    /// Section 4.3 at its gate, with the skin that it reports, and at its gate with one touch in place of many.
+    pub real_against_simulated: [RealAgainstSimulated; 3],
     /// Worth of errors of the skin's temperature.
     pub worth: Vec<Worth>,
 }
 
 /// Finger, room and hand of a section, with a participant at its temperatures, °C.
-fn setup((skin_c, room_c): (f64, f64)) -> TouchSetup {
+fn setup((skin_c, room_c): (f64, f64), contact: ContactRule) -> TouchSetup {
     TouchSetup {
         params: Params::nominal(),
         skin_c,
         room_c,
         hand: HandParams::TYPICAL,
+        contact,
         decision_median_s: ObserverParams::TOUCH.decision_median_s,
         decision_sigma_ln: ObserverParams::TOUCH.decision_sigma_ln,
     }
@@ -256,7 +260,7 @@ fn material(name: &str) -> Result<&'static Material, BenchError> {
 /// # Errors
 /// The simulated plant does not accept a value.
 pub fn falls_of_chapter_3() -> Result<Falls, PredictionError> {
-    let setup = setup(SECTION_3);
+    let setup = setup(SECTION_3, ContactRule::Free);
     let names = TABLE_3_3_MATERIALS.iter().chain(&["granite"]);
     let falls_k: Result<Vec<_>, BenchError> = names
         .map(|name| Ok(((*name).to_owned(), mean_fall_k(&setup, material(name)?)?)))
@@ -399,10 +403,11 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 /// Mean falls of explorations on samples, and on the display in each of `modes`, K: a row for each material.
 fn falls_on_samples_and_displays(
     skin_room_c: (f64, f64),
+    contact: ContactRule,
     materials: &[&str],
     modes: &[DisplayMode],
 ) -> Result<Vec<Vec<f64>>, PredictionError> {
-    let setup = setup(skin_room_c);
+    let setup = setup(skin_room_c, contact);
     let device = PreparedDevice::new(&setup.params, setup.room_c, DEVICE_SEED, 1)?;
     let explorations: Vec<Exploration> =
         (0..EXPLORATIONS).map(|number| Exploration::new(&setup, number)).collect();
@@ -424,6 +429,7 @@ fn falls_on_samples_and_displays(
 fn identification(observer: &ObserverParams) -> Result<Identification, PredictionError> {
     let falls_k = falls_on_samples_and_displays(
         SECTION_4_2_C,
+        ContactRule::Free,
         &SECTION_4_2_MATERIALS,
         &[DisplayMode::SemiInfinitePi10Hz],
     )?;
@@ -517,9 +523,14 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
 pub fn real_against_simulated(
     observer: &ObserverParams,
     skin_room_c: (f64, f64),
+    contact: ContactRule,
 ) -> Result<RealAgainstSimulated, PredictionError> {
-    let falls_k =
-        falls_on_samples_and_displays(skin_room_c, &SECTION_4_3_MATERIALS, &DisplayMode::ALL)?;
+    let falls_k = falls_on_samples_and_displays(
+        skin_room_c,
+        contact,
+        &SECTION_4_3_MATERIALS,
+        &DisplayMode::ALL,
+    )?;
     let named = || SECTION_4_3_MATERIALS.iter().zip(&falls_k).enumerate();
     let (mut pairs, mut identical) = (Vec::new(), Vec::new());
     for (of_real, (real, real_row)) in named() {
@@ -550,6 +561,7 @@ pub fn real_against_simulated(
     let differences = pairs.iter().map(|pair| (pair.correct[1] - pair.correct[0]).abs());
     Ok(RealAgainstSimulated {
         skin_room_c,
+        lifts: contact == ContactRule::Free,
         means,
         largest_difference: differences.fold(0.0, f64::max),
         checks: check_section_4_3(&pairs, &identical),
@@ -679,8 +691,9 @@ pub fn report() -> Result<Report, PredictionError> {
         tables,
         identification: identification(&observer)?,
         real_against_simulated: [
-            real_against_simulated(&observer, SECTION_4_3_C)?,
-            real_against_simulated(&observer, SECTION_4_3_REPORTED_C)?,
+            real_against_simulated(&observer, SECTION_4_3_C, ContactRule::Free)?,
+            real_against_simulated(&observer, SECTION_4_3_REPORTED_C, ContactRule::Free)?,
+            real_against_simulated(&observer, SECTION_4_3_C, ContactRule::Hold)?,
         ],
         worth: worth(&observer, &falls),
         falls,

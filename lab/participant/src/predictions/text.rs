@@ -76,7 +76,8 @@ impl fmt::Display for RealAgainstSimulated {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (skin_c, room_c) = self.skin_room_c;
         let [first, second] = DisplayMode::ALL.map(DisplayMode::words);
-        writeln!(f, "\nSection 4.3 (P5), predicted, {skin_c}/{room_c} C: {first} and {second}")?;
+        let touches = if self.lifts { "lifting and replacing" } else { "one touch" };
+        writeln!(f, "\nSection 4.3 (P5), predicted, {skin_c}/{room_c} C, {touches}: {first} and {second}")?;
         for pair in &self.pairs {
             let [a, b] = pair.correct;
             let published = if pair.published_below { "published below 72" } else { "" };

@@ -1,4 +1,6 @@
-//! Whole sessions of simulated participants.
+//! Whole sessions of simulated participants, run by the executor.
 
-mod driver;
+mod displays;
+mod reproducibility;
+mod run;
 mod samples;

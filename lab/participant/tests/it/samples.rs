@@ -1,38 +1,38 @@
 //! Sessions on samples of real materials.
 
-use std::time::Instant;
+use thermal_participant::{BenchOptions, HandParams, ObserverParams};
 
-use contact_model::material::find;
-use thermal_participant::{Bench, BenchOptions, HandParams, ObserverParams};
-use thermal_session::{PlannedTrial, Response};
+use crate::run::{run, session};
 
-use crate::driver::{plan, run_samples, sample_trial, session, touch_samples};
-
-const MATERIALS: [&str; 6] = ["copper", "bronze", "stainless-steel", "g10", "abs", "foam"];
-
-/// All ordered pairs.
-fn pairs() -> Vec<PlannedTrial> {
-    let ordered = MATERIALS
-        .iter()
-        .flat_map(|left| MATERIALS.iter().map(move |right| (left, right)));
-    (1..)
-        .zip(ordered)
-        .map(|(number, (left, right))| sample_trial(number, &[left, right]))
-        .collect()
+#[test]
+fn an_observer_without_noise_is_always_right() {
+    let options = BenchOptions {
+        observer: Some(ObserverParams::NOISE_FREE),
+        hand: HandParams::STEADY,
+        ..BenchOptions::default()
+    };
+    for file in ["p1-discrimination.toml", "p3-localisation.toml"] {
+        let ran = run(&format!("noise-free-{file}"), &session(file, &[]), options.clone(), 1000);
+        let (correct, all) = ran.correct();
+        assert_eq!(correct, all, "{file}");
+        assert!(all >= 60, "{file}: {all}");
+        assert!(ran.records.iter().all(|record| record.void.is_none()));
+    }
 }
 
 #[test]
-fn speed() {
-    let plan = plan(pairs());
-    let session = session(&["left", "right"], &["left", "right"]);
-    let begin = Instant::now();
-    let bench = Bench::new(&session, &plan, "P01", 1, BenchOptions::default()).expect("a bench");
-    let observations = run_samples(&bench, &plan);
-    let s = begin.elapsed().as_secs_f64();
-    println!("{} trials in {s} s", observations.len());
-    for o in observations.iter().take(12) {
-        println!("{o:?}");
+fn a_random_observer_is_at_chance() {
+    let options = BenchOptions {
+        observer: Some(ObserverParams::RANDOM),
+        ..BenchOptions::default()
+    };
+    for (file, chance) in [("p1-discrimination.toml", 0.5), ("p3-localisation.toml", 1.0 / 3.0)] {
+        let ran = run(&format!("random-{file}"), &session(file, &[]), options.clone(), 1000);
+        let (correct, all) = ran.correct();
+        // 3.3 standard deviations: 99.9 % of a binomial distribution of this many trials.
+        let expected = chance * all as f64;
+        let sd = (expected * (1.0 - chance)).sqrt();
+        let off = (correct as f64 - expected).abs();
+        assert!(off <= 3.3 * sd + 0.5, "{file}: {correct} of {all}");
     }
-    let _ = (find("copper"), HandParams::STEADY, ObserverParams::NOISE_FREE);
-    let _: Option<Response> = touch_samples(&bench, &plan.trials[0], 2, 3);
 }
