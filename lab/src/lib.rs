@@ -4,5 +4,6 @@
 pub mod bring_up;
 pub mod link;
 pub mod person;
+pub mod terminal_people;
 
 pub use thermal_client::{client, commissioning};
