@@ -36,7 +36,13 @@ pub struct TerminalPeople<'a> {
 
 impl<'a> TerminalPeople<'a> {
     /// Persons of a session with so many stations.
-    pub fn of_session(lines: Lines, screen: &'a mut dyn Write, stop: StopFlag, tones: Option<Tones>, stations: usize) -> Self {
+    pub fn of_session(
+        lines: Lines,
+        screen: &'a mut dyn Write,
+        stop: StopFlag,
+        tones: Option<Tones>,
+        stations: usize,
+    ) -> Self {
         Self {
             lines,
             screen,
@@ -99,7 +105,9 @@ impl<'a> TerminalPeople<'a> {
             match orders.into_iter().find(|order| order.word() == line) {
                 Some(order) => self.order = Some(order),
                 None if line.is_empty() => {}
-                None => self.tell(&format!("'{line}' is no order; allowed: arm, clear, abort, stop")),
+                None => self.tell(&format!(
+                    "'{line}' is no order; allowed: arm, clear, abort, stop"
+                )),
             }
             return;
         }
@@ -121,7 +129,9 @@ impl<'a> TerminalPeople<'a> {
                 Err(why) => self.tell(&why),
             }
         } else if !line.is_empty() {
-            self.tell(&format!("'{line}' is not expected now; `stop` ends with the bridge off"));
+            self.tell(&format!(
+                "'{line}' is not expected now; `stop` ends with the bridge off"
+            ));
         }
     }
 
@@ -129,12 +139,18 @@ impl<'a> TerminalPeople<'a> {
         self.tell(&question.ask);
         match &question.kind {
             AnswerKind::OneOf(words) => {
-                let lines = words.iter().enumerate().map(|(index, word)| format!("  {}  {word}", index + 1));
+                let lines = words
+                    .iter()
+                    .enumerate()
+                    .map(|(index, word)| format!("  {}  {word}", index + 1));
                 let lines: Vec<_> = lines.collect();
                 self.tell(&lines.join("\n"));
             }
             AnswerKind::NumberPerStation(least, most) => {
-                let text = format!("  {} numbers from {least} to {most}, with spaces between", self.stations);
+                let text = format!(
+                    "  {} numbers from {least} to {most}, with spaces between",
+                    self.stations
+                );
                 self.tell(&text);
             }
         }
@@ -161,13 +177,21 @@ impl<'a> TerminalPeople<'a> {
             self.tell(&format!("{word}: {meaning}"));
             if let Some(fault) = telemetry.fault() {
                 let words = thermal_client::fault_words(fault);
-                self.tell(&format!("  {}: {}. What to do: {}.", fault.name(), words.meaning, words.remedy));
+                self.tell(&format!(
+                    "  {}: {}. What to do: {}.",
+                    fault.name(),
+                    words.meaning,
+                    words.remedy
+                ));
             }
         }
-        let due = self.last_tick.is_none_or(|last| telemetry.tick.wrapping_sub(last) >= READINGS_EVERY_TICKS);
+        let due = self
+            .last_tick
+            .is_none_or(|last| telemetry.tick.wrapping_sub(last) >= READINGS_EVERY_TICKS);
         if self.readings && due {
             self.last_tick = Some(telemetry.tick);
-            let number = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.2}"));
+            let number =
+                |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.2}"));
             let text = format!(
                 "set-point {} C, display {} C, skin {} C, force {} N, current {} A",
                 number(telemetry.setpoint_c),
@@ -185,21 +209,37 @@ impl<'a> TerminalPeople<'a> {
 fn response(question: &Question, stations: usize, line: &str) -> Result<Response, String> {
     match &question.kind {
         AnswerKind::OneOf(words) => {
-            let number = line.parse::<usize>().ok().filter(|number| (1..=words.len()).contains(number));
-            let word = || words.iter().position(|word| word.eq_ignore_ascii_case(line));
+            let number = line
+                .parse::<usize>()
+                .ok()
+                .filter(|number| (1..=words.len()).contains(number));
+            let word = || {
+                words
+                    .iter()
+                    .position(|word| word.eq_ignore_ascii_case(line))
+            };
             let index = number.map(|number| number - 1).or_else(word);
-            index
-                .map(Response::Choice)
-                .ok_or_else(|| format!("'{line}' is no answer; allowed: 1 to {}, or the word", words.len()))
+            index.map(Response::Choice).ok_or_else(|| {
+                format!(
+                    "'{line}' is no answer; allowed: 1 to {}, or the word",
+                    words.len()
+                )
+            })
         }
         AnswerKind::NumberPerStation(least, most) => {
-            let numbers = line.split_ascii_whitespace().map(|word| word.replace(',', ".").parse::<f64>().ok());
+            let numbers = line
+                .split_ascii_whitespace()
+                .map(|word| word.replace(',', ".").parse::<f64>().ok());
             let numbers: Option<Vec<f64>> = numbers.collect();
-            let fits = |numbers: &Vec<f64>| numbers.len() == stations && numbers.iter().all(|number| (*least..=*most).contains(number));
-            numbers
-                .filter(fits)
-                .map(Response::Numbers)
-                .ok_or_else(|| format!("'{line}' is no answer; allowed: {stations} numbers from {least} to {most}"))
+            let fits = |numbers: &Vec<f64>| {
+                numbers.len() == stations
+                    && numbers
+                        .iter()
+                        .all(|number| (*least..=*most).contains(number))
+            };
+            numbers.filter(fits).map(Response::Numbers).ok_or_else(|| {
+                format!("'{line}' is no answer; allowed: {stations} numbers from {least} to {most}")
+            })
         }
     }
 }
@@ -208,9 +248,14 @@ impl People for TerminalPeople<'_> {
     fn inform(&mut self, update: &Update) {
         match update {
             Update::Trial { trial, attempt, of } => {
-                self.tell(&format!("trial {} of {of}, block {}, attempt {attempt}", trial.number, trial.block));
+                self.tell(&format!(
+                    "trial {} of {of}, block {}, attempt {attempt}",
+                    trial.number, trial.block
+                ));
             }
-            Update::Phase(phase) => self.tell(&format!("{}: {}", phase.name(), texts::phase(*phase))),
+            Update::Phase(phase) => {
+                self.tell(&format!("{}: {}", phase.name(), texts::phase(*phase)))
+            }
             Update::Cue(cue) => {
                 if let Some(tones) = &self.tones {
                     tones.play(*cue);
@@ -263,5 +308,136 @@ impl MonitorPeople for TerminalPeople<'_> {
 
     fn is_closing(&self) -> bool {
         self.stop.is_closing()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io;
+    use std::sync::mpsc::{Sender, channel};
+
+    use thermal_session::Phase;
+
+    use super::*;
+
+    fn people<'a>(
+        screen: &'a mut Vec<u8>,
+        stop: &StopFlag,
+    ) -> (TerminalPeople<'a>, Sender<io::Result<String>>) {
+        let (sender, lines) = channel();
+        (
+            TerminalPeople::of_session(lines, screen, stop.clone(), None, 2),
+            sender,
+        )
+    }
+
+    fn enter(sender: &Sender<io::Result<String>>, line: &str) {
+        sender.send(Ok(line.into())).unwrap();
+    }
+
+    fn one_of_two() -> Update {
+        Update::Ask(Question {
+            ask: "Which side felt colder?".into(),
+            kind: AnswerKind::OneOf(vec!["left".into(), "right".into()]),
+        })
+    }
+
+    #[test]
+    fn an_answer_is_its_number_or_its_word_and_anything_else_is_refused() {
+        let mut screen = Vec::new();
+        let (mut people, sender) = people(&mut screen, &StopFlag::default());
+        people.inform(&one_of_two());
+        enter(&sender, "3");
+        assert_eq!(people.response(), None);
+        enter(&sender, "2");
+        assert_eq!(people.response(), Some(Response::Choice(1)));
+        people.inform(&one_of_two());
+        enter(&sender, "Left");
+        assert_eq!(people.response(), Some(Response::Choice(0)));
+        drop(people);
+        let screen = String::from_utf8(screen).unwrap();
+        assert!(
+            screen.contains("'3' is no answer; allowed: 1 to 2, or the word"),
+            "{screen}"
+        );
+    }
+
+    #[test]
+    fn numbers_are_entered_in_one_line() {
+        let mut screen = Vec::new();
+        let (mut people, sender) = people(&mut screen, &StopFlag::default());
+        people.inform(&Update::Ask(Question {
+            ask: "How cold?".into(),
+            kind: AnswerKind::NumberPerStation(0.0, 100.0),
+        }));
+        for wrong in ["40", "40 101", "40 x"] {
+            enter(&sender, wrong);
+            assert_eq!(people.response(), None);
+        }
+        enter(&sender, "40 62,5");
+        assert_eq!(people.response(), Some(Response::Numbers(vec![40.0, 62.5])));
+    }
+
+    #[test]
+    fn decisions_are_letters_while_the_participant_answers_with_numbers() {
+        let mut screen = Vec::new();
+        let (mut people, sender) = people(&mut screen, &StopFlag::default());
+        people.inform(&one_of_two());
+        people.inform(&Update::Decide(OperatorQuestion::SkinNotReady {
+            skin_c: None,
+            wanted_c: 34.0,
+        }));
+        enter(&sender, "w");
+        enter(&sender, "1");
+        assert_eq!(people.decision(), Some(Decision::Wait));
+        assert_eq!(people.response(), Some(Response::Choice(0)));
+    }
+
+    #[test]
+    fn stop_and_the_end_of_the_input_stop() {
+        for ends in [false, true] {
+            let mut screen = Vec::new();
+            let stop = StopFlag::default();
+            let (mut people, sender) = people(&mut screen, &stop);
+            assert_eq!(people.decision(), None);
+            if !ends {
+                enter(&sender, "STOP");
+            }
+            drop(sender);
+            assert_eq!(people.decision(), Some(Decision::Stop));
+            assert!(stop.is_closing());
+        }
+    }
+
+    #[test]
+    fn a_monitor_takes_its_orders_and_names_what_is_allowed() {
+        let mut screen = Vec::new();
+        let (sender, lines) = channel();
+        let mut people = TerminalPeople::of_monitor(lines, &mut screen, StopFlag::default());
+        enter(&sender, "start");
+        assert_eq!(people.order(), None);
+        enter(&sender, "arm");
+        assert_eq!(people.order(), Some(Order::Arm));
+        enter(&sender, "arm");
+        enter(&sender, "stop");
+        assert_eq!(people.order(), Some(Order::Off));
+        assert!(people.is_closing());
+        drop(people);
+        let screen = String::from_utf8(screen).unwrap();
+        assert!(
+            screen.contains("'start' is no order; allowed: arm, clear, abort, stop"),
+            "{screen}"
+        );
+        assert!(screen.contains(texts::EMERGENCY_STOP), "{screen}");
+    }
+
+    #[test]
+    fn phases_and_cues_are_plain_lines() {
+        let mut screen = Vec::new();
+        let (mut people, _sender) = people(&mut screen, &StopFlag::default());
+        people.inform(&Update::Phase(Phase::Contact));
+        people.inform(&Update::Cue(thermal_session::Cue::Touch));
+        drop(people);
+        assert_eq!(screen, b"contact: the participant touches\n>> Touch\n");
     }
 }

@@ -19,7 +19,16 @@ use thermal_window::{
 };
 
 const SCREENS: [&str; 11] = [
-    "monitor", "tripped", "rest", "ready", "skin", "choice", "many", "numbers", "cue", "force",
+    "monitor",
+    "tripped",
+    "rest",
+    "ready",
+    "skin",
+    "choice",
+    "many",
+    "numbers",
+    "cue",
+    "force",
     "instruction",
 ];
 /// Interval of the scripted telemetry, ms.
@@ -90,8 +99,13 @@ fn trial() -> Update {
             break_before: false,
             levels: vec!["copper".into(), "granite".into()],
             presented: vec![
-                Presented::Sample { material: "copper".into() },
-                Presented::Material { device_finger: 0, material: "granite".into() },
+                Presented::Sample {
+                    material: "copper".into(),
+                },
+                Presented::Material {
+                    device_finger: 0,
+                    material: "granite".into(),
+                },
             ],
             staircase: None,
             target_force_n: Some(1.0),
@@ -103,9 +117,16 @@ fn trial() -> Update {
 }
 
 fn begin(people: &mut WindowPeople, screen: &str) {
-    let question = |ask: &str, kind| Update::Ask(Question { ask: ask.into(), kind });
+    let question = |ask: &str, kind| {
+        Update::Ask(Question {
+            ask: ask.into(),
+            kind,
+        })
+    };
     let words = |words: &[&str]| AnswerKind::OneOf(words.iter().map(ToString::to_string).collect());
-    people.inform(&Update::Notice("connected: thermal-display 0.2.0, 1 finger (demonstration)".into()));
+    people.inform(&Update::Notice(
+        "connected: thermal-display 0.2.0, 1 finger (demonstration)".into(),
+    ));
     if ["monitor", "tripped"].contains(&screen) {
         return;
     }
@@ -170,7 +191,9 @@ fn script(people: &mut WindowPeople, screen: &str) {
         } else if let Some(decision) = people.decision() {
             people.inform(&Update::Notice(format!("decided: {decision:?}")));
             if decision == Decision::Stop {
-                people.inform(&Update::Ended(Some("the operator has stopped; the bridge is off".into())));
+                people.inform(&Update::Ended(Some(
+                    "the operator has stopped; the bridge is off".into(),
+                )));
                 break;
             }
         }
@@ -181,7 +204,11 @@ fn script(people: &mut WindowPeople, screen: &str) {
 fn line(tick: u32, t_s: f64, screen: &str) -> ReceivedTelemetry {
     let cycle_s = t_s % 12.0;
     let touches = (4.0..9.0).contains(&cycle_s);
-    let fall_k = if touches { 6.0 * (1.0 - (-(cycle_s - 4.0) / 1.2).exp()) } else { 0.0 };
+    let fall_k = if touches {
+        6.0 * (1.0 - (-(cycle_s - 4.0) / 1.2).exp())
+    } else {
+        0.0
+    };
     let wobble = 0.05 * (7.0 * t_s).sin();
     let state = match (screen, touches) {
         ("tripped", _) => StateName::Tripped(Fault::SinkHot),

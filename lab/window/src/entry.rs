@@ -128,7 +128,10 @@ mod tests {
         assert_eq!(press(&mut entry, &keys), None);
         assert_eq!(entry.station(), 1);
         let keys = [Key::Digit(7), Key::Point, Key::Digit(5), Key::Enter];
-        assert_eq!(press(&mut entry, &keys), Some(Response::Numbers(vec![42.0, 7.5])));
+        assert_eq!(
+            press(&mut entry, &keys),
+            Some(Response::Numbers(vec![42.0, 7.5]))
+        );
     }
 
     #[test]

@@ -28,9 +28,16 @@ pub(crate) struct SkinGate {
 
 impl SkinGate {
     /// Takes note of the fingers' means.
-    pub fn observe(&mut self, rest: &Rest, means: impl Iterator<Item = Option<f64>>, now: Duration) {
+    pub fn observe(
+        &mut self,
+        rest: &Rest,
+        means: impl Iterator<Item = Option<f64>>,
+        now: Duration,
+    ) {
         let distance = |mean: Option<f64>| mean.map_or(f64::INFINITY, |c| (c - rest.skin_c).abs());
-        let farthest = means.max_by(|a, b| distance(*a).total_cmp(&distance(*b))).flatten();
+        let farthest = means
+            .max_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+            .flatten();
         self.skin_c = farthest;
         self.holds_since = if distance(farthest) <= rest.within_k {
             self.holds_since.or(Some(now))
@@ -57,11 +64,15 @@ impl Waiting<'_> {
         match self.phase {
             Phase::Rest => self.skin_gate(now),
             Phase::Reach => match self.rules.procedure {
-                Procedure::Touch { reach_s, .. } => Some(self.timer("time to move", reach_s, "then the tone to touch", now)),
+                Procedure::Touch { reach_s, .. } => {
+                    Some(self.timer("time to move", reach_s, "then the tone to touch", now))
+                }
                 Procedure::Intervals { .. } => None,
             },
             Phase::Contact => Some(self.contact_gate(now)),
-            Phase::Respond => Some(self.timer("answer", self.rules.answer_s, "then it is too late", now)),
+            Phase::Respond => {
+                Some(self.timer("answer", self.rules.answer_s, "then it is too late", now))
+            }
             Phase::Break => Some(self.timer("break", self.break_s, "then it may end", now)),
             Phase::Connect | Phase::Prepare | Phase::Return | Phase::End => None,
         }
@@ -69,8 +80,14 @@ impl Waiting<'_> {
 
     fn skin_gate(&self, now: Duration) -> Option<Gate> {
         let rest = self.rest?;
-        let mean = self.skin.skin_c.map_or("not known".into(), |c| format!("{c:.2} °C"));
-        let held = self.skin.holds_since.map_or(Duration::ZERO, |at| now.saturating_sub(at));
+        let mean = self
+            .skin
+            .skin_c
+            .map_or("not known".into(), |c| format!("{c:.2} °C"));
+        let held = self
+            .skin
+            .holds_since
+            .map_or(Duration::ZERO, |at| now.saturating_sub(at));
         let for_s = rest.for_s.max(f64::EPSILON);
         Some(Gate {
             what: "skin at rest",
@@ -88,9 +105,12 @@ impl Waiting<'_> {
 
     fn contact_gate(&self, now: Duration) -> Gate {
         match self.rules.procedure {
-            Procedure::Intervals { interval_s, gap_s } => {
-                self.timer("two intervals", 2.0 * interval_s + gap_s, "then the answer", now)
-            }
+            Procedure::Intervals { interval_s, gap_s } => self.timer(
+                "two intervals",
+                2.0 * interval_s + gap_s,
+                "then the answer",
+                now,
+            ),
             Procedure::Touch { max_s, .. } => match self.landed_at {
                 Some(since) => timer("contact", since, max_s, "then the tone to lift", now),
                 None => self.timer("landing", self.rules.land_s, "then the trial is void", now),
@@ -103,7 +123,13 @@ impl Waiting<'_> {
     }
 }
 
-fn timer(what: &'static str, since: Duration, length_s: f64, then: &'static str, now: Duration) -> Gate {
+fn timer(
+    what: &'static str,
+    since: Duration,
+    length_s: f64,
+    then: &'static str,
+    now: Duration,
+) -> Gate {
     let left = left(since, length_s, now);
     let reached = 1.0 - left.as_secs_f64() / length_s.max(f64::EPSILON);
     Gate {

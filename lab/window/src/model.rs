@@ -197,7 +197,11 @@ impl Model {
         });
         view.last = *telemetry;
         view.trace.push(telemetry);
-        if let Some(rest) = self.outline.as_ref().and_then(|outline| outline.rest.as_ref()) {
+        if let Some(rest) = self
+            .outline
+            .as_ref()
+            .and_then(|outline| outline.rest.as_ref())
+        {
             let means = self.fingers.values().map(|view| view.trace.skin_c());
             self.skin.observe(rest, means, at);
         }
@@ -213,7 +217,9 @@ impl Model {
         use thermal_session::Presented::{Hold, Material, Nothing, Pulses, Sample};
         let presented = self.trial.iter().flat_map(|view| &view.trial.presented);
         let mut fingers = presented.filter_map(|presented| match presented {
-            Material { device_finger, .. } | Hold { device_finger, .. } | Pulses { device_finger, .. } => Some(*device_finger),
+            Material { device_finger, .. }
+            | Hold { device_finger, .. }
+            | Pulses { device_finger, .. } => Some(*device_finger),
             Nothing | Sample { .. } => None,
         });
         fingers.next().unwrap_or(0)
@@ -289,7 +295,9 @@ impl Model {
     #[must_use]
     pub fn placement(&self) -> Vec<String> {
         let both = self.outline.as_ref().zip(self.trial.as_ref());
-        both.map_or_else(Vec::new, |(outline, view)| texts::placement(&outline.stations, &view.trial))
+        both.map_or_else(Vec::new, |(outline, view)| {
+            texts::placement(&outline.stations, &view.trial)
+        })
     }
 
     /// What the session waits for.

@@ -93,8 +93,14 @@ pub fn monitor<L: Link>(
 }
 
 fn event_text(received: &ReceivedEvent) -> String {
-    let finger = received.finger.map_or(String::new(), |finger| format!("finger {finger}: "));
-    format!("{finger}{} at tick {}", received.event.kind.name(), received.event.tick)
+    let finger = received
+        .finger
+        .map_or(String::new(), |finger| format!("finger {finger}: "));
+    format!(
+        "{finger}{} at tick {}",
+        received.event.kind.name(),
+        received.event.tick
+    )
 }
 
 /// Carries an order out, and says what the device answered. A refusal is no error.
@@ -115,7 +121,9 @@ fn carry_out<L: Link>(client: &mut Client<L>, order: Order) -> Result<String, Cl
     match answer {
         Ok(()) if order == Order::Off => Ok("bridge off".into()),
         Ok(()) => Ok(format!("`{}`: ok", order.word())),
-        Err(ClientError::Link(LinkError::Interrupted)) => Ok(format!("`{}` was interrupted by the stop", order.word())),
+        Err(ClientError::Link(LinkError::Interrupted)) => {
+            Ok(format!("`{}` was interrupted by the stop", order.word()))
+        }
         Err(ClientError::Link(error)) => Err(error.into()),
         Err(error) if order == Order::Off => Ok(format!(
             "the device has not confirmed that the bridge is off: {error}. PRESS THE EMERGENCY STOP"

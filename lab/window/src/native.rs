@@ -50,7 +50,9 @@ pub enum WindowError {
     #[error("no window can be opened: {0}; `--headless` works without one")]
     NoDisplay(String),
     /// The worker ended by an error of its own. A device that streams and is driven trips by `host-silent` within 2 s.
-    #[error("the program behind the window has failed; if the device is driven, press the emergency stop")]
+    #[error(
+        "the program behind the window has failed; if the device is driven, press the emergency stop"
+    )]
     Worker,
 }
 
@@ -63,14 +65,22 @@ pub fn run_window<T: Send, E: Display + Send>(
     options: WindowOptions,
     worker: impl FnOnce(&mut WindowPeople) -> Result<T, E> + Send,
 ) -> Result<Shown<T, E>, WindowError> {
-    let WindowOptions { title, outline, stop, tones } = options;
+    let WindowOptions {
+        title,
+        outline,
+        stop,
+        tones,
+    } = options;
     let with_participant = outline.is_some();
     let (mut people, desk) = WindowPeople::new(outline, stop.clone(), tones);
     let running = AtomicBool::new(false);
     let latency = Mutex::new(ScreenLatency::default());
     thread::scope(|scope| {
         let handle = Mutex::new(None);
-        let viewport = ViewportBuilder::default().with_title(&title).with_inner_size([1280.0, 860.0]).with_min_inner_size([1000.0, 700.0]);
+        let viewport = ViewportBuilder::default()
+            .with_title(&title)
+            .with_inner_size([1280.0, 860.0])
+            .with_min_inner_size([1000.0, 700.0]);
         let mut native = eframe::NativeOptions {
             viewport,
             ..eframe::NativeOptions::default()
@@ -82,7 +92,10 @@ pub fn run_window<T: Send, E: Display + Send>(
             &title,
             native,
             Box::new(|context| {
-                let state = views::OperatorState { dark: false, ..views::OperatorState::default() };
+                let state = views::OperatorState {
+                    dark: false,
+                    ..views::OperatorState::default()
+                };
                 views::apply(&context.egui_ctx, state.dark);
                 running.store(true, Ordering::SeqCst);
                 let spawned = scope.spawn(move || {
@@ -111,7 +124,9 @@ pub fn run_window<T: Send, E: Display + Send>(
                 latency: lock(latency).clone(),
             }),
             (None, Err(error)) => Err(WindowError::NoDisplay(error.to_string())),
-            (None, Ok(())) => Err(WindowError::NoDisplay("it was closed before it opened".into())),
+            (None, Ok(())) => Err(WindowError::NoDisplay(
+                "it was closed before it opened".into(),
+            )),
         }
     })
 }
@@ -151,7 +166,12 @@ impl eframe::App for App<'_> {
         }
         self.keep_entry(&model);
         let mut actions = keys(&ctx, WindowKind::Operator, &model);
-        actions.extend(views::operator(ui, &model, &mut self.state, self.desk.now()));
+        actions.extend(views::operator(
+            ui,
+            &model,
+            &mut self.state,
+            self.desk.now(),
+        ));
         if self.with_participant {
             actions.extend(self.participant(&ctx, &model));
         }
@@ -176,7 +196,9 @@ impl App<'_> {
             return;
         }
         self.entry = asked.and_then(|question| {
-            let AnswerKind::NumberPerStation(least, most) = question.kind else { return None };
+            let AnswerKind::NumberPerStation(least, most) = question.kind else {
+                return None;
+            };
             let entry = NumberEntry::new((least, most), participant.stations.len());
             Some((question.clone(), entry))
         });
@@ -184,13 +206,18 @@ impl App<'_> {
 
     /// The participant's window, a second one of the system, which may be on another monitor.
     fn participant(&mut self, ctx: &egui::Context, model: &Model) -> Vec<Action> {
-        let builder = ViewportBuilder::default().with_title("Participant").with_inner_size([1024.0, 768.0]).with_fullscreen(self.full_screen);
+        let builder = ViewportBuilder::default()
+            .with_title("Participant")
+            .with_inner_size([1024.0, 768.0])
+            .with_fullscreen(self.full_screen);
         let now = self.desk.now();
         let entry = &mut self.entry;
         ctx.show_viewport_immediate(ViewportId::from_hash_of("participant"), builder, |ui, _| {
             let mut actions = keys(ui.ctx(), WindowKind::Participant, model);
             views::participant_style(ui.style_mut());
-            let frame = egui::Frame::new().fill(ui.visuals().panel_fill).inner_margin(24.0);
+            let frame = egui::Frame::new()
+                .fill(ui.visuals().panel_fill)
+                .inner_margin(24.0);
             egui::CentralPanel::default().frame(frame).show(ui, |ui| {
                 let entry = entry.as_mut().map(|(_, entry)| entry);
                 let response = views::participant(ui, model.participant(), entry, now);

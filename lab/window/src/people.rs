@@ -55,7 +55,13 @@ impl WindowPeople {
             stop,
             zero: Instant::now(),
         };
-        (Self { desk: desk.clone(), tones }, desk)
+        (
+            Self {
+                desk: desk.clone(),
+                tones,
+            },
+            desk,
+        )
     }
 
     /// The operator's stop.

@@ -19,7 +19,11 @@ pub struct Choice {
 }
 
 const fn choice(decision: Decision, key: char, label: &'static str) -> Choice {
-    Choice { decision, key, label }
+    Choice {
+        decision,
+        key,
+        label,
+    }
 }
 
 /// What the operator can decide; the stop is always there besides.
@@ -31,8 +35,16 @@ pub const fn choices(question: &OperatorQuestion) -> &'static [Choice] {
         choice(Decision::Continue, 'c', "Continue in spite of the skin"),
         choice(Decision::Void, 'v', "Void: this trial does not count"),
     ];
-    const TRIPPED: [Choice; 1] = [choice(Decision::Continue, 'c', "Clear the fault and continue")];
-    const BREAK: [Choice; 1] = [choice(Decision::Continue, 'c', "Continue: the break is over")];
+    const TRIPPED: [Choice; 1] = [choice(
+        Decision::Continue,
+        'c',
+        "Clear the fault and continue",
+    )];
+    const BREAK: [Choice; 1] = [choice(
+        Decision::Continue,
+        'c',
+        "Continue: the break is over",
+    )];
     match question {
         OperatorQuestion::Ready(_) => &READY,
         OperatorQuestion::SkinNotReady { .. } => &SKIN,
@@ -52,7 +64,9 @@ pub fn question(question: &OperatorQuestion) -> (&'static str, String) {
                 Some(skin_c) => format!(
                     "It has {skin_c:.2} °C in place of {wanted_c:.2} °C, after the time that the session allows."
                 ),
-                None => format!("The device does not know it; wanted are {wanted_c:.2} °C. Is the sensor on the finger?"),
+                None => format!(
+                    "The device does not know it; wanted are {wanted_c:.2} °C. Is the sensor on the finger?"
+                ),
             },
         ),
         OperatorQuestion::Tripped { fault, explanation } => (
@@ -68,13 +82,34 @@ pub fn question(question: &OperatorQuestion) -> (&'static str, String) {
 pub const fn state(state: StateName) -> (&'static str, &'static str) {
     match state {
         StateName::Off => ("OFF", "The bridge is off. `arm` begins with the self-test."),
-        StateName::SelfTest => ("SELF-TEST", "The device tests itself: keep all fingers off the display."),
-        StateName::Ready => ("READY", "The bridge is off. The self-test was passed; `arm` drives the display at once."),
-        StateName::Armed => ("ARMED", "The bridge drives the display to the temperature of the skin."),
-        StateName::Preset => ("PRESET", "The bridge drives the display, which waits for a finger."),
-        StateName::Contact => ("CONTACT", "A finger is on the display, which follows the object."),
-        StateName::Stimulus => ("STIMULUS", "The display follows temperatures that this computer prescribes."),
-        StateName::Tripped(_) => ("TRIPPED", "The bridge is off because of a fault, until it is cleared."),
+        StateName::SelfTest => (
+            "SELF-TEST",
+            "The device tests itself: keep all fingers off the display.",
+        ),
+        StateName::Ready => (
+            "READY",
+            "The bridge is off. The self-test was passed; `arm` drives the display at once.",
+        ),
+        StateName::Armed => (
+            "ARMED",
+            "The bridge drives the display to the temperature of the skin.",
+        ),
+        StateName::Preset => (
+            "PRESET",
+            "The bridge drives the display, which waits for a finger.",
+        ),
+        StateName::Contact => (
+            "CONTACT",
+            "A finger is on the display, which follows the object.",
+        ),
+        StateName::Stimulus => (
+            "STIMULUS",
+            "The display follows temperatures that this computer prescribes.",
+        ),
+        StateName::Tripped(_) => (
+            "TRIPPED",
+            "The bridge is off because of a fault, until it is cleared.",
+        ),
     }
 }
 
@@ -83,7 +118,11 @@ pub const fn state(state: StateName) -> (&'static str, &'static str) {
 pub const fn is_driven(state: StateName) -> bool {
     matches!(
         state,
-        StateName::SelfTest | StateName::Armed | StateName::Preset | StateName::Contact | StateName::Stimulus
+        StateName::SelfTest
+            | StateName::Armed
+            | StateName::Preset
+            | StateName::Contact
+            | StateName::Stimulus
     )
 }
 
@@ -134,13 +173,23 @@ pub fn placement(stations: &[Station], trial: &PlannedTrial) -> Vec<String> {
         let what = match presented {
             Presented::Nothing => "nothing".into(),
             Presented::Sample { material } => format!("sample of {material}"),
-            Presented::Material { device_finger, material } => {
+            Presented::Material {
+                device_finger,
+                material,
+            } => {
                 format!("display {device_finger} as {material}")
             }
-            Presented::Hold { device_finger, celsius } => {
+            Presented::Hold {
+                device_finger,
+                celsius,
+            } => {
                 format!("display {device_finger} at {celsius:.2} °C")
             }
-            Presented::Pulses { device_finger, base_c, .. } => {
+            Presented::Pulses {
+                device_finger,
+                base_c,
+                ..
+            } => {
                 format!("display {device_finger}, two intervals from {base_c:.2} °C")
             }
         };
@@ -165,8 +214,14 @@ mod tests {
     fn questions() -> [OperatorQuestion; 4] {
         [
             OperatorQuestion::Ready("left: copper".into()),
-            OperatorQuestion::SkinNotReady { skin_c: None, wanted_c: 33.0 },
-            OperatorQuestion::Tripped { fault: "sink-hot".into(), explanation: "too warm".into() },
+            OperatorQuestion::SkinNotReady {
+                skin_c: None,
+                wanted_c: 33.0,
+            },
+            OperatorQuestion::Tripped {
+                fault: "sink-hot".into(),
+                explanation: "too warm".into(),
+            },
             OperatorQuestion::BreakOver,
         ]
     }
@@ -176,7 +231,11 @@ mod tests {
         for question in questions() {
             let mut keys: Vec<_> = choices(&question).iter().map(|choice| choice.key).collect();
             for choice in choices(&question) {
-                assert!(choice.label.to_lowercase().starts_with(choice.key), "{}", choice.label);
+                assert!(
+                    choice.label.to_lowercase().starts_with(choice.key),
+                    "{}",
+                    choice.label
+                );
             }
             keys.dedup();
             assert_eq!(keys.len(), choices(&question).len());
@@ -198,7 +257,11 @@ mod tests {
         for one in all {
             let (word, meaning) = state(one);
             assert_eq!(word.to_lowercase(), one.name());
-            assert_eq!(meaning.contains("bridge is off"), !is_driven(one), "{meaning}");
+            assert_eq!(
+                meaning.contains("bridge is off"),
+                !is_driven(one),
+                "{meaning}"
+            );
         }
     }
 }

@@ -66,7 +66,11 @@ impl Trace {
             }
         }
         self.samples.push_back(Sample::of(telemetry));
-        while self.samples.front().is_some_and(|first| self.age_s(first) > TRACE_S) {
+        while self
+            .samples
+            .front()
+            .is_some_and(|first| self.age_s(first) > TRACE_S)
+        {
             self.samples.pop_front();
         }
     }

@@ -1,7 +1,7 @@
 //! The last 20 s of a finger as lines.
 
-use egui::{Color32, RichText, Ui};
-use egui_plot::{Line, LineStyle, Plot, PlotBounds, PlotPoints};
+use egui::{Color32, RichText, Sense, Stroke, Ui, vec2};
+use egui_plot::{Line, LineStyle, Plot, PlotBounds, PlotPoints, uniform_grid_spacer};
 
 use super::theme::{Colours, colours};
 use crate::model::FingerView;
@@ -14,9 +14,23 @@ const POINTS_MAX: usize = 1200;
 struct Quantity {
     name: &'static str,
     colour: Color32,
-    dashed: bool,
+    /// What another quantity follows, drawn broad below it, so that both are seen where they agree.
+    followed: bool,
     of: fn(&Sample) -> f32,
     now: Option<f64>,
+}
+
+impl Quantity {
+    const fn width(&self) -> f32 {
+        if self.followed { 5.0 } else { 2.0 }
+    }
+}
+
+/// A piece of the line before its name.
+fn swatch(ui: &mut Ui, quantity: &Quantity) {
+    let (rect, _) = ui.allocate_exact_size(vec2(26.0, 12.0), Sense::hover());
+    let stroke = Stroke::new(quantity.width(), quantity.colour);
+    ui.painter().hline(rect.x_range(), rect.center().y, stroke);
 }
 
 /// A plot: unit, digits of its values, smallest height of its range.
@@ -42,21 +56,21 @@ fn temperatures(ui: &mut Ui, view: &FingerView, colours: &Colours, height: f32) 
         Quantity {
             name: "set-point",
             colour: colours.setpoint,
-            dashed: true,
+            followed: true,
             of: |sample| sample.setpoint_c,
             now: view.last.setpoint_c,
         },
         Quantity {
             name: "display",
             colour: colours.display,
-            dashed: false,
+            followed: false,
             of: |sample| sample.display_c,
             now: view.last.display_c,
         },
         Quantity {
             name: "skin",
             colour: colours.skin,
-            dashed: false,
+            followed: false,
             of: |sample| sample.skin_c,
             now: view.last.skin_c,
         },
@@ -75,7 +89,7 @@ fn force(ui: &mut Ui, view: &FingerView, colours: &Colours, target_n: Option<f64
     let quantities = [Quantity {
         name: "force",
         colour: colours.force,
-        dashed: false,
+        followed: false,
         of: |sample| sample.force_n,
         now: view.last.force_n,
     }];
@@ -90,19 +104,23 @@ fn force(ui: &mut Ui, view: &FingerView, colours: &Colours, target_n: Option<f64
 }
 
 fn current(ui: &mut Ui, view: &FingerView, colours: &Colours, height: f32) {
-    let sign = if view.last.demand_a.is_some_and(|demand_a| demand_a < 0.0) { -1.0 } else { 1.0 };
+    let sign = if view.last.demand_a.is_some_and(|demand_a| demand_a < 0.0) {
+        -1.0
+    } else {
+        1.0
+    };
     let quantities = [
         Quantity {
             name: "demanded",
             colour: colours.demand,
-            dashed: true,
+            followed: true,
             of: |sample| sample.demand_a,
             now: view.last.demand_a,
         },
         Quantity {
             name: "measured",
             colour: colours.current,
-            dashed: false,
+            followed: false,
             of: |sample| sample.current_a,
             now: view.last.current_a.map(|current_a| sign * current_a),
         },
@@ -129,9 +147,11 @@ fn plot(
     ui.horizontal(|ui| {
         ui.label(RichText::new(frame.title).strong());
         for quantity in quantities {
-            let now = quantity.now.map_or("unknown".into(), |now| format!("{now:.*} {}", frame.digits, frame.unit));
-            let line = if quantity.dashed { "- -" } else { "—" };
-            ui.label(RichText::new(format!("{line} {} {now}", quantity.name)).color(quantity.colour));
+            let now = quantity.now.map_or("unknown".into(), |now| {
+                format!("{now:.*} {}", frame.digits, frame.unit)
+            });
+            swatch(ui, quantity);
+            ui.label(format!("{} {now}", quantity.name));
         }
         if let Some(target) = target {
             ui.label(format!("- - target {target:.2} {}", frame.unit));
@@ -151,19 +171,22 @@ fn plot(
         .show_x(false)
         .show_y(false)
         .y_axis_min_width(44.0)
+        .grid_color(ui.visuals().weak_text_color().gamma_multiply(0.45))
+        .grid_fade(0.2)
+        .x_grid_spacer(uniform_grid_spacer(|_| [20.0, 5.0, 5.0]))
         .x_axis_formatter(move |mark, _| {
-            if is_last { format!("{:.0} s", mark.value) } else { String::new() }
+            if is_last {
+                format!("{:.0} s", mark.value)
+            } else {
+                String::new()
+            }
         })
         .show(ui, |plot_ui| {
             plot_ui.set_plot_bounds(PlotBounds::from_min_max([-TRACE_S, least], [0.0, most]));
             for quantity in quantities {
                 for points in segments(view, quantity.of) {
-                    let line = Line::new(quantity.name, points).color(quantity.colour).width(2.0);
-                    plot_ui.line(if quantity.dashed {
-                        line.style(LineStyle::dashed_dense())
-                    } else {
-                        line
-                    });
+                    let line = Line::new(quantity.name, points).color(quantity.colour);
+                    plot_ui.line(line.width(quantity.width()));
                 }
             }
             if let Some(target) = target {
@@ -189,19 +212,30 @@ fn segments(view: &FingerView, of: fn(&Sample) -> f32) -> Vec<PlotPoints<'static
             _ => {}
         }
     }
-    runs.into_iter().filter(|run| !run.is_empty()).map(PlotPoints::from).collect()
+    runs.into_iter()
+        .filter(|run| !run.is_empty())
+        .map(PlotPoints::from)
+        .collect()
 }
 
 /// A range that holds all values and moves in steps, so that the eye has something to hold on to.
-fn range(view: &FingerView, frame: &Frame, quantities: &[Quantity], target: Option<f64>) -> (f64, f64) {
+fn range(
+    view: &FingerView,
+    frame: &Frame,
+    quantities: &[Quantity],
+    target: Option<f64>,
+) -> (f64, f64) {
     let samples = view.trace.samples();
-    let values = samples.flat_map(|sample| quantities.iter().map(|quantity| f64::from((quantity.of)(sample))));
+    let values = samples.flat_map(|sample| {
+        quantities
+            .iter()
+            .map(|quantity| f64::from((quantity.of)(sample)))
+    });
     let values = values.chain(target).chain(frame.from_zero.then_some(0.0));
-    let (least, most) = values
-        .filter(|value| value.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
-            (least.min(value), most.max(value))
-        });
+    let (least, most) = values.filter(|value| value.is_finite()).fold(
+        (f64::INFINITY, f64::NEG_INFINITY),
+        |(least, most), value| (least.min(value), most.max(value)),
+    );
     if least > most {
         return (0.0, frame.range_min);
     }
