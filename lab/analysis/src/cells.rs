@@ -45,12 +45,6 @@ impl Cells {
         cells
     }
 
-    /// The values of each level over the participants.
-    pub fn columns(&self) -> Vec<Vec<f64>> {
-        let column = |index: usize| self.rows.iter().map(|row| row[index]).collect();
-        (0..self.levels.len()).map(column).collect()
-    }
-
     /// The rows as tables whose first factor has levels of `second` cells each.
     pub fn by_two(&self, second: usize) -> Vec<Vec<Vec<f64>>> {
         let of_row = |row: &Vec<f64>| row.chunks(second.max(1)).map(<[f64]>::to_vec).collect();

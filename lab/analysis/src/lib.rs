@@ -7,6 +7,8 @@ mod input;
 mod page;
 mod picture;
 mod report;
+#[cfg(test)]
+mod tests;
 
 use thermal_session::dataset::RecordedSession;
 

@@ -19,7 +19,6 @@ pub struct Fall {
     pub fall_k: f64,
     pub skin_c: Option<f64>,
     pub room_c: Option<f64>,
-    pub target_force_n: Option<f64>,
 }
 
 /// What is compared: a material in a part of the session, as a sample or simulated.
@@ -48,7 +47,6 @@ pub fn all(task: &Task) -> Vec<Fall> {
                 fall_k,
                 skin_c: station.skin_before_c.and_then(finite),
                 room_c: trial.record.room_c.and_then(finite),
-                target_force_n: trial.record.target_force_n.and_then(finite),
             });
         }
     }

@@ -99,7 +99,8 @@ pub fn psychometric_fit(task: &Task) -> Section {
                 lapse: 0.0,
             };
             let fit = model.fit_with_lapse(&levels, LAPSE_MAX);
-            let fitted = fit.and_then(|fit| fit.threshold(proportion).map(|threshold| (fit, threshold)));
+            let fitted =
+                fit.and_then(|fit| fit.threshold(proportion).map(|threshold| (fit, threshold)));
             match &fitted {
                 Ok((fit, threshold)) => {
                     let bootstrap = fit.bootstrap(&levels, proportion, CONFIDENCE, SAMPLES, SEED);
@@ -121,12 +122,15 @@ pub fn psychometric_fit(task: &Task) -> Section {
                         fit.deviance_p
                     ]);
                 }
-                Err(error) => {
-                    section.lacks(&format!("{condition}, {name}"), error)
-                }
+                Err(error) => section.lacks(&format!("{condition}, {name}"), error),
             }
             if name == "all" {
-                curves.extend(drawn(&condition, series, &levels, fitted.as_ref().ok().map(|(fit, _)| fit)));
+                curves.extend(drawn(
+                    &condition,
+                    series,
+                    &levels,
+                    fitted.as_ref().ok().map(|(fit, _)| fit),
+                ));
             }
         }
     }

@@ -25,7 +25,7 @@ pub fn published(task: &Task) -> Option<Section> {
             ANSWERS_OF_TABLE_3_3,
             |row| pairs::share_of(task, row),
         ),
-        "p3" => shares(
+        "p3" | "p3displays" => shares(
             &mut section,
             "Table 3-5",
             localisation(),
@@ -35,7 +35,7 @@ pub fn published(task: &Task) -> Option<Section> {
         "p4" => stated(&mut section, "% correct", identification(), |of| {
             confusion::measured(task, of)
         }),
-        "p5" => stated(&mut section, "% correct", real_against_simulated(), |of| {
+        "p5" | "p5contact" => stated(&mut section, "% correct", real_against_simulated(), |of| {
             pairs::measured(task, of)
         }),
         _ => return None,
