@@ -81,22 +81,22 @@ fn ratio(pair: &str, effusivity: fn(&Material) -> f64) -> f64 {
 
 /// Discrimination of a pair of materials.
 #[derive(Clone, Deserialize)]
-struct Answers {
-    pair: String,
+pub(super) struct Answers {
+    pub(super) pair: String,
     /// Percentage of correct answers.
-    percent: f64,
+    pub(super) percent: f64,
 }
 
-fn table_3_3() -> Vec<Answers> {
+pub(super) fn table_3_3() -> Vec<Answers> {
     read("table_3_3.csv", include_str!("../data/table_3_3.csv")).expect("a table of the program")
 }
 
-const HIGH_LOW: &str = "high / low, d' of {} %";
-const LOW_HIGH: &str = "low / high, d' of {} %";
+pub(super) const HIGH_LOW: &str = "high / low, d' of {} %";
+pub(super) const LOW_HIGH: &str = "low / high, d' of {} %";
 const TOTAL: &str = "total, d' of {} %";
 
 /// Percentages correct for which a column of Table 3-5 states d'.
-fn table_3_5(column: &str) -> Vec<Answers> {
+pub(super) fn table_3_5(column: &str) -> Vec<Answers> {
     let statements = STATEMENTS.iter().filter(|row| row.quantity == column);
     let answers = statements.map(|row| Answers {
         pair: row.of.clone(),

@@ -11,6 +11,7 @@ mod finite_volumes;
 mod json;
 pub mod measured;
 mod page;
+pub mod published;
 pub mod roughness;
 pub mod row;
 mod stated_value;

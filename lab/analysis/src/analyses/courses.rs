@@ -1,0 +1,312 @@
+//! Mean courses of a contact from the telemetry, and exponential fits.
+
+use std::path::Path;
+
+use experiment_statistics::exponential::fit_exponential;
+
+use super::falls::{group, parts_with_both_modes};
+use crate::cells::distinct;
+use crate::input::{Task, Trial, finite};
+use crate::picture::{Curve, Stroke, color, lines, positive_range};
+use crate::report::{Section, Table, cells, numbers, words};
+
+/// Width of a cell of a mean course, s.
+const CELL_S: f64 = 0.1;
+/// Longest course, s.
+const LONGEST_S: f64 = 30.0;
+/// Part of the contacts that must last as long as a point of a mean course, so that it is of the same contacts throughout.
+const MOST: f64 = 0.9;
+
+/// A contact whose course is wanted.
+struct Contact {
+    finger: u8,
+    land_s: f64,
+    lift_s: f64,
+    course: usize,
+}
+
+/// A mean course: time since the landing, s, and value.
+pub struct Course {
+    pub name: String,
+    pub contacts: usize,
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Mean courses of a column of the telemetry over the contacts that `name` names, in the order of `names`.
+pub fn mean_courses(
+    task: &Task,
+    column: &str,
+    names: &[String],
+    name: impl Fn(&Trial, usize) -> Option<String>,
+) -> (Vec<Course>, Vec<String>) {
+    let mut sums = vec![Sums::default(); names.len()];
+    let mut unread = Vec::new();
+    for participant in &task.participants {
+        let contacts = contacts(&participant.trials, names, &name);
+        if contacts.is_empty() {
+            continue;
+        }
+        if let Err(error) = add_telemetry(&participant.telemetry, column, &contacts, &mut sums) {
+            unread.push(format!("telemetry of {} ({error})", participant.code));
+        }
+    }
+    let courses = names.iter().zip(sums).map(|(name, sums)| Course {
+        name: name.clone(),
+        contacts: sums.contacts,
+        points: sums.points(),
+    });
+    (
+        courses.filter(|course| course.points.len() > 1).collect(),
+        unread,
+    )
+}
+
+/// The contacts with displays by the time of their landing.
+fn contacts(
+    trials: &[Trial],
+    names: &[String],
+    name: impl Fn(&Trial, usize) -> Option<String>,
+) -> Vec<Contact> {
+    let mut contacts = Vec::new();
+    for trial in trials {
+        for (index, presented) in trial.presented.iter().enumerate() {
+            let land_s = trial.station(index).and_then(|station| station.land_s);
+            let contact = || {
+                let name = name(trial, index)?;
+                let (land_s, lift_s) = (finite(land_s?)?, finite(trial.record.lift_s?)?);
+                Some(Contact {
+                    finger: presented.device_finger()?,
+                    land_s,
+                    lift_s: lift_s.min(land_s + LONGEST_S),
+                    course: names.iter().position(|known| *known == name)?,
+                })
+            };
+            contacts.extend(contact().filter(|contact| contact.lift_s > contact.land_s));
+        }
+    }
+    contacts.sort_by(|one, other| one.land_s.total_cmp(&other.land_s));
+    contacts
+}
+
+/// Sums of the samples of a course by cell of time.
+#[derive(Clone, Default)]
+struct Sums {
+    contacts: usize,
+    cells: Vec<(f64, u32, usize)>,
+}
+
+impl Sums {
+    /// Adds the samples of one contact.
+    fn add(&mut self, samples: &[(f64, f64)]) {
+        if samples.is_empty() {
+            return;
+        }
+        self.contacts += 1;
+        let mut last = None;
+        for (since_s, value) in samples {
+            let cell = (since_s / CELL_S) as usize;
+            if self.cells.len() <= cell {
+                self.cells.resize(cell + 1, (0.0, 0, 0));
+            }
+            let (sum, count, contacts) = &mut self.cells[cell];
+            *sum += value;
+            *count += 1;
+            if last != Some(cell) {
+                *contacts += 1;
+            }
+            last = Some(cell);
+        }
+    }
+
+    fn points(&self) -> Vec<(f64, f64)> {
+        let least = MOST * self.contacts as f64;
+        let cells = self.cells.iter().enumerate();
+        let whole =
+            cells.filter(|(_, (_, count, contacts))| *count > 0 && *contacts as f64 >= least);
+        whole
+            .map(|(cell, (sum, count, _))| ((cell as f64 + 0.5) * CELL_S, sum / f64::from(*count)))
+            .collect()
+    }
+}
+
+/// Adds the telemetry of one participant; lines that cannot be read are left out, as after an interruption.
+fn add_telemetry(
+    path: &Path,
+    column: &str,
+    contacts: &[Contact],
+    sums: &mut [Sums],
+) -> Result<(), csv::Error> {
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path)?;
+    let headers = reader.headers()?.clone();
+    let place = |name: &str| headers.iter().position(|header| header == name);
+    let (Some(time), Some(finger), Some(value)) = (place("t_s"), place("finger"), place(column))
+    else {
+        return Ok(());
+    };
+    let mut samples: Vec<Vec<(f64, f64)>> = contacts.iter().map(|_| Vec::new()).collect();
+    for row in reader.records() {
+        let Ok(row) = row else { continue };
+        let number = |place: usize| {
+            row.get(place)
+                .and_then(|cell| cell.parse::<f64>().ok())
+                .and_then(finite)
+        };
+        let (Some(t_s), Some(value)) = (number(time), number(value)) else {
+            continue;
+        };
+        let of_finger = row.get(finger).and_then(|cell| cell.parse::<u8>().ok());
+        // The last contacts that have begun; stations of a trial land at about the same time.
+        let begun = contacts.partition_point(|contact| contact.land_s <= t_s);
+        for index in begun.saturating_sub(8)..begun {
+            let contact = &contacts[index];
+            if Some(contact.finger) == of_finger && t_s < contact.lift_s {
+                samples[index].push((t_s - contact.land_s, value));
+            }
+        }
+    }
+    for (contact, samples) in contacts.iter().zip(&samples) {
+        sums[contact.course].add(samples);
+    }
+    Ok(())
+}
+
+/// A table of courses, a row for each time.
+pub fn table(name: &str, caption: &str, unit: &'static str, courses: &[Course]) -> Table {
+    let heads = courses
+        .iter()
+        .map(|course| numbers(course.name.clone(), unit, 4));
+    let mut table = Table::new(
+        name,
+        caption,
+        [numbers("time since the landing", "s", 2)]
+            .into_iter()
+            .chain(heads),
+    );
+    let longest = courses
+        .iter()
+        .map(|course| course.points.len())
+        .max()
+        .unwrap_or(0);
+    for cell in 0..longest {
+        let t_s = (cell as f64 + 0.5) * CELL_S;
+        let at = |course: &Course| {
+            course
+                .points
+                .iter()
+                .find(|(t, _)| (t - t_s).abs() < 0.5 * CELL_S)
+                .map(|(_, y)| *y)
+        };
+        let mut row = cells![t_s];
+        row.extend(courses.iter().map(|course| at(course).into()));
+        table.row(row);
+    }
+    table.folded()
+}
+
+/// Exponential fits to the mean courses of the skin.
+pub fn exponential_fit(task: &Task) -> Section {
+    let mut section = Section::new("exponential-fit", "Course of the skin's temperature").note(
+        "Mean courses of the skin thermistor in contact, in steps of 0.1 s, over all contacts of part and material, and the \
+         least-squares fit T = c + a exp(−t/τ). The contact of two half-spaces is no exponential: its best fits over 10 s have \
+         R² of 0.84 to 0.91.",
+    );
+    let both = parts_with_both_modes(task);
+    let name = |trial: &Trial, station: usize| {
+        let stimulus = trial
+            .stimuli()
+            .find(|stimulus| stimulus.station == station)?;
+        let group = group(&trial.record.part, &stimulus, &both);
+        Some(format!("{}, {}", group.part, group.material))
+    };
+    let mut names = Vec::new();
+    for part in task.parts() {
+        let own = task
+            .trials()
+            .filter(|(_, trial)| trial.record.part == part)
+            .map(|(_, trial)| trial);
+        let stimuli: Vec<_> = own
+            .flat_map(|trial| trial.stimuli().map(move |stimulus| (trial, stimulus)))
+            .collect();
+        for material in task.sorted(stimuli.iter().map(|(_, stimulus)| stimulus.material)) {
+            let of = stimuli
+                .iter()
+                .filter(|(_, stimulus)| stimulus.material == material);
+            names.extend(of.filter_map(|(trial, stimulus)| name(trial, stimulus.station)));
+        }
+    }
+    let names = distinct(names);
+    let (courses, unread) = mean_courses(task, "skin_c", &names, name);
+    for why in unread {
+        section.lacks("Courses", why);
+    }
+    if courses.is_empty() {
+        section.lacks(
+            "Fits",
+            "there is no telemetry of a skin in contact with a display",
+        );
+        return section;
+    }
+    let mut table = Table::new(
+        "exponential-fit",
+        "Fits to the mean courses; n counts contacts",
+        [
+            words("part and material"),
+            words("n"),
+            numbers("c", "°C", 3),
+            numbers("a", "K", 3),
+            numbers("time constant", "s", 3),
+            numbers("R²", "", 4),
+        ],
+    );
+    let mut curves = Vec::new();
+    for (series, course) in courses.iter().enumerate() {
+        let (t, y): (Vec<f64>, Vec<f64>) = course.points.iter().copied().unzip();
+        curves.push(Curve {
+            name: course.name.clone(),
+            color: color(series),
+            stroke: Stroke::Solid(2),
+            points: course.points.clone(),
+        });
+        match fit_exponential(&t, &y) {
+            Ok(fit) => {
+                let at = |t: f64| fit.offset + fit.amplitude * (-t / fit.time_constant).exp();
+                curves.push(Curve {
+                    name: "its fit".into(),
+                    color: color(series),
+                    stroke: Stroke::Dashed,
+                    points: t
+                        .iter()
+                        .map(|t| (*t, at(*t)))
+                        .filter(|(_, y)| y.is_finite())
+                        .collect(),
+                });
+                table.row(cells![
+                    course.name.clone(),
+                    course.contacts,
+                    fit.offset,
+                    fit.amplitude,
+                    fit.time_constant,
+                    fit.r_squared
+                ]);
+            }
+            Err(error) => section.lacks(&course.name, error),
+        }
+    }
+    let times = positive_range(
+        curves
+            .iter()
+            .flat_map(|curve| curve.points.iter().map(|(t, _)| *t)),
+    );
+    section.draw(
+        "Mean courses (lines) and fits (dashed)",
+        lines(times, "time since the landing / s", "skin / °C", &curves),
+    );
+    section.add(table);
+    section.add(self::table(
+        "courses",
+        "Mean courses of the skin",
+        "°C",
+        &courses,
+    ));
+    section
+}

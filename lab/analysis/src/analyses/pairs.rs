@@ -1,0 +1,280 @@
+//! Discrimination of two materials.
+
+use experiment_statistics::sensitivity::d_prime;
+
+use thermal_thesis::published::PublishedPair;
+
+use super::NO_ANSWERS;
+use super::design::{Contrast, Design};
+use super::share::{READING, Share, columns, picture, verdict};
+use crate::cells::distinct;
+use crate::input::{Stimulus, Task, Trial};
+use crate::report::{Column, Section, Table, cells, numbers, words};
+
+/// An answer to two different materials.
+pub struct Answer<'a> {
+    pub participant: usize,
+    pub part: &'a str,
+    /// The two materials, that of the larger contact coefficient first.
+    pub pair: [&'a str; 2],
+    /// Ratio of their contact coefficients, at least 1.
+    pub ratio: Option<f64>,
+    /// `R/S > 1` if the sample has the larger contact coefficient, `R/S < 1` if the simulated material has; `None` unless one
+    /// of the two is a sample and the other simulated.
+    pub mode: Option<&'static str>,
+    pub is_correct: bool,
+}
+
+/// Names of the modes, real over simulated contact coefficient.
+const MODES: [&str; 2] = ["R/S > 1", "R/S < 1"];
+
+impl Answer<'_> {
+    fn name(&self) -> String {
+        self.pair.join(" / ")
+    }
+}
+
+/// The scored answers to two different materials.
+pub fn answers(task: &Task) -> Vec<Answer<'_>> {
+    let all = task.trials();
+    all.filter_map(|(participant, trial)| answer(task, participant, trial))
+        .collect()
+}
+
+fn answer<'a>(task: &'a Task, participant: usize, trial: &'a Trial) -> Option<Answer<'a>> {
+    let stimuli: Vec<Stimulus<'_>> = trial.stimuli().collect();
+    let [colder, warmer] = task.sorted(stimuli.iter().map(|stimulus| stimulus.material))[..] else {
+        return None;
+    };
+    let of_both = task.effusivity(colder).zip(task.effusivity(warmer));
+    let ratio = of_both.map(|(one, other)| one / other);
+    let mode = match stimuli[..] {
+        [one, other] if one.is_simulated != other.is_simulated => {
+            let sample = if one.is_simulated { other } else { one };
+            Some(MODES[usize::from(sample.material != colder)])
+        }
+        _ => None,
+    };
+    Some(Answer {
+        participant,
+        part: &trial.record.part,
+        pair: [colder, warmer],
+        ratio: ratio.filter(|ratio| ratio.is_finite()),
+        mode,
+        is_correct: trial.record.is_correct?,
+    })
+}
+
+/// The pairs by the place of their materials.
+fn names(task: &Task, answers: &[Answer<'_>]) -> Vec<(String, Option<f64>)> {
+    let materials = task.sorted(answers.iter().flat_map(|answer| answer.pair));
+    let place = |name: &str| materials.iter().position(|one| *one == name);
+    let mut pairs = distinct(answers.iter().map(|answer| (answer.pair, answer.ratio)));
+    pairs.sort_by_key(|(pair, _)| pair.map(place));
+    pairs
+        .into_iter()
+        .map(|(pair, ratio)| (pair.join(" / "), ratio))
+        .collect()
+}
+
+/// The answers to a pair, in a mode or in all.
+fn share(answers: &[Answer<'_>], pair: &str, mode: Option<&str>) -> Share {
+    let of_pair = answers.iter().filter(|answer| answer.name() == pair);
+    let of_mode = of_pair.filter(|answer| mode.is_none() || answer.mode == mode);
+    Share::new(of_mode.map(|answer| (answer.participant, answer.is_correct)))
+}
+
+fn table_columns(mode: bool) -> Vec<Column> {
+    let mut all = vec![words("pair")];
+    if mode {
+        all.push(words("mode"));
+    }
+    all.push(numbers("ratio of contact coefficients", "", 2));
+    all.extend(columns());
+    all.extend([words("told apart"), numbers("d' (2AFC)", "", 2)]);
+    all
+}
+
+/// d' of a choice of two, from the log-linear estimate; `None` where chance is not that of a choice of two.
+fn d_prime_of(task: &Task, share: &Share) -> Option<f64> {
+    let is_choice_of_two = task.chance == Some(0.5) && task.answers.len() == 2;
+    is_choice_of_two
+        .then(|| d_prime(2, share.proportion()?.log_linear()).ok())
+        .flatten()
+}
+
+const CORRECT: &str = "An answer counts as correct by the contact coefficients of the materials, not by what the display did; \
+     trials in which it was limited are counted under \"Trials and measures\".";
+
+fn d_prime_note(task: &Task) -> String {
+    let threshold = task.threshold.map_or(String::new(), |threshold| {
+        format!("Told apart: at least {:.0} % correct. ", 100.0 * threshold)
+    });
+    format!(
+        "{threshold}d' of a choice of two is √2 z(p), with p = (k + ½)/(n + 1), so that 0 and 100 % have one, too."
+    )
+}
+
+/// Answers by pair.
+pub fn pairs(task: &Task) -> Section {
+    let answers = answers(task);
+    let mut section = Section::new("pairs", "Pairs of materials")
+        .note(CORRECT)
+        .note(READING)
+        .note(d_prime_note(task));
+    if answers.is_empty() {
+        section.lacks("Pairs", NO_ANSWERS);
+        return section;
+    }
+    let mut table = Table::new(
+        "pairs",
+        "Correct answers by pair; n counts answers",
+        table_columns(false),
+    );
+    let mut marks = Vec::new();
+    for (pair, ratio) in names(task, &answers) {
+        let share = share(&answers, &pair, None);
+        let mut row = cells![pair.clone(), ratio];
+        row.extend(share.cells(task.chance));
+        row.extend(cells![
+            verdict(&share, task.threshold),
+            d_prime_of(task, &share)
+        ]);
+        table.row(row);
+        marks.extend(share.mark(pair, 0));
+    }
+    section.draw(
+        "Correct answers by pair",
+        picture(&marks, &[""], task.chance, task.threshold),
+    );
+    section.add(table);
+    section
+}
+
+/// Answers by pair and by which of the two, sample or simulated material, has the larger contact coefficient.
+pub fn by_mode(task: &Task) -> Section {
+    let answers = answers(task);
+    let mut section = Section::new("pairs-by-mode", "Real against simulated materials")
+        .note(
+            "R/S > 1: the real material (sample) has the larger contact coefficient and should feel colder; R/S < 1: the \
+             simulated one has.",
+        )
+        .note(CORRECT)
+        .note(READING)
+        .note(d_prime_note(task));
+    if answers.iter().all(|answer| answer.mode.is_none()) {
+        section.lacks(
+            "Modes",
+            "no scored trial has a sample and a simulated material that differ",
+        );
+        return section;
+    }
+    let mut table = Table::new(
+        "pairs-by-mode",
+        "Correct answers by pair and mode; n counts answers",
+        table_columns(true),
+    );
+    let mut marks = Vec::new();
+    for (pair, ratio) in names(task, &answers) {
+        for (series, mode) in MODES.into_iter().enumerate() {
+            let share = share(&answers, &pair, Some(mode));
+            let mut row = cells![pair.clone(), mode, ratio];
+            row.extend(share.cells(task.chance));
+            row.extend(cells![
+                verdict(&share, task.threshold),
+                d_prime_of(task, &share)
+            ]);
+            table.row(row);
+            marks.extend(share.mark(&*pair, series));
+        }
+    }
+    section.draw(
+        "Correct answers by pair and mode",
+        picture(&marks, &MODES, task.chance, task.threshold),
+    );
+    section.add(table);
+    section
+}
+
+/// The answers to a published pair.
+pub fn share_of(task: &Task, published: &PublishedPair) -> Share {
+    let pair = format!("{} / {}", published.first, published.second);
+    share(&answers(task), &pair, None)
+}
+
+/// Correct answers to what a published result is of, `PAIR, MODE`, %.
+pub fn measured(task: &Task, of: &str) -> Option<f64> {
+    let (pair, mode) = of.split_once(", ")?;
+    share(&answers(task), pair, Some(mode)).percent()
+}
+
+const DEPENDENT: &str = "correct / %";
+
+/// Observations of a pair in per cent.
+fn percent(is_correct: bool) -> f64 {
+    100.0 * f64::from(u8::from(is_correct))
+}
+
+pub fn design(task: &Task) -> Design {
+    let answers = answers(task);
+    let levels: Vec<String> = names(task, &answers)
+        .into_iter()
+        .map(|(pair, _)| pair)
+        .collect();
+    let observations: Vec<_> = answers
+        .iter()
+        .map(|answer| {
+            (
+                answer.participant,
+                answer.name(),
+                percent(answer.is_correct),
+            )
+        })
+        .collect();
+    Design::one(DEPENDENT, "pair", &levels, &observations).with(Contrast::Mean)
+}
+
+pub fn by_mode_design(task: &Task) -> Design {
+    let answers = answers(task);
+    let levels: Vec<String> = names(task, &answers)
+        .into_iter()
+        .map(|(pair, _)| pair)
+        .collect();
+    let observations: Vec<_> = answers
+        .iter()
+        .filter_map(|answer| {
+            let cell = (answer.name(), answer.mode?.to_owned());
+            Some((answer.participant, cell, percent(answer.is_correct)))
+        })
+        .collect();
+    let modes = MODES.map(str::to_owned);
+    Design::two(
+        DEPENDENT,
+        ("pair", &levels),
+        ("mode", &modes),
+        &observations,
+    )
+    .with(Contrast::Mean)
+}
+
+pub fn design_of_parts(task: &Task) -> Design {
+    let answers = answers(task);
+    let parts: Vec<String> = task.parts().into_iter().map(str::to_owned).collect();
+    let levels: Vec<String> = names(task, &answers)
+        .into_iter()
+        .map(|(pair, _)| pair)
+        .collect();
+    let observations: Vec<_> = answers
+        .iter()
+        .map(|answer| {
+            let cell = (answer.part.to_owned(), answer.name());
+            (answer.participant, cell, percent(answer.is_correct))
+        })
+        .collect();
+    Design::two(
+        DEPENDENT,
+        ("part", &parts),
+        ("pair", &levels),
+        &observations,
+    )
+}

@@ -1,0 +1,200 @@
+//! Psychometric functions, fitted to the answers at all levels.
+
+use experiment_statistics::proportion::Proportion;
+use experiment_statistics::psychometric::{Fit, Level, Model, Shape};
+
+use super::share::CONFIDENCE;
+use crate::input::{Task, Trial, finite};
+use crate::picture::{Curve, Stroke, color, lines, positive_range};
+use crate::report::{Section, Table, cells, numbers, probabilities, words};
+
+/// Largest rate of lapses that is fitted; without a limit it would spoil the slope.
+const LAPSE_MAX: f64 = 0.06;
+/// Part between chance and certainty at which the threshold is taken: 75 % of a choice of two.
+const PART: f64 = 0.5;
+const SAMPLES: usize = 400;
+/// The same data give the same interval.
+const SEED: u64 = 1;
+
+/// The answers at each level.
+fn levels<'a>(trials: impl Iterator<Item = &'a Trial>) -> Vec<Level> {
+    let mut counts: Vec<(f64, u32, u32)> = Vec::new();
+    for trial in trials {
+        let (Some(level), Some(is_correct)) = (trial.change_k(), trial.record.is_correct) else {
+            continue;
+        };
+        if level <= 0.0 {
+            continue;
+        }
+        let at = match counts.iter().position(|(known, ..)| *known == level) {
+            Some(at) => at,
+            None => {
+                counts.push((level, 0, 0));
+                counts.len() - 1
+            }
+        };
+        counts[at].1 += u32::from(is_correct);
+        counts[at].2 += 1;
+    }
+    counts.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let level = |(level, correct, total): (f64, u32, u32)| {
+        Proportion::new(correct, total)
+            .ok()
+            .map(|answers| Level { level, answers })
+    };
+    counts.into_iter().filter_map(level).collect()
+}
+
+/// Fits for each condition, of all participants together and of each.
+pub fn psychometric_fit(task: &Task) -> Section {
+    let chance = task
+        .chance
+        .filter(|chance| (0.0..1.0).contains(chance))
+        .unwrap_or(0.5);
+    let proportion = chance + PART * (1.0 - chance);
+    let mut section = Section::new("psychometric-fit", "Psychometric functions").note(format!(
+        "Weibull functions, fitted by maximum likelihood, with chance {chance:.3} and a rate of lapses up to {LAPSE_MAX}. The \
+         threshold is the level with {:.1} % correct; its interval of 95 % is that of {SAMPLES} parametric bootstrap samples. p \
+         is that of the deviance: a small one says that the function does not describe the answers.",
+        100.0 * proportion
+    ));
+    let mut table = Table::new(
+        "psychometric-fit",
+        "Fitted functions; n counts answers",
+        [
+            words("condition"),
+            words("participants"),
+            words("n"),
+            words("levels"),
+            numbers("threshold", "K", 4),
+            numbers("95 % from", "K", 4),
+            numbers("95 % to", "K", 4),
+            numbers("slope", "", 2),
+            numbers("lapses", "", 3),
+            numbers("deviance", "", 2),
+            probabilities("p"),
+        ],
+    );
+    let mut curves = Vec::new();
+    for (series, condition) in conditions(task).into_iter().enumerate() {
+        let mut groups = vec![(
+            "all".to_owned(),
+            (0..task.participants.len()).collect::<Vec<_>>(),
+        )];
+        if task.participants.len() > 1 {
+            groups.extend(
+                (0..task.participants.len())
+                    .map(|one| (task.participants[one].code.clone(), vec![one])),
+            );
+        }
+        for (name, members) in groups {
+            let own = task.trials().filter(|(one, trial)| {
+                members.contains(one) && self::condition(task, trial).as_ref() == Some(&condition)
+            });
+            let levels = levels(own.map(|(_, trial)| trial));
+            let total: u32 = levels.iter().map(|level| level.answers.total()).sum();
+            let model = Model {
+                shape: Shape::Weibull,
+                guess: chance,
+                lapse: 0.0,
+            };
+            let fit = model.fit_with_lapse(&levels, LAPSE_MAX);
+            let fitted =
+                fit.and_then(|fit| fit.threshold(proportion).map(|threshold| (fit, threshold)));
+            match &fitted {
+                Ok((fit, threshold)) => {
+                    let bootstrap = fit.bootstrap(&levels, proportion, CONFIDENCE, SAMPLES, SEED);
+                    if let Err(error) = &bootstrap {
+                        section.lacks(&format!("Interval of {condition}, {name}"), error);
+                    }
+                    let interval = bootstrap.ok().map(|bootstrap| bootstrap.interval);
+                    table.row(cells![
+                        condition.clone(),
+                        name.clone(),
+                        total,
+                        levels.len(),
+                        threshold.level,
+                        interval.map(|interval| interval.low),
+                        interval.map(|interval| interval.high),
+                        fit.slope,
+                        fit.model.lapse,
+                        fit.deviance,
+                        fit.deviance_p
+                    ]);
+                }
+                Err(error) => section.lacks(&format!("{condition}, {name}"), error),
+            }
+            if name == "all" {
+                curves.extend(drawn(
+                    &condition,
+                    series,
+                    &levels,
+                    fitted.as_ref().ok().map(|(fit, _)| fit),
+                ));
+            }
+        }
+    }
+    if !curves.is_empty() {
+        let range = positive_range(
+            curves
+                .iter()
+                .flat_map(|curve| curve.points.iter().map(|(x, _)| *x)),
+        );
+        section.draw(
+            "Share of correct answers by level (dots) and fitted function (line), all participants",
+            lines(range, "change / K", "correct / %", &curves),
+        );
+    }
+    if table.rows.is_empty() && section.not_possible.is_empty() {
+        section.lacks(
+            "Function",
+            "no trial that counts has a level and an answer that is scored",
+        );
+    }
+    section.add(table);
+    section
+}
+
+/// What a function is fitted for: a staircase, or what the factors say.
+fn condition(task: &Task, trial: &Trial) -> Option<String> {
+    trial.change_k()?;
+    Some(
+        match trial.staircase.and_then(|index| task.staircases.get(index)) {
+            Some((name, _)) => name.clone(),
+            None => trial.record.part.clone(),
+        },
+    )
+}
+
+fn conditions(task: &Task) -> Vec<String> {
+    crate::cells::distinct(
+        task.trials()
+            .filter_map(|(_, trial)| condition(task, trial)),
+    )
+}
+
+fn drawn(name: &str, series: usize, levels: &[Level], fit: Option<&Fit>) -> Vec<Curve> {
+    let dots = levels
+        .iter()
+        .map(|level| (level.level, 100.0 * level.answers.value()));
+    let last = levels.last().map_or(0.0, |level| level.level);
+    let at = |step: u32| {
+        let level = last * f64::from(step) / 200.0;
+        let p = fit?.probability(level).ok().and_then(finite)?;
+        Some((level, 100.0 * p))
+    };
+    vec![
+        Curve {
+            name: name.into(),
+            color: color(series),
+            stroke: Stroke::Dots,
+            points: dots.collect(),
+        },
+        Curve {
+            name: "its function".into(),
+            color: color(series),
+            stroke: Stroke::Solid(2),
+            points: (1..=200).filter_map(at).collect(),
+        },
+    ]
+}

@@ -1,0 +1,242 @@
+//! What the analyses see of recorded sessions: the trials that count, with their factors and materials.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use contact_model::material::{self, Material};
+use experiment_statistics::staircase::Staircase;
+use thermal_session::dataset::RecordedSession;
+use thermal_session::record::{StationRecord, TrialRecord};
+use thermal_session::{AnswerKind, Departure, Presented, Session};
+
+/// All sessions of one task.
+#[derive(Clone, Debug)]
+pub struct Task {
+    pub name: String,
+    pub title: String,
+    pub cite: String,
+    pub question: Option<String>,
+    /// The answers that are allowed, if they are words.
+    pub answers: Vec<String>,
+    pub chance: Option<f64>,
+    pub threshold: Option<f64>,
+    /// Words of the session file.
+    pub analyses: Vec<String>,
+    pub stations: Vec<String>,
+    pub factors: Vec<String>,
+    pub staircases: Vec<(String, Staircase)>,
+    pub materials: BTreeMap<String, Material>,
+    pub participants: Vec<Participant>,
+}
+
+/// The session of one participant.
+#[derive(Clone, Debug)]
+pub struct Participant {
+    pub code: String,
+    pub is_simulated: bool,
+    /// Number of trials of the plan.
+    pub planned: usize,
+    /// All records, void ones among them.
+    pub records: Vec<TrialRecord>,
+    /// The trials that count.
+    pub trials: Vec<Trial>,
+    pub telemetry: PathBuf,
+}
+
+/// A trial that counts.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    pub record: TrialRecord,
+    /// Level of each factor, without those that the trial does not have.
+    pub levels: Vec<(String, String)>,
+    pub staircase: Option<usize>,
+    pub presented: Vec<Presented>,
+}
+
+/// A material at a station.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stimulus<'a> {
+    pub station: usize,
+    pub material: &'a str,
+    /// On the display; otherwise a sample.
+    pub is_simulated: bool,
+}
+
+/// The tasks of a data set, by name.
+pub fn tasks(sessions: &[RecordedSession]) -> Vec<Task> {
+    let mut tasks: BTreeMap<&str, Task> = BTreeMap::new();
+    for recorded in sessions {
+        let name = recorded.session.task.as_str();
+        let task = tasks.entry(name).or_insert_with(|| task(&recorded.session));
+        for factor in &recorded.plan.factors {
+            if !task.factors.contains(factor) {
+                task.factors.push(factor.clone());
+            }
+        }
+        let participant = participant(recorded);
+        for name in participant.trials.iter().flat_map(Trial::materials) {
+            // A material that the session describes itself is not among the named ones.
+            let known = material::find(name).copied();
+            if let Some(found) = known.or_else(|| recorded.session.material(name)) {
+                task.materials.insert(name.into(), found);
+            }
+        }
+        task.participants.push(participant);
+    }
+    tasks.into_values().collect()
+}
+
+fn task(session: &Session) -> Task {
+    let answers = match session.answer.as_ref().map(|answer| &answer.kind) {
+        Some(AnswerKind::OneOf(words)) => words.clone(),
+        _ => Vec::new(),
+    };
+    let staircases = session.staircases.iter();
+    Task {
+        name: session.task.clone(),
+        title: session.title.clone(),
+        cite: session.cite.clone(),
+        question: session.answer.as_ref().map(|answer| answer.ask.clone()),
+        answers,
+        chance: session.score.chance,
+        threshold: session.score.threshold,
+        analyses: session.score.analyses.clone(),
+        stations: session
+            .stations
+            .iter()
+            .map(|station| station.name.clone())
+            .collect(),
+        factors: Vec::new(),
+        staircases: staircases
+            .map(|named| (named.name.clone(), named.initial.clone()))
+            .collect(),
+        materials: BTreeMap::new(),
+        participants: Vec::new(),
+    }
+}
+
+fn participant(recorded: &RecordedSession) -> Participant {
+    let planned: BTreeMap<u32, _> = recorded
+        .plan
+        .trials
+        .iter()
+        .map(|trial| (trial.number, trial))
+        .collect();
+    let trial = |record: &TrialRecord| {
+        let plan = planned.get(&record.trial);
+        let levels = recorded.plan.factors.iter().zip(&record.levels);
+        Trial {
+            levels: levels
+                .filter(|(_, level)| !level.is_empty())
+                .map(|(factor, level)| (factor.clone(), level.clone()))
+                .collect(),
+            staircase: plan.and_then(|plan| plan.staircase),
+            presented: plan.map_or(Vec::new(), |plan| plan.presented.clone()),
+            record: record.clone(),
+        }
+    };
+    Participant {
+        code: recorded.info.participant.clone(),
+        is_simulated: recorded.info.is_simulated,
+        planned: recorded.plan.trials.len(),
+        records: recorded.records.clone(),
+        trials: recorded.counted().map(trial).collect(),
+        telemetry: recorded.telemetry_path(),
+    }
+}
+
+impl Task {
+    /// All trials that count, with the number of their participant.
+    pub fn trials(&self) -> impl Iterator<Item = (usize, &Trial)> {
+        let numbered = self.participants.iter().enumerate();
+        numbered.flat_map(|(number, one)| one.trials.iter().map(move |trial| (number, trial)))
+    }
+
+    pub fn asks_for(&self, word: &str) -> bool {
+        self.analyses.iter().any(|asked| asked == word)
+    }
+
+    /// Contact coefficient of a material, J/(m² s^½ K).
+    pub fn effusivity(&self, material: &str) -> Option<f64> {
+        let effusivity = self.materials.get(material)?.effusivity();
+        effusivity.is_finite().then_some(effusivity)
+    }
+
+    /// Names of the parts in the order in which they first occur.
+    pub fn parts(&self) -> Vec<&str> {
+        crate::cells::distinct(self.trials().map(|(_, trial)| trial.record.part.as_str()))
+    }
+
+    /// Materials by falling contact coefficient, those of unknown properties last.
+    pub fn sorted<'a>(&self, materials: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+        let mut sorted = crate::cells::distinct(materials);
+        sorted.sort_by(|one, other| {
+            let of = |name: &str| self.effusivity(name).unwrap_or(0.0);
+            of(other).total_cmp(&of(one)).then_with(|| one.cmp(other))
+        });
+        sorted
+    }
+}
+
+impl Trial {
+    /// Materials at the stations.
+    pub fn stimuli(&self) -> impl Iterator<Item = Stimulus<'_>> {
+        let numbered = self.presented.iter().enumerate();
+        numbered.filter_map(|(station, presented)| {
+            let (material, is_simulated) = match presented {
+                Presented::Sample { material } => (material, false),
+                Presented::Material { material, .. } => (material, true),
+                _ => return None,
+            };
+            Some(Stimulus {
+                station,
+                material,
+                is_simulated,
+            })
+        })
+    }
+
+    fn materials(&self) -> impl Iterator<Item = &str> {
+        self.stimuli().map(|stimulus| stimulus.material)
+    }
+
+    pub fn station(&self, index: usize) -> Option<&StationRecord> {
+        self.record.stations.get(index)
+    }
+
+    /// Time from the first landing to the answer, s.
+    pub fn response_s(&self) -> Option<f64> {
+        let (answer_s, land_s) = self.record.answer_s.zip(self.record.land_s)?;
+        finite(answer_s - land_s)
+    }
+
+    /// By how much the departures of the two intervals differ, K.
+    pub fn change_k(&self) -> Option<f64> {
+        let of_staircase = self.record.staircase_level_k;
+        let of_pulses = self.presented.iter().find_map(|presented| match presented {
+            Presented::Pulses {
+                departures_k: [Departure::Fixed(first), Departure::Fixed(second)],
+                ..
+            } => Some((first - second).abs()),
+            _ => None,
+        });
+        of_staircase.or(of_pulses).and_then(finite)
+    }
+
+    /// Levels of all factors as one text.
+    pub fn condition(&self, without: &[&str]) -> String {
+        let levels = self
+            .levels
+            .iter()
+            .filter(|(factor, _)| !without.contains(&factor.as_str()));
+        let levels: Vec<_> = levels
+            .map(|(factor, level)| format!("{factor} {level}"))
+            .collect();
+        levels.join(", ")
+    }
+}
+
+/// The value, if it is a number.
+pub fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

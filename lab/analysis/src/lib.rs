@@ -1,0 +1,75 @@
+#![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
+
+mod analyses;
+mod cells;
+mod input;
+mod page;
+mod picture;
+mod report;
+#[cfg(test)]
+mod tests;
+
+use thermal_session::dataset::RecordedSession;
+
+pub use report::{Analysis, Cell, Column, Picture, Section, Table, TaskAnalysis};
+
+/// Analyses the sessions of a data set, each task over all its participants. Void trials do not count. Whatever the records
+/// are, every number is finite; what cannot be computed is a sentence in [`Section::not_possible`].
+#[must_use]
+pub fn analyse(sessions: &[RecordedSession]) -> Analysis {
+    Analysis {
+        tasks: input::tasks(sessions)
+            .iter()
+            .map(analyses::of_task)
+            .collect(),
+    }
+}
+
+impl Analysis {
+    /// The analysis as JSON.
+    #[must_use]
+    pub fn json(&self) -> String {
+        // Neither a map with keys that are no strings nor a number that is not finite is in it.
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+
+    /// The analysis as one HTML page that needs no other file.
+    #[must_use]
+    pub fn page(&self) -> String {
+        page::page(&self.tasks)
+    }
+
+    /// The tables: names of files, of task and table, and their contents as CSV. Numbers have full precision; what has no
+    /// value is empty.
+    #[must_use]
+    pub fn csv(&self) -> Vec<(String, String)> {
+        let tables = self.tasks.iter().flat_map(|task| {
+            let tables = task.sections.iter().flat_map(|section| &section.tables);
+            tables.map(|table| (format!("{}_{}.csv", task.task, table.name), table.csv()))
+        });
+        tables.collect()
+    }
+}
+
+impl Table {
+    fn csv(&self) -> String {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let names = self.columns.iter().map(|column| match column.unit {
+            "" => column.name.clone(),
+            unit => format!("{} / {unit}", column.name),
+        });
+        // Writing into memory fails only where a row has another number of cells, which a table does not have.
+        let _ = writer.write_record(names);
+        for row in &self.rows {
+            let _ = writer.write_record(row.iter().map(|cell| match cell {
+                Cell::Nothing => String::new(),
+                Cell::Text(text) => text.clone(),
+                Cell::Count(count) => count.to_string(),
+                Cell::Number(number) => number.to_string(),
+            }));
+        }
+        let bytes = writer.into_inner().unwrap_or_default();
+        String::from_utf8_lossy(&bytes).into_owned()
+    }
+}

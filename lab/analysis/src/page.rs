@@ -1,0 +1,182 @@
+//! The analysis as one HTML page.
+
+use thermal_charts::{document, escape, svg_element};
+
+use crate::report::{Cell, Column, Section, Shown, Table, TaskAnalysis};
+
+const STYLE: &str = "body{max-width:76rem}table{font-size:.85rem;margin:.6rem 0 1.2rem}caption{text-align:left;\
+font-weight:600;padding:.3rem 0}td.n,th.n{text-align:right}td.n{font-variant-numeric:tabular-nums;white-space:nowrap}\
+figure{margin:1.2rem 0}figcaption{font-weight:600}.not{border-left:4px solid #b35900;padding-left:.8rem}\
+.simulated{border-left:4px solid #6639ba;padding-left:.8rem}nav ul{columns:2}th .u{font-weight:400;color:#666}\
+div.wide{overflow-x:auto}";
+
+/// The page of all tasks.
+pub fn page(tasks: &[TaskAnalysis]) -> String {
+    let title = match tasks {
+        [one] => one.title.clone(),
+        _ => "Analysis of experiments".into(),
+    };
+    let body: String = match tasks {
+        [] => "<p>The data set has no sessions.</p>".into(),
+        _ => tasks
+            .iter()
+            .map(|task| of_task(task, tasks.len() > 1))
+            .collect(),
+    };
+    document(&title, STYLE, &body)
+}
+
+fn of_task(task: &TaskAnalysis, is_one_of_many: bool) -> String {
+    let mut body = String::new();
+    if is_one_of_many {
+        body += &format!("<h2>{}</h2>", escape(&task.title));
+    }
+    body += &format!("<p>Task <code>{}</code>", escape(&task.task));
+    if !task.cite.is_empty() {
+        body += &format!(", after {}", escape(&task.cite));
+    }
+    body += ". ";
+    body += &match &task.question {
+        Some(question) => format!("Participants were asked: <q>{}</q>", escape(question)),
+        None => "Participants were asked nothing.".into(),
+    };
+    body += "</p>";
+    if task.is_simulated {
+        body += "<p class=\"simulated\">Participants and device were simulated: these are predictions, not measurements.</p>";
+    }
+    body += "<nav><ul>";
+    for section in &task.sections {
+        body += &format!(
+            "<li><a href=\"#{}\">{}</a></li>",
+            anchor(task, section),
+            escape(&section.title)
+        );
+    }
+    body += "</ul></nav>";
+    body + &task
+        .sections
+        .iter()
+        .map(|section| of_section(task, section))
+        .collect::<String>()
+}
+
+/// Name of a section in the page; words of an unchecked file must not end the attribute.
+fn anchor(task: &TaskAnalysis, section: &Section) -> String {
+    escape(&format!("{}-{}", task.task, section.name)).replace(['"', ' '], "-")
+}
+
+fn of_section(task: &TaskAnalysis, section: &Section) -> String {
+    let mut text = format!(
+        "<h3 id=\"{}\">{}</h3>",
+        anchor(task, section),
+        escape(&section.title)
+    );
+    for note in &section.notes {
+        text += &format!("<p>{}</p>", escape(note));
+    }
+    for picture in &section.pictures {
+        text += &format!(
+            "<figure><figcaption>{}</figcaption>{}</figure>",
+            escape(&picture.caption),
+            svg_element(&picture.svg)
+        );
+    }
+    text += &section.tables.iter().map(of_table).collect::<String>();
+    if !section.not_possible.is_empty() {
+        text += "<div class=\"not\"><p>Not possible with these data:</p><ul>";
+        for sentence in &section.not_possible {
+            text += &format!("<li>{}</li>", escape(sentence));
+        }
+        text += "</ul></div>";
+    }
+    text
+}
+
+fn of_table(table: &Table) -> String {
+    let is_number = |index: usize| {
+        table
+            .rows
+            .iter()
+            .any(|row| matches!(row.get(index), Some(Cell::Count(_) | Cell::Number(_))))
+    };
+    let class = |index: usize| if is_number(index) { " class=\"n\"" } else { "" };
+    let caption = escape(&table.caption);
+    let (begin, end) = if table.is_folded {
+        (
+            format!("<details><summary>{caption}</summary><table><tr>"),
+            "</table></details>",
+        )
+    } else {
+        (
+            format!("<div class=\"wide\"><table><caption>{caption}</caption><tr>"),
+            "</table></div>",
+        )
+    };
+    let mut text = begin;
+    for (index, column) in table.columns.iter().enumerate() {
+        let unit = match column.unit {
+            "" => String::new(),
+            unit => format!(" <span class=\"u\">/ {}</span>", escape(unit)),
+        };
+        text += &format!("<th{}>{}{unit}</th>", class(index), escape(&column.name));
+    }
+    text += "</tr>";
+    for row in &table.rows {
+        text += "<tr>";
+        for (index, (cell, column)) in row.iter().zip(&table.columns).enumerate() {
+            text += &format!("<td{}>{}</td>", class(index), escape(&shown(cell, column)));
+        }
+        text += "</tr>";
+    }
+    text + end
+}
+
+fn shown(cell: &Cell, column: &Column) -> String {
+    match cell {
+        Cell::Nothing => "–".into(),
+        Cell::Text(text) => text.clone(),
+        Cell::Count(count) => count.to_string(),
+        Cell::Number(number) => match column.shown {
+            Shown::Plain => number.to_string(),
+            Shown::Decimals(decimals) => decimal(*number, decimals),
+            Shown::Probability => probability(*number),
+        },
+    }
+}
+
+/// A number with this many decimals and a minus sign.
+pub fn decimal(number: f64, decimals: usize) -> String {
+    // A rounded negative zero is zero.
+    let text = format!("{number:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.bytes().all(|digit| matches!(digit, b'0' | b'.')) => digits.into(),
+        Some(digits) => format!("\u{2212}{digits}"),
+        None => text,
+    }
+}
+
+/// A probability as journals print it.
+pub fn probability(p: f64) -> String {
+    if p < 0.001 {
+        "< .001".into()
+    } else if p >= 0.9995 {
+        "1.000".into()
+    } else {
+        format!("{p:.3}").trim_start_matches('0').into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_printed_as_journals_do() {
+        assert_eq!(probability(0.0004), "< .001");
+        assert_eq!(probability(0.0123), ".012");
+        assert_eq!(probability(0.99999), "1.000");
+        assert_eq!(decimal(-0.004, 2), "0.00");
+        assert_eq!(decimal(-0.006, 2), "\u{2212}0.01");
+        assert_eq!(decimal(1.005, 1), "1.0");
+    }
+}
