@@ -7,7 +7,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use cli::{
-    Failure, Target, analyse, bring_up, commission, info, log, monitor, play, ports, replay, run, send,
+    Failure, Target, analyse, bring_up, commission, info, log, monitor, play, ports, replay, run,
+    send,
 };
 
 /// The operator's side of a thermal display.

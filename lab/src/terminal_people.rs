@@ -270,6 +270,7 @@ impl People for TerminalPeople<'_> {
                     self.tell("too late");
                 }
             }
+            Update::Feedback { is_correct } => self.tell(texts::feedback(*is_correct)),
             Update::Decide(question) => self.decide(question),
             Update::TargetForce(Some(target_n)) => self.tell(&format!("press with {target_n} N")),
             Update::TargetForce(None) => {}

@@ -33,7 +33,9 @@ impl<P: People> People for Watched<'_, P> {
     fn decision(&mut self) -> Option<Decision> {
         let watcher = self.watcher.decision();
         let simulated = self.simulated.decision();
-        watcher.filter(|decision| *decision == Decision::Stop).or(simulated)
+        watcher
+            .filter(|decision| *decision == Decision::Stop)
+            .or(simulated)
     }
 }
 
@@ -80,7 +82,9 @@ impl People for Progress<'_> {
             }
             Update::Answered(Some(_)) => self.answer = ", answered".into(),
             Update::TrialEnded { void } => {
-                let why = void.as_ref().map_or(String::new(), |why| format!(", void: {why}"));
+                let why = void
+                    .as_ref()
+                    .map_or(String::new(), |why| format!(", void: {why}"));
                 let line = format!("{}{}{why}", self.trial, self.answer);
                 self.tell(&line);
             }

@@ -125,8 +125,9 @@ impl SampleTouch {
             self.steps_since_change = 0;
         }
         let [finger, sample] = self.surface_m2k_w;
-        self.contact_w_m2k =
-            contact.map_or(0.0, |touch| 1.0 / (finger + touch.resistance_m2k_w + sample));
+        self.contact_w_m2k = contact.map_or(0.0, |touch| {
+            1.0 / (finger + touch.resistance_m2k_w + sample)
+        });
         self.contact = contact;
         if let Some(vessels) = &self.vessels {
             self.slabs.set_flow(FINGER, vessels.flow(self.force_n));

@@ -29,7 +29,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .run(&plan, Schedule::new(&session, &plan))?;
         let records = recorder.records();
         trials += records.len();
-        void += records.iter().filter(|record| record.void.is_some()).count();
+        void += records
+            .iter()
+            .filter(|record| record.void.is_some())
+            .count();
         let judged = || records.iter().filter_map(|record| record.is_correct);
         let correct = judged().filter(|is_correct| *is_correct).count();
         println!("{code}: {correct} of {} correct", judged().count());

@@ -14,8 +14,8 @@ use thermal_plant::finger::FingerParams;
 use thermal_plant::parameters::stream_seed;
 use thermal_plant::{ConfigError, Params};
 use thermal_session::{
-    AnswerKind, ContactRule, Decision, Departure, People, Phase, Plan, PlannedTrial, Presented, Procedure, Response,
-    Session, Update,
+    AnswerKind, ContactRule, Decision, Departure, People, Phase, Plan, PlannedTrial, Presented,
+    Procedure, Response, Session, Update,
 };
 
 use crate::device::{PreparedDevice, RunningDevice};
@@ -371,7 +371,8 @@ impl State {
     /// Records what was felt. The fingers are at rest until the next trial.
     fn end_trial(&mut self) {
         if let Some(mut trial) = self.trial.take() {
-            self.observations.push(trial.observation(self.ms, &self.setting));
+            self.observations
+                .push(trial.observation(self.ms, &self.setting));
         }
     }
 
@@ -391,7 +392,8 @@ impl State {
             device.receive(self.splitter.received());
             let at = Duration::from_millis(self.ms);
             let lines = self.splitter.complete().into_iter();
-            self.received.extend(lines.map(|text| ReceivedLine { text, at }));
+            self.received
+                .extend(lines.map(|text| ReceivedLine { text, at }));
         }
         if let Some(trial) = &mut self.trial {
             let felt = trial.feel(self.ms, self.device.as_mut(), &self.setting);
@@ -440,7 +442,12 @@ fn task(
     }
     let stations: Option<Vec<usize>> = words
         .iter()
-        .map(|word| session.stations.iter().position(|station| station.name == *word))
+        .map(|word| {
+            session
+                .stations
+                .iter()
+                .position(|station| station.name == *word)
+        })
         .collect();
     if let Some(stations) = stations {
         return Ok(Some(match stations.len() {

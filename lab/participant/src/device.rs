@@ -56,7 +56,12 @@ impl PreparedDevice {
     ///
     /// # Errors
     /// The device cannot be commissioned, or the plant does not accept a value.
-    pub fn new(params: &Params, room_c: f64, seed: u64, fingers: usize) -> Result<Self, BenchError> {
+    pub fn new(
+        params: &Params,
+        room_c: f64,
+        seed: u64,
+        fingers: usize,
+    ) -> Result<Self, BenchError> {
         let mut params = params.clone();
         if fingers > 1 {
             params.bridge.pwm_hz =
@@ -77,20 +82,24 @@ impl PreparedDevice {
             RunningDevice::One(Box::new(NativeEngine::new(world(0)?)))
         };
         let mut client = Client::new(DeviceLink::new(device));
-        client.wait(START).map_err(|error| failed(error.to_string()))?;
+        client
+            .wait(START)
+            .map_err(|error| failed(error.to_string()))?;
         for address in addresses {
             commissioning::restore(&mut client, address, &lines)
                 .map_err(|error| failed(error.to_string()))?;
         }
-        client.command("save").map_err(|error| failed(error.to_string()))?;
+        client
+            .command("save")
+            .map_err(|error| failed(error.to_string()))?;
         let not_saved = || BenchError::Commissioning("the settings were not saved".into());
         let stored = match client.into_link().device {
-            RunningDevice::One(engine) => Stored::One(Box::new(
-                *engine.stored_settings().ok_or_else(not_saved)?,
-            )),
-            RunningDevice::Five(engine) => Stored::Five(Box::new(
-                *engine.stored_settings().ok_or_else(not_saved)?,
-            )),
+            RunningDevice::One(engine) => {
+                Stored::One(Box::new(*engine.stored_settings().ok_or_else(not_saved)?))
+            }
+            RunningDevice::Five(engine) => {
+                Stored::Five(Box::new(*engine.stored_settings().ok_or_else(not_saved)?))
+            }
         };
         Ok(Self {
             params,
@@ -105,8 +114,14 @@ impl PreparedDevice {
     /// # Errors
     /// The plant does not accept the temperature.
     pub fn power_up(&self, skin_c: f64, noise_seed: u64) -> Result<RunningDevice, BenchError> {
-        let world =
-            |finger| world(&self.params, skin_c, self.room_c, (self.seed, noise_seed, finger));
+        let world = |finger| {
+            world(
+                &self.params,
+                skin_c,
+                self.room_c,
+                (self.seed, noise_seed, finger),
+            )
+        };
         Ok(match &self.stored {
             Stored::One(stored) => RunningDevice::One(Box::new(
                 NativeEngine::new(world(0)?).with_stored_settings(**stored),
@@ -158,7 +173,9 @@ impl RunningDevice {
         let faults_of = |finger| faults.iter().copied().filter(move |_| finger == 0);
         match self {
             Self::One(engine) => {
-                engine.world().set_force_and_faults(force_n(0), faults_of(0));
+                engine
+                    .world()
+                    .set_force_and_faults(force_n(0), faults_of(0));
                 let Ok(()) = run_1_ms(&mut **engine, bytes);
             }
             Self::Five(engine) => {
@@ -244,7 +261,8 @@ impl Link for DeviceLink {
             self.device.receive(self.splitter.received());
             let at = self.now();
             let lines = self.splitter.complete().into_iter();
-            self.received.extend(lines.map(|text| ReceivedLine { text, at }));
+            self.received
+                .extend(lines.map(|text| ReceivedLine { text, at }));
         }
         Ok(self.received.pop_front())
     }

@@ -88,12 +88,7 @@ pub struct Touches(Vec<(f64, f64)>);
 impl Touches {
     /// Touches that last until `until_s` at least.
     #[must_use]
-    pub fn new(
-        params: &HandParams,
-        rule: ContactRule,
-        until_s: f64,
-        times: &mut Stream,
-    ) -> Self {
+    pub fn new(params: &HandParams, rule: ContactRule, until_s: f64, times: &mut Stream) -> Self {
         if rule != ContactRule::Free {
             return Self(vec![(0.0, f64::INFINITY)]);
         }
@@ -109,7 +104,10 @@ impl Touches {
     /// Number of touches that begin before a time, s.
     #[must_use]
     pub fn count_until(&self, until_s: f64) -> usize {
-        self.0.iter().filter(|(start_s, _)| *start_s < until_s).count()
+        self.0
+            .iter()
+            .filter(|(start_s, _)| *start_s < until_s)
+            .count()
     }
 }
 
@@ -144,7 +142,8 @@ impl ForceCourse {
         let presses = (touches.0.iter())
             .map(|&(start_s, end_s)| {
                 let drawn_n = random.log_normal(params.force_median_n, params.force_sigma_ln);
-                let errors = [params.follow_sd, params.follow_first_sd].map(|sd| sd * random.normal());
+                let errors =
+                    [params.follow_sd, params.follow_first_sd].map(|sd| sd * random.normal());
                 Press {
                     start_s: (start_s + shift_s).max(0.0),
                     end_s: end_s + shift_s,

@@ -167,21 +167,33 @@ impl Task {
                 };
                 none + (full - none) * share
             };
-            return Some(Judgement::Numbers(felt_k.iter().copied().map(number).collect()));
+            return Some(Judgement::Numbers(
+                felt_k.iter().copied().map(number).collect(),
+            ));
         }
         if is_lapse {
-            return felt_k.iter().any(Option::is_some).then_some(Judgement::Choice(random));
+            return felt_k
+                .iter()
+                .any(Option::is_some)
+                .then_some(Judgement::Choice(random));
         }
         let choice = match self {
             Self::Colder(stations) => {
                 let last = stations.iter().max().copied();
                 argmax(stations.iter().map(|&station| {
-                    let bias_k = if Some(station) == last { params.right_bias_k } else { 0.0 };
+                    let bias_k = if Some(station) == last {
+                        params.right_bias_k
+                    } else {
+                        0.0
+                    };
                     Some(felt(station)? + bias_k)
                 }))
             }
             Self::Different(stations) => {
-                let all: Vec<f64> = stations.iter().map(|&station| felt(station)).collect::<Option<_>>()?;
+                let all: Vec<f64> = stations
+                    .iter()
+                    .map(|&station| felt(station))
+                    .collect::<Option<_>>()?;
                 let mean = all.iter().sum::<f64>() / all.len() as f64;
                 argmax(all.iter().map(|felt_k| Some((felt_k - mean).abs())))
             }
@@ -202,7 +214,10 @@ impl Task {
                 let mut both = felt_k.iter().copied().flatten();
                 let mut true_k = falls_k.iter().copied().flatten();
                 let off_k = (both.next()? - both.next()?).abs();
-                let noise_k = libm::hypot(params.sigma_k(true_k.next()?), params.sigma_k(true_k.next()?));
+                let noise_k = libm::hypot(
+                    params.sigma_k(true_k.next()?),
+                    params.sigma_k(true_k.next()?),
+                );
                 let is_different = off_k > params.different_from_sd * factor * noise_k;
                 Some(if is_different { *different } else { *same })
             }

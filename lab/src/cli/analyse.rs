@@ -8,7 +8,7 @@ use clap::Args;
 use session_analysis::analyse;
 use thermal_session::dataset::recorded_sessions;
 
-use super::{Failure, print};
+use super::{Failure, print_text};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -25,23 +25,24 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let sessions = recorded_sessions(&arguments.folder).map_err(Failure::input)?;
     let analysis = analyse(&sessions);
-    let json = serde_json::to_string_pretty(&analysis.json()).map_err(Failure::run)? + "\n";
+    let json = analysis.json() + "\n";
     let mut files = vec![
         ("analysis.html".to_owned(), analysis.page()),
         ("analysis.json".to_owned(), json.clone()),
     ];
     files.extend(analysis.csv());
+    fs::create_dir_all(&arguments.out)
+        .with_context(|| arguments.out.display().to_string())
+        .map_err(Failure::run)?;
     for (name, text) in files {
         let path = arguments.out.join(name);
-        let folder = path.parent().unwrap_or(&arguments.out);
-        fs::create_dir_all(folder)
-            .and_then(|()| fs::write(&path, text))
+        fs::write(&path, text)
             .with_context(|| path.display().to_string())
             .map_err(Failure::run)?;
+        eprintln!("thermal-lab: wrote {}", path.display());
     }
-    eprintln!("page: {}", arguments.out.join("analysis.html").display());
     if arguments.json {
-        return print(json.trim_end());
+        print_text(&json)?;
     }
-    print(analysis.summary().trim_end())
+    Ok(())
 }

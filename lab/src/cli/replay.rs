@@ -50,9 +50,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     stop_on_signals(&stop)?;
     if arguments.headless {
         let mut screen = stderr();
-        return show(&session, arguments, &stop, &mut Progress::new(&mut screen, &stop));
+        return show(
+            &session,
+            arguments,
+            &stop,
+            &mut Progress::new(&mut screen, &stop),
+        );
     }
-    let outline = Outline::of(&session.session, &session.plan);
+    let outline = Outline::from(&session.session);
     let title = format!("{} (recorded)", session.info.title);
     window::show(&title, Some(outline), &stop, |people| {
         show(&session, arguments, &stop, people)
@@ -62,7 +67,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// The session that is meant.
 fn chosen(arguments: &Arguments) -> Result<RecordedSession, Failure> {
     let mut all = recorded_sessions(&arguments.folder).map_err(Failure::input)?;
-    let is_meant = |wanted: &Option<String>, name: &str| wanted.as_deref().is_none_or(|word| word == name);
+    let is_meant =
+        |wanted: &Option<String>, name: &str| wanted.as_deref().is_none_or(|word| word == name);
     all.retain(|session| {
         is_meant(&arguments.participant, session.folder.participant())
             && is_meant(&arguments.task, session.folder.task())
@@ -71,10 +77,18 @@ fn chosen(arguments: &Arguments) -> Result<RecordedSession, Failure> {
         1 => Ok(all.remove(0)),
         _ => {
             let names = all.iter().map(|session| {
-                format!("--participant {} --task {}", session.folder.participant(), session.folder.task())
+                format!(
+                    "--participant {} --task {}",
+                    session.folder.participant(),
+                    session.folder.task()
+                )
             });
             let names: Vec<_> = names.collect();
-            let which = if names.is_empty() { "none" } else { &names.join(", ") };
+            let which = if names.is_empty() {
+                "none"
+            } else {
+                &names.join(", ")
+            };
             Err(Failure::input(anyhow!(
                 "{}: one session can be replayed; these match: {which}",
                 arguments.folder.display()
@@ -99,7 +113,10 @@ fn show(
             continue;
         }
         let due = Duration::from_secs_f64((t_s - from_s) / arguments.speed);
-        while let Some(rest) = due.checked_sub(began.elapsed()).filter(|rest| !rest.is_zero()) {
+        while let Some(rest) = due
+            .checked_sub(began.elapsed())
+            .filter(|rest| !rest.is_zero())
+        {
             if stop.is_pressed() {
                 return Ok(());
             }

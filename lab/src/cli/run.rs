@@ -85,14 +85,19 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
         let input = lines(BufReader::new(stdin()));
         let stations = session.stations.len();
         if target.simulated {
-            all.run(target, &mut recorder, &stop, &mut Progress::new(&mut screen, &stop))
+            all.run(
+                target,
+                &mut recorder,
+                &stop,
+                &mut Progress::new(&mut screen, &stop),
+            )
         } else {
             let mut people =
                 TerminalPeople::of_session(input, &mut screen, stop.clone(), tones, stations);
             all.run(target, &mut recorder, &stop, &mut people)
         }
     } else {
-        let outline = Outline::of(&session, &plan);
+        let outline = Outline::from(&session);
         window::show(&session.title, Some(outline), &stop, |people| {
             all.run(target, &mut recorder, &stop, people)
         })
@@ -102,9 +107,9 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
 /// A folder that is not fit for the session is a wrong argument.
 fn refused(error: RecordingError) -> Failure {
     match error {
-        RecordingError::Exists(_) | RecordingError::Missing(_) | RecordingError::OtherSession { .. } => {
-            Failure::input(error)
-        }
+        RecordingError::Exists(_)
+        | RecordingError::Missing(_)
+        | RecordingError::OtherSession { .. } => Failure::input(error),
         RecordingError::File { .. } | RecordingError::InUse(_) | RecordingError::Content { .. } => {
             Failure::run(error)
         }
@@ -129,8 +134,14 @@ impl Run<'_> {
     ) -> Result<(), Failure> {
         if target.simulated {
             let who = (self.arguments.participant.as_str(), self.arguments.seed);
-            let bench = Bench::new(self.session, self.plan, who.0, who.1, BenchOptions::default())
-                .map_err(Failure::input)?;
+            let bench = Bench::new(
+                self.session,
+                self.plan,
+                who.0,
+                who.1,
+                BenchOptions::default(),
+            )
+            .map_err(Failure::input)?;
             let mut watched = Watched::new(bench.people(), people);
             let link: Box<dyn Link> = if self.arguments.real_time {
                 Box::new(PacedLink::new(bench.link()))

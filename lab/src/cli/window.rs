@@ -22,7 +22,8 @@ pub fn show(
     };
     let shown = run_window(options, worker).map_err(Failure::input)?;
     let latency = &shown.latency;
-    if let (Some(median_ms), Some(late_ms)) = (latency.percentile_ms(50), latency.percentile_ms(99)) {
+    if let (Some(median_ms), Some(late_ms)) = (latency.percentile_ms(50), latency.percentile_ms(99))
+    {
         eprintln!(
             "thermal-lab: from an update to the screen: median {median_ms} ms, 99 % {late_ms} ms, longest {} ms, in {} frames",
             latency.longest_ms(),

@@ -41,7 +41,7 @@ impl From<&Session> for Outline {
             title: session.title.clone(),
             stations: session.stations.clone(),
             rest: session.rest,
-            rules: session.trial,
+            rules: session.trial.clone(),
             break_s: session.break_s,
         }
     }
@@ -145,6 +145,9 @@ impl Model {
                 participant.answered = false;
             }
             Update::Answered(_) => self.participant.question = None,
+            Update::Feedback { is_correct } => {
+                self.participant.instruction = Some(texts::feedback(*is_correct).into());
+            }
             Update::Decide(question) => self.set_question(Some(question.clone())),
             Update::TargetForce(target_n) => {
                 let follow = target_n.filter(|target_n| *target_n > 0.0);

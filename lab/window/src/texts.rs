@@ -142,6 +142,16 @@ pub const fn phase(phase: Phase) -> &'static str {
     }
 }
 
+/// What the participant is told of an answer.
+#[must_use]
+pub const fn feedback(is_correct: bool) -> &'static str {
+    if is_correct {
+        "Correct."
+    } else {
+        "Not correct."
+    }
+}
+
 /// What a tone asks of the participant.
 #[must_use]
 pub fn cue(cue: Cue) -> String {

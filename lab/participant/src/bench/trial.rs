@@ -147,10 +147,11 @@ impl RunningTrial {
         let reach_s = stream("reach").normal_within(mean_s, sd_s, (0.5 * mean_s, 2.0 * mean_s));
         let observer = &participant.observer;
         let mut times = stream("decision");
-        let decision_s =
-            times.log_normal(observer.decision_median_s, observer.decision_sigma_ln);
+        let decision_s = times.log_normal(observer.decision_median_s, observer.decision_sigma_ln);
         let rests_on_display = matches!(session.trial.procedure, Procedure::Intervals { .. })
-            || session.rest.is_some_and(|rest| rest.place == RestPlace::Display);
+            || session
+                .rest
+                .is_some_and(|rest| rest.place == RestPlace::Display);
         Ok(Self {
             number: trial.number,
             attempt,
@@ -243,7 +244,10 @@ impl RunningTrial {
     pub fn step_1_ms(&mut self, ms: u64, forces_n: &mut [f64]) {
         let resting_s = self.rest_ms.filter(|(from_ms, _)| *from_ms <= ms);
         let resting_s = resting_s.map(|(from_ms, until_ms)| {
-            (seconds(ms - from_ms), seconds(until_ms.saturating_sub(from_ms)))
+            (
+                seconds(ms - from_ms),
+                seconds(until_ms.saturating_sub(from_ms)),
+            )
         });
         let touching_s = self.land_ms.filter(|land_ms| *land_ms <= ms);
         let touching_s = touching_s.map(|land_ms| {
@@ -254,7 +258,8 @@ impl RunningTrial {
         });
         let is_over = self.judged.is_some();
         for station in &mut self.stations {
-            let touched_n = touching_s.map_or(0.0, |(t_s, lift_s)| station.course.force_n(t_s, lift_s));
+            let touched_n =
+                touching_s.map_or(0.0, |(t_s, lift_s)| station.course.force_n(t_s, lift_s));
             let is_display = matches!(station.stimulus, Stimulus::Display(_));
             let rested_n = resting_s
                 .filter(|_| is_display)
@@ -343,7 +348,10 @@ impl RunningTrial {
             return;
         };
         if ms >= begin_ms + length_ms && self.intervals_k.len() <= usize::from(number) {
-            let felt = self.stations.iter().find_map(|station| station.meter.fall_k());
+            let felt = self
+                .stations
+                .iter()
+                .find_map(|station| station.meter.fall_k());
             self.intervals_k.push(felt);
         }
     }
@@ -357,7 +365,11 @@ impl RunningTrial {
         }
         let is_lifted = self.lift_ms.is_some_and(|lift_ms| ms >= lift_ms);
         let waits = setting.task.is_some();
-        is_lifted || (waits && self.land_ms.is_some_and(|land_ms| ms >= land_ms + decision_ms))
+        is_lifted
+            || (waits
+                && self
+                    .land_ms
+                    .is_some_and(|land_ms| ms >= land_ms + decision_ms))
     }
 
     fn judge(&mut self, ms: u64, setting: &Setting) {
@@ -377,7 +389,12 @@ impl RunningTrial {
         };
         let observer = &setting.participant.observer;
         let judgement = setting.task.as_ref().and_then(|task| {
-            task.judge(&falls_k, observer, &mut stream("noise"), &mut stream("lapse"))
+            task.judge(
+                &falls_k,
+                observer,
+                &mut stream("noise"),
+                &mut stream("lapse"),
+            )
         });
         let since_ms = match self.interval {
             Some((_, begin_ms, length_ms)) => Some(begin_ms + length_ms),
@@ -433,7 +450,9 @@ impl RunningTrial {
                 .collect(),
             falls_k,
             decision_s,
-            touches: self.land_ms.map_or(0, |_| self.touches.count_until(decision_s)),
+            touches: self
+                .land_ms
+                .map_or(0, |_| self.touches.count_until(decision_s)),
             skin_c: self.skin_c,
             choice: match judgement {
                 Some(Judgement::Choice(index)) => Some(*index),

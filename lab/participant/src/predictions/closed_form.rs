@@ -59,7 +59,11 @@ pub fn different(observer: &ObserverParams, target_k: f64, distractor_k: f64) ->
             let least_k = 1.5 * d_sd_k * z;
             let beyond =
                 normal_cdf((off_k - least_k) / u_sd_k) + normal_cdf((-off_k - least_k) / u_sd_k);
-            let weight = if index == 0 || index == STEPS { 0.5 } else { 1.0 };
+            let weight = if index == 0 || index == STEPS {
+                0.5
+            } else {
+                1.0
+            };
             weight * normal_density(z) * beyond
         })
         .sum();

@@ -305,8 +305,12 @@ fn table_3_5(falls: &Falls) -> [Vec<(String, Cell)>; 2] {
     };
     let rows = || TABLE_3_5.iter();
     [
-        rows().map(|&(a, b, high_low, _)| cell(a, b, high_low)).collect(),
-        rows().map(|&(a, b, _, low_high)| cell(b, a, low_high)).collect(),
+        rows()
+            .map(|&(a, b, high_low, _)| cell(a, b, high_low))
+            .collect(),
+        rows()
+            .map(|&(a, b, _, low_high)| cell(b, a, low_high))
+            .collect(),
     ]
 }
 
@@ -323,10 +327,14 @@ fn table(
         published: 100.0 * cell.published,
         predicted: 100.0 * cell.predicted(&observer),
     };
-    let parts: Vec<Vec<CellResult>> =
-        cells.iter().map(|part| part.iter().map(result).collect()).collect();
-    let part_means: Vec<f64> =
-        parts.iter().map(|part| mean(part.iter().map(|cell| cell.predicted))).collect();
+    let parts: Vec<Vec<CellResult>> = cells
+        .iter()
+        .map(|part| part.iter().map(result).collect())
+        .collect();
+    let part_means: Vec<f64> = parts
+        .iter()
+        .map(|part| mean(part.iter().map(|cell| cell.predicted)))
+        .collect();
     let cells: Vec<CellResult> = parts.into_iter().flatten().collect();
     let mut table = TableResult {
         name: name.into(),
@@ -335,7 +343,12 @@ fn table(
             "s0 {:.2} K, w {:.3}, three fingers {:.2}, lapses {:.3}",
             fitted.s0_k, fitted.w, fitted.three_finger_factor, fitted.lapse
         ),
-        rms: mean(cells.iter().map(|cell| (cell.predicted - cell.published).powi(2))).sqrt(),
+        rms: mean(
+            cells
+                .iter()
+                .map(|cell| (cell.predicted - cell.published).powi(2)),
+        )
+        .sqrt(),
         mean_published: mean(cells.iter().map(|cell| cell.published)),
         mean_predicted: mean(cells.iter().map(|cell| cell.predicted)),
         cells,
@@ -346,7 +359,12 @@ fn table(
 }
 
 fn check_table_3_3(table: &TableResult, _parts: &[f64]) -> Vec<Check> {
-    let allowed = ["copper - bronze", "copper - stainless-steel", "bronze - stainless-steel", "g10 - abs"];
+    let allowed = [
+        "copper - bronze",
+        "copper - stainless-steel",
+        "bronze - stainless-steel",
+        "g10 - abs",
+    ];
     let below: Vec<&str> = (table.cells.iter())
         .filter(|cell| cell.predicted < THRESHOLD_PERCENT)
         .map(|cell| cell.label.as_str())
@@ -409,8 +427,9 @@ fn falls_on_samples_and_displays(
 ) -> Result<Vec<Vec<f64>>, PredictionError> {
     let setup = setup(skin_room_c, contact);
     let device = PreparedDevice::new(&setup.params, setup.room_c, DEVICE_SEED, 1)?;
-    let explorations: Vec<Exploration> =
-        (0..EXPLORATIONS).map(|number| Exploration::new(&setup, number)).collect();
+    let explorations: Vec<Exploration> = (0..EXPLORATIONS)
+        .map(|number| Exploration::new(&setup, number))
+        .collect();
     let of_material = |name: &&str| {
         let material = material(name)?;
         let mut means_k = vec![0.0; 1 + modes.len()];
@@ -420,7 +439,10 @@ fn falls_on_samples_and_displays(
                 *sum_k += exploration.on_display(&setup, &device, mode.setting(), name)?;
             }
         }
-        Ok(means_k.iter().map(|sum_k| sum_k / f64::from(EXPLORATIONS)).collect())
+        Ok(means_k
+            .iter()
+            .map(|sum_k| sum_k / f64::from(EXPLORATIONS))
+            .collect())
     };
     materials.iter().map(of_material).collect()
 }
@@ -441,7 +463,10 @@ fn identification(observer: &ObserverParams) -> Result<Identification, Predictio
             ..*observer
         };
         [&real_k, &simulated_k].map(|presented_k| -> Vec<Vec<f64>> {
-            presented_k.iter().map(|fall_k| identified(&observer, *fall_k, &real_k)).collect()
+            presented_k
+                .iter()
+                .map(|fall_k| identified(&observer, *fall_k, &real_k))
+                .collect()
         })
     };
     let overall = |rows: &[Vec<f64>]| mean(rows.iter().enumerate().map(|(index, row)| row[index]));
@@ -464,12 +489,18 @@ fn identification(observer: &ObserverParams) -> Result<Identification, Predictio
     });
     let confusions = confusions(factor);
     let correct = confusions.each_ref().map(|rows| -> Vec<f64> {
-        let diagonal = rows.iter().enumerate().map(|(index, row)| 100.0 * row[index]);
+        let diagonal = rows
+            .iter()
+            .enumerate()
+            .map(|(index, row)| 100.0 * row[index]);
         diagonal.collect()
     });
     let [real, simulated] = &confusions;
     let correlation = correlation(&real.concat(), &simulated.concat());
-    let overall: Vec<f64> = confusions.iter().map(|rows| 100.0 * overall(rows)).collect();
+    let overall: Vec<f64> = confusions
+        .iter()
+        .map(|rows| 100.0 * overall(rows))
+        .collect();
     let cell = |label: &str, index: usize| CellResult {
         label: label.into(),
         published: SECTION_4_2[index].0,
@@ -511,7 +542,10 @@ fn identification(observer: &ObserverParams) -> Result<Identification, Predictio
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let (mean_a, mean_b) = (mean(a.iter().copied()), mean(b.iter().copied()));
     let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
-        a.iter().zip(b).map(|(a, b)| of(a - mean_a, b - mean_b)).sum()
+        a.iter()
+            .zip(b)
+            .map(|(a, b)| of(a - mean_a, b - mean_b))
+            .sum()
     };
     sum(&|a, b| a * b) / (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt()
 }
@@ -552,13 +586,20 @@ pub fn real_against_simulated(
                 real: (*real).into(),
                 simulated: (*simulated).into(),
                 published_below: SECTION_4_3_BELOW.contains(&(*real, *simulated)),
-                correct: real_colder
-                    .map(|percent| if is_real_colder { percent } else { 100.0 - percent }),
+                correct: real_colder.map(|percent| {
+                    if is_real_colder {
+                        percent
+                    } else {
+                        100.0 - percent
+                    }
+                }),
             });
         }
     }
     let means = [0, 1].map(|display| mean(pairs.iter().map(|pair| pair.correct[display])));
-    let differences = pairs.iter().map(|pair| (pair.correct[1] - pair.correct[0]).abs());
+    let differences = pairs
+        .iter()
+        .map(|pair| (pair.correct[1] - pair.correct[0]).abs());
     Ok(RealAgainstSimulated {
         skin_room_c,
         lifts: contact == ContactRule::Free,
@@ -571,7 +612,11 @@ pub fn real_against_simulated(
 }
 
 fn check_section_4_3(pairs: &[PairResult], identical: &[IdenticalResult]) -> Vec<Check> {
-    let rank = |name: &str| SECTION_4_3_MATERIALS.iter().position(|known| *known == name);
+    let rank = |name: &str| {
+        SECTION_4_3_MATERIALS
+            .iter()
+            .position(|known| *known == name)
+    };
     let correct = |of: &dyn Fn(&PairResult) -> bool| -> Vec<f64> {
         let wanted = pairs.iter().filter(|pair| of(pair));
         wanted.map(|pair| pair.correct[0]).collect()
@@ -581,8 +626,10 @@ fn check_section_4_3(pairs: &[PairResult], identical: &[IdenticalResult]) -> Vec
     };
     let real_colder = correct(&|pair| rank(&pair.real) < rank(&pair.simulated));
     let simulated_colder = correct(&|pair| rank(&pair.real) > rank(&pair.simulated));
-    let (above, below) =
-        (mean(real_colder.into_iter()), mean(simulated_colder.into_iter()));
+    let (above, below) = (
+        mean(real_colder.into_iter()),
+        mean(simulated_colder.into_iter()),
+    );
     let copper_steel = correct(&|pair| is(pair, "copper", "stainless-steel"));
     let with_abs = correct(&|pair| is(pair, "copper", "abs") || is(pair, "stainless-steel", "abs"));
     let of_identical = |name: &str| {
@@ -604,7 +651,9 @@ fn check_section_4_3(pairs: &[PairResult], identical: &[IdenticalResult]) -> Vec
             what: "copper with stainless steel".into(),
             value: percentages(&copper_steel),
             allowed: "below 72 %".into(),
-            met: copper_steel.iter().all(|percent| *percent < THRESHOLD_PERCENT),
+            met: copper_steel
+                .iter()
+                .all(|percent| *percent < THRESHOLD_PERCENT),
         },
         Check {
             what: "ABS with copper and stainless steel".into(),
@@ -612,8 +661,18 @@ fn check_section_4_3(pairs: &[PairResult], identical: &[IdenticalResult]) -> Vec
             allowed: "above 72 %".into(),
             met: with_abs.iter().all(|percent| *percent > THRESHOLD_PERCENT),
         },
-        within("identical copper, real said to be colder", of_identical("copper"), 40.0, 60.0),
-        within("identical stainless steel", of_identical("stainless-steel"), 40.0, 60.0),
+        within(
+            "identical copper, real said to be colder",
+            of_identical("copper"),
+            40.0,
+            60.0,
+        ),
+        within(
+            "identical stainless steel",
+            of_identical("stainless-steel"),
+            40.0,
+            60.0,
+        ),
         Check {
             what: "identical granite".into(),
             value: format!("{:.1} %", of_identical("granite")),
@@ -656,8 +715,16 @@ fn worth(touch: &ObserverParams, falls: &Falls) -> Vec<Worth> {
         .iter()
         .map(|name| of(&format!("touch of {name}"), touch, falls.of(name)))
         .collect();
-    rows.push(of("thermode, fingertip", &ObserverParams::THERMODE_FINGERTIP, 0.0));
-    rows.push(of("thermode, thenar", &ObserverParams::THERMODE_THENAR, 0.0));
+    rows.push(of(
+        "thermode, fingertip",
+        &ObserverParams::THERMODE_FINGERTIP,
+        0.0,
+    ));
+    rows.push(of(
+        "thermode, thenar",
+        &ObserverParams::THERMODE_THENAR,
+        0.0,
+    ));
     rows
 }
 
@@ -670,7 +737,10 @@ pub fn report() -> Result<Report, PredictionError> {
     let two_hands = table_3_3(&falls);
     let [high_low, low_high] = table_3_5(&falls);
     let cells = |parts: &[&[(String, Cell)]]| -> Vec<Cell> {
-        parts.iter().flat_map(|part| part.iter().map(|(_, cell)| *cell)).collect()
+        parts
+            .iter()
+            .flat_map(|part| part.iter().map(|(_, cell)| *cell))
+            .collect()
     };
     let find = |cells: &[Cell], fits_factor: bool| {
         fit(cells, fits_factor).map_err(|error| PredictionError::Fit(error.to_string()))
@@ -681,10 +751,34 @@ pub fn report() -> Result<Report, PredictionError> {
     let three_fingers: [&[(String, Cell)]; 2] = [&high_low, &low_high];
     let (name_3_3, name_3_5) = ("Table 3-3", "Table 3-5");
     let tables = vec![
-        table(name_3_3, Basis::Fitted, &fitted, &[&two_hands], check_table_3_3),
-        table(name_3_5, Basis::Fitted, &fitted, &three_fingers, check_table_3_5),
-        table(name_3_3, Basis::Predicted, &without_table_3_3, &[&two_hands], check_table_3_3),
-        table(name_3_5, Basis::Predicted, &without_table_3_5, &three_fingers, check_table_3_5),
+        table(
+            name_3_3,
+            Basis::Fitted,
+            &fitted,
+            &[&two_hands],
+            check_table_3_3,
+        ),
+        table(
+            name_3_5,
+            Basis::Fitted,
+            &fitted,
+            &three_fingers,
+            check_table_3_5,
+        ),
+        table(
+            name_3_3,
+            Basis::Predicted,
+            &without_table_3_3,
+            &[&two_hands],
+            check_table_3_3,
+        ),
+        table(
+            name_3_5,
+            Basis::Predicted,
+            &without_table_3_5,
+            &three_fingers,
+            check_table_3_5,
+        ),
     ];
     let observer = fitted.observer();
     Ok(Report {
