@@ -126,10 +126,12 @@ def test_a_killed_program_leaves_the_device_to_its_guard(serve: Serve) -> None:
     with Plain(simulator.address) as plain:
         # Asking is a sign of life, too, so it comes after the 2 s of the guard; how long that takes is the device's affair.
         time.sleep(3.0)
+        plain.query("checksum off*42")
         cause = plain.query("cause")
     assert cause.startswith("ok cause=host-silent tick="), cause
     tripped_tick = int(cause.split("tick=")[1].split(" ")[0])
-    assert tripped_tick - driven_tick >= 2000
+    # Its last line may have come just before that tick, or half a second after.
+    assert 1500 < tripped_tick - driven_tick < 4000
 
 
 # Keep-alive

@@ -634,12 +634,13 @@ class Connection:
             if passed < 1 << 31:
                 lost = max(0, passed // stream.interval_ms - 1)
         self._lost += lost
+        self.telemetry.put((tick, finger, state, *numbers, evaluations, remark, host_s, at_s, lost))
+        # After the row: who sees the trip sees the row that says so.
         if state != "tripped":
             self._trips.pop(finger, None)
         elif finger not in self._trips:
             self._trips[finger] = trip = Trip(finger, remark, tick, host_s)
             self.callbacks.occurred(trip)
-        self.telemetry.put((tick, finger, state, *numbers, evaluations, remark, host_s, at_s, lost))
         return True
 
     def _stream_of(self, finger: int) -> Stream:

@@ -241,15 +241,18 @@ class Telemetry:
         """
         end_s = time.perf_counter() + timeout_s
         while True:
+            # A condition may be for a tripped device, so its row is looked at before the trip is an error.
+            trip = self._connection.trip(finger)
             with self._buffer.changed:
                 sample = self._buffer.latest(finger)
                 if sample is not None and condition(sample):
                     return sample
                 rest_s = end_s - time.perf_counter()
-                if rest_s > 0:
+                if rest_s > 0 and trip is None:
                     self._buffer.changed.wait(min(rest_s, 0.1))
             self._connection.raise_if_unusable()
-            self._connection.raise_if_tripped(finger, "what was waited for does not come")
+            if trip is not None:
+                self._connection.raise_if_tripped(finger, "what was waited for does not come")
             if rest_s <= 0:
                 raise TelemetryTimeout(
                     f"no telemetry satisfied the condition within {timeout_s:g} s; the last is {sample}; "
