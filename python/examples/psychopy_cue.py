@@ -144,3 +144,5 @@ if __name__ == "__main__":
         main()
     except DisplayError as error:
         raise SystemExit(f"psychopy_cue: {error}") from error
+    except KeyboardInterrupt:
+        raise SystemExit("psychopy_cue: ended by Escape or Ctrl-C; the bridge is off") from None

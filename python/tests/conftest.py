@@ -12,7 +12,7 @@ from fake_device import FakeDevice
 
 from thermal_display import HIL_SIM_VARIABLE, Display, Simulator, SimulatorMissing, find_hil_sim
 
-TIMEOUT_S = 0.2
+TIMEOUT_S = 0.4
 """Timeout of an answer of the fake device, which answers at once or never."""
 
 

@@ -44,6 +44,19 @@ def test_the_forced_choice_writes_a_row_for_each_trial(hil_sim: str, tmp_path: P
     assert all(float(row["onset_2_s"]) > float(row["onset_1_s"]) for row in rows)
 
 
+def test_the_lines_of_the_readme_run(hil_sim: str) -> None:
+    readme = (EXAMPLES.parent / "README.md").read_text(encoding="utf-8")
+    lines = readme.split("```python\n")[1].split("```")[0]
+    ended = subprocess.run(
+        [sys.executable, "-c", lines],
+        env={**os.environ, "THERMAL_DISPLAY_HIL_SIM": hil_sim},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert (ended.returncode, ended.stderr) == (0, "")
+
+
 def test_an_example_without_a_simulator_says_what_is_missing() -> None:
     ended = subprocess.run(
         [sys.executable, EXAMPLES / "two_interval_choice.py", "--simulated"],

@@ -117,6 +117,28 @@ def test_ctrl_c_leaves_the_device_with_its_bridge_off(serve: Serve) -> None:
     assert state_by_another_program(simulator).startswith("ok state=ready fault=-")
 
 
+def test_ctrl_c_at_a_terminal_does_not_end_the_simulated_device_first(hil_sim: str) -> None:
+    program = (
+        "import time\nfrom thermal_display import Display\n"
+        f"with Display.simulated({hil_sim!r}) as display:\n"
+        "    print('open', flush=True)\n    time.sleep(100)\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as child:
+        assert child.stdout is not None
+        child.stdout.readline()
+        # A terminal signals all programs of the foreground.
+        os.killpg(child.pid, signal.SIGINT)
+        _, errors = child.communicate(timeout=60)
+    assert "KeyboardInterrupt" in errors
+    assert "could not confirm" not in errors
+
+
 def test_a_killed_program_leaves_the_device_to_its_guard(serve: Serve) -> None:
     simulator = serve()
     with script(simulator, "time.sleep(100)") as child:

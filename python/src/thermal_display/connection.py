@@ -97,7 +97,8 @@ class Connection:
 
         self._pid = os.getpid()
         self._command_lock = threading.Lock()
-        self._write_lock = threading.Lock()
+        # Reentrant: a display that is collected while a line is written switches its bridge off in the same thread.
+        self._write_lock = threading.RLock()
         self._answered = threading.Condition()
         self._answers: deque[tuple[_Kind, str]] = deque()
         # The line whose answer comes next; its effect on what follows is noted by the thread that reads.
@@ -171,8 +172,7 @@ class Connection:
         finally:
             self._ended = True
             self.callbacks.close()
-            if threading.current_thread() is not self._reader:
-                self._reader.join(1.0)
+            self._reader.join(1.0)
             self.link.close()
         if why:
             not_off = BridgeNotOff(why, self.guarded)
@@ -183,6 +183,11 @@ class Connection:
         if interrupted is not None:
             raise interrupted
 
+    @property
+    def reads_here(self) -> bool:
+        """Whether this is the thread that reads, in which nobody can wait for an answer."""
+        return threading.current_thread() is self._reader
+
     def release(self) -> None:
         """Releases the port of a device that was not reached."""
         self._closing = self._ended = True
@@ -192,10 +197,6 @@ class Connection:
     def _switch_off(self) -> None:
         """Sends `abort` at once, whoever waits for an answer, then confirms that the bridge is off."""
         self._send_abort_at_once("abort")
-        if threading.current_thread() is self._reader:
-            # A forgotten display that is collected in this thread: nobody else could read the answer.
-            self._send(wire.with_checksum("stream 0"))
-            return
         if not self._command_lock.acquire(timeout=LOCK_TIMEOUT_S):
             raise DisplayError("another thread does not give the line free")
         try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import threading
 import weakref
 from collections.abc import Callable, Iterable
 from types import TracebackType
@@ -19,6 +20,8 @@ from .replies import BoardReport, Identity
 from .simulator import Simulator, Speed
 from .telemetry import LineCounts, Stream, Telemetry
 from .words import TELEMETRY_FIELDS, TelemetryField
+
+log = logging.getLogger("thermal_display")
 
 ANSWER_TIMEOUT_S = 2.0
 STREAM_MS = 10
@@ -293,9 +296,15 @@ class Display(Commands):
 
 def _forgotten(connection: Connection, simulator: Simulator | None) -> None:
     """Ends what a display has begun that nobody closed."""
-    logging.getLogger("thermal_display").warning(
-        "%s was not closed: its bridge is switched off now", connection.link.name
-    )
+    log.warning("%s was not closed: its bridge is switched off now", connection.link.name)
+    if connection.reads_here:
+        # Garbage is collected in whichever thread happens to run.
+        threading.Thread(target=_end, args=(connection, simulator)).start()
+    else:
+        _end(connection, simulator)
+
+
+def _end(connection: Connection, simulator: Simulator | None) -> None:
     try:
         connection.close()
     except DisplayError:
