@@ -286,6 +286,29 @@ def test_abort_does_not_wait_for_the_line_of_another_thread(fake: FakeDevice) ->
     display.close()
 
 
+def test_an_interval_with_a_fraction_is_what_the_device_makes_of_it(fake: FakeDevice, display: Display) -> None:
+    display.query("stream 1.5")
+    for tick in (10, 12, 16):
+        fake.say(T.format(tick, "off", "-"))
+    assert list(display.telemetry.wait(3, timeout_s=5)["lost_before"]) == [0, 0, 1]
+
+
+def test_a_thread_that_reads_no_more_does_not_keep_abort_from_the_device(fake: FakeDevice) -> None:
+    display = Display(fake)
+    display.hold(30)
+
+    def fails(event: object) -> None:
+        raise RuntimeError("a defect")
+
+    display._connection.events.put = fails  # type: ignore[method-assign]
+    fake.say("E 5 0 land")
+    with pytest.raises(LineBroken, match="a defect"):
+        until(lambda: display.check())
+    with pytest.raises(BridgeNotOff):
+        display.close()
+    assert fake.state == "ready"
+
+
 def test_silence_of_this_end_is_broken_by_blank_lines(fake: FakeDevice, display: Display) -> None:
     until(lambda: fake.received.count("") >= 2)
 

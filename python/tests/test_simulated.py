@@ -17,6 +17,7 @@ from conftest import Plain
 
 from thermal_display import (
     BridgeNotOff,
+    CommandError,
     DeviceBusy,
     DeviceTripped,
     Display,
@@ -25,6 +26,7 @@ from thermal_display import (
     Simulator,
     SimulatorMissing,
     State,
+    TcpLink,
     connection,
 )
 
@@ -457,3 +459,60 @@ def test_a_simulated_device_ends_with_the_program_that_is_killed(hil_sim: str) -
         return False
 
     until(gone)
+
+
+class NoisyLink(TcpLink):
+    """A line that loses and damages bytes of both directions, drawn from a seed."""
+
+    def __init__(self, address: str, share: float, seed: int) -> None:
+        super().__init__(address)
+        self._share = share
+        self._random = np.random.default_rng(seed)
+        self.quiet = False
+
+    def _disturbed(self, data: bytes) -> bytes:
+        if self.quiet or not data:
+            return data
+        bits = np.frombuffer(data, np.uint8).copy()
+        hit = self._random.random(len(bits)) < self._share
+        bits[hit] ^= np.left_shift(1, self._random.integers(0, 8, len(bits)))[hit].astype(np.uint8)
+        lost = self._random.random(len(bits)) < self._share
+        return bits[~lost].tobytes()
+
+    def send(self, data: bytes) -> None:
+        super().send(self._disturbed(data))
+
+    def receive(self) -> bytes:
+        return self._disturbed(super().receive())
+
+
+def test_a_noisy_line_loses_commands_and_gives_no_wrong_answers(serve: Serve) -> None:
+    simulator = serve()
+    link = NoisyLink(simulator.address, 1e-3, seed=3)
+    link.quiet = True
+    display = Display(link, stream_ms=20, timeout_s=0.3)
+    link.quiet = False
+    laws = ("pi", "pi-10hz", "model")
+    display.arm()
+    set_last: str | None = None
+    failed = 0
+    for n in range(300):
+        law = laws[n % 3]
+        try:
+            display.set_law(law)  # type: ignore[arg-type]
+            set_last = law
+        except CommandError:
+            # Whether it was executed is not known until it is asked.
+            failed += 1
+            set_last = None
+        try:
+            answered = display.law()
+        except CommandError:
+            failed += 1
+            continue
+        assert answered == (set_last or answered) and answered in laws
+    assert 0 < failed < 150
+    assert display.restarts == 0
+    assert display.counts.damaged > 0
+    display.close()
+    assert state_by_another_program(simulator).startswith("ok state=ready fault=-")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import os
 import re
 import secrets
@@ -372,7 +373,8 @@ class Connection:
             self._aborts_sent += 1
             self._out_of_step = True
             self._answered.notify_all()
-        self._transmit(line, after="\n")
+        # Even if nothing can be received any more. After a line end it is a line of its own.
+        self._write("\n" + (wire.with_checksum(line) if self._checksums else line))
 
     def set_stream(self, finger: int | None, stream: Stream) -> None:
         """Chooses telemetry of a finger, or of all."""
@@ -521,6 +523,9 @@ class Connection:
 
     def _send(self, line: str) -> None:
         self.raise_if_broken()
+        self._write(line)
+
+    def _write(self, line: str) -> None:
         try:
             with self._write_lock:
                 self.link.send(line.encode("ascii") + b"\n")
@@ -593,7 +598,8 @@ class Connection:
         words = content.split()
         if words[0] == "stream":
             chosen: list[TelemetryField] = [name for name in TELEMETRY_FIELDS if name in words[2:]]
-            stream = Stream(int(words[1]), tuple(chosen) or TELEMETRY_FIELDS)
+            # The device rounds a fraction of a millisecond up.
+            stream = Stream(math.ceil(float(words[1])), tuple(chosen) or TELEMETRY_FIELDS)
             if finger is None:
                 self._stream_all, self._stream_own = stream, {}
             else:
