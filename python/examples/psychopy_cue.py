@@ -46,6 +46,8 @@ class Cue:
     def begin_experiment(self) -> None:
         self.display.arm(wait_s=10)
         self.display.hold(NEUTRAL_C, 2.0)
+        # The display comes from the room's temperature.
+        self.display.telemetry.wait_for(lambda sample: abs(sample.display_c - NEUTRAL_C) < 0.1, timeout_s=30)
 
     # Begin Routine: `change_k` is a column of the conditions file.
 

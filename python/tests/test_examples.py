@@ -31,6 +31,9 @@ def test_the_psychopy_example_runs_without_psychopy(hil_sim: str) -> None:
     printed = run(hil_sim, "psychopy_cue.py", "--trials", "1")
     assert printed.startswith("trial 0: ")
     assert "lost 0" in printed
+    # The first cue begins at the neutral temperature, and goes 6 K down or 3 K up.
+    lowest_c, highest_c = (float(word) for word in printed.split("display ")[1].split(" C")[0].split(" to "))
+    assert 26 < lowest_c and highest_c < 37
 
 
 def test_the_forced_choice_writes_a_row_for_each_trial(hil_sim: str, tmp_path: Path) -> None:

@@ -202,7 +202,8 @@ class Commands:
 
     def arm(self, wait_s: float = 0.0) -> None:
         """Runs the self-test if it has not been passed since the device was off (0.8 s, 1.8 s under a finger), then drives the
-        display to skin temperature. Waits at most `wait_s` for the state `armed`, or not at all."""
+        display to skin temperature. Waits at most `wait_s` for the state `armed`, or not at all; the display then begins to move
+        there, and `telemetry.wait_for` tells when it has come."""
         self._tell("arm")
         if wait_s > 0:
             self.wait_state(State.ARMED, timeout_s=wait_s)
