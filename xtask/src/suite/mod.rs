@@ -58,6 +58,19 @@ fn figures() -> Check {
     check("figures of the documentation", ["xtask docs --check"])
 }
 
+/// The windows, whose toolkit takes minutes to compile with optimisations: what they show is tested without a display, and the
+/// rest is checked, both in the dev profile and without debug information.
+fn windows(lints: Lints) -> Check {
+    let clippy = "clippy --package thermal-window --all-features --all-targets -- -Dwarnings";
+    let tests = "test --package thermal-window --features views --quiet";
+    let lines = [clippy, tests].map(|line| cargo(line).env("CARGO_PROFILE_DEV_DEBUG", "0"));
+    let check = Check {
+        title: "windows, without a display",
+        commands: Ok(lines.into()),
+    };
+    only_if(lints.clippy, NO_CLIPPY, check)
+}
+
 fn units(members: &[Member]) -> Check {
     let small = members::options(members, Member::is_small);
     let line = format!("test --release --quiet {small} --lib --bins --tests");
@@ -136,6 +149,7 @@ fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> 
             "test programs",
             ["test --release --workspace --no-run --quiet"],
         ),
+        windows(lints),
     ];
     let tests = choice.handed_to(cargo("test --release --workspace --no-fail-fast"));
     let on_target = choice.handed_to(cargo("xtask on-target --emulated --check"));
