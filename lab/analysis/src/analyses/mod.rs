@@ -76,6 +76,18 @@ pub fn of_task(task: &Task) -> TaskAnalysis {
     }
 }
 
+/// The words.
+#[cfg(test)]
+pub const WORDS: [&str; ANALYSES.len()] = {
+    let mut words = [""; ANALYSES.len()];
+    let mut index = 0;
+    while index < words.len() {
+        words[index] = ANALYSES[index].0;
+        index += 1;
+    }
+    words
+};
+
 /// Why a table of answers is empty.
 const NO_ANSWERS: &str = "no trial that counts has an answer that is scored";
 
