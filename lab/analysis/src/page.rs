@@ -46,7 +46,7 @@ fn of_task(task: &TaskAnalysis, is_one_of_many: bool) -> String {
     };
     body += "</p>";
     if task.is_simulated {
-        body += "<p class=\"simulated\">Participants and device were simulated: these are predictions, not measurements.</p>";
+        body += "<p class=\"simulated\">Participants that are marked as simulated below, and their device, were simulated: predictions, not measurements.</p>";
     }
     body += "<nav><ul>";
     for section in &task.sections {

@@ -4,7 +4,6 @@ mod any_records;
 mod data;
 mod documents;
 mod known;
-mod look;
 mod participants;
 
 use crate::report::{Cell, Section, Table, TaskAnalysis};
