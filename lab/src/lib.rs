@@ -4,5 +4,7 @@
 pub mod bring_up;
 pub mod link;
 pub mod person;
+pub mod terminal_people;
+pub mod watched;
 
 pub use thermal_client::{client, commissioning};

@@ -6,7 +6,10 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use cli::{Failure, Target, bring_up, commission, info, log, play, ports, send};
+use cli::{
+    Failure, Target, analyse, bring_up, commission, info, log, monitor, play, ports, replay, run,
+    send,
+};
 
 /// The operator's side of a thermal display.
 #[derive(Parser)]
@@ -30,6 +33,14 @@ enum Command {
     Play(play::Arguments),
     /// Write telemetry as CSV, until Ctrl-C or for some time
     Log(log::Arguments),
+    /// Watch a device: temperatures, force, current, state; with a stop
+    Monitor(monitor::Arguments),
+    /// Run the session of an experiment with a participant, or with a simulated one
+    Run(run::Arguments),
+    /// Score a data set, and write a page, JSON and CSV
+    Analyse(analyse::Arguments),
+    /// Show a recorded session once more
+    Replay(replay::Arguments),
     /// Calibrate and tune a new device, step by step, and store the result
     Commission(commission::Arguments),
     /// Bring up a board, from the bare board to sign-off
@@ -44,6 +55,10 @@ fn main() -> ExitCode {
         Command::Send(arguments) => send::run(&target, &arguments),
         Command::Play(arguments) => play::run(&target, &arguments),
         Command::Log(arguments) => log::run(&target, &arguments),
+        Command::Monitor(arguments) => monitor::run(&target, &arguments),
+        Command::Run(arguments) => run::run(&target, &arguments),
+        Command::Analyse(arguments) => analyse::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
         Command::Commission(arguments) => commission::run(&target, &arguments),
         Command::BringUp(arguments) => bring_up::run(&target, &arguments),
     };

@@ -10,6 +10,7 @@ mod docs;
 mod firmware;
 mod fuzz;
 mod hardware;
+mod lab;
 mod memory_usage;
 mod mutations;
 mod on_target;
@@ -123,6 +124,8 @@ enum Task {
         #[command(flatten)]
         options: bring_up::Options,
     },
+    /// Run an experiment on a simulated device with a simulated participant, and analyse it; writes to target/lab
+    Lab,
     /// Run the tests that run on the microcontroller itself, on a bare board by its probe; writes what they measure to
     /// docs/on-target.md. --emulated runs them on the emulated one
     OnTarget {
@@ -231,6 +234,7 @@ fn main() -> ExitCode {
         ),
         Task::Hardware { set_up, json, rest } => hardware::run(set_up.permission(), json, rest),
         Task::BringUp { set_up, options } => bring_up::run(set_up.permission(), options),
+        Task::Lab => lab::run(),
         Task::OnTarget { set_up, options } => on_target::run(set_up.permission(), &options),
         Task::Proof {
             set_up,

@@ -1,5 +1,6 @@
 //! How the commands end that run a simulated device.
 
+use std::fmt;
 use std::process::ExitCode;
 
 /// Why a command failed, and the exit status that says so.
@@ -9,6 +10,12 @@ pub struct Failure {
     pub error: anyhow::Error,
     /// 1 for a run that failed or a device that does not do it, 2 for bad input.
     pub status: u8,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:#}", self.error)
+    }
 }
 
 impl Failure {
@@ -33,9 +40,9 @@ impl Failure {
     pub fn exit_code(command: &str, ended: Result<(), Self>) -> ExitCode {
         match ended {
             Ok(()) => ExitCode::SUCCESS,
-            Err(Self { error, status }) => {
-                eprintln!("{command}: {error:#}");
-                ExitCode::from(status)
+            Err(failure) => {
+                eprintln!("{command}: {failure}");
+                ExitCode::from(failure.status)
             }
         }
     }

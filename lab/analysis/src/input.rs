@@ -77,7 +77,7 @@ pub fn tasks(sessions: &[RecordedSession]) -> Vec<Task> {
         for name in participant.trials.iter().flat_map(Trial::materials) {
             // A material that the session describes itself is not among the named ones.
             let known = material::find(name).copied();
-            if let Some(found) = known.or_else(|| recorded.session.custom_material(name)) {
+            if let Some(found) = known.or_else(|| recorded.session.material(name)) {
                 task.materials.insert(name.into(), found);
             }
         }

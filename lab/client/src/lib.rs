@@ -4,4 +4,7 @@
 pub mod client;
 pub mod commissioning;
 pub mod course;
+mod fault_words;
 pub mod link;
+
+pub use fault_words::{FaultWords, fault_words};

@@ -2,21 +2,28 @@
 #![forbid(unsafe_code)]
 
 pub mod dataset;
+mod design;
 mod executor;
+mod file;
 pub mod measure;
 mod people;
 mod plan;
 mod presented;
+mod random;
 pub mod record;
 mod schedule;
 mod session;
 
+pub use design::{
+    Blocks, Design, Factor, MaterialOf, Pairs, Part, Present, PresentCase, Pulses, Stimulus,
+};
 pub use executor::{Executor, SessionEnd};
-pub use schedule::{Next, OtherSession, Schedule};
-
+pub use file::SessionError;
 pub use people::{Cue, Decision, OperatorQuestion, People, Phase, Question, Response, Update};
 pub use plan::{Departure, Plan, PlanError, PlannedTrial, Presented};
+pub use schedule::{Next, OtherSession, Schedule};
 pub use session::{
-    Answer, AnswerKind, ContactRule, CorrectAnswer, Design, DeviceSetup, NamedStaircase, Procedure,
-    Rest, RestPlace, Score, Session, Station, TrialRules, VoidRules,
+    ANALYSES, Answer, AnswerKind, ContactRule, CorrectAnswer, DeviceSetup, PUBLISHED_TABLES,
+    Procedure, Quantity, Rest, RestPlace, Score, Session, StaircaseRule, Station, TrialRules,
+    VoidRules,
 };

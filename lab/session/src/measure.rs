@@ -61,7 +61,7 @@ pub fn measure(
                 .force_n
                 .is_none_or(|force_n| (force_n - target_n).abs() > SETTLED * target_n)
         };
-        let last_off = contact().filter(is_off).last().copied();
+        let last_off = contact().rfind(is_off).copied();
         let settled = match last_off {
             None => Some(0.0),
             // Off at the very end means that it never settled.
@@ -134,7 +134,11 @@ mod tests {
 
     fn near(value: Option<f64>, expected: f64) {
         let value = value.expect("measured");
-        assert!((value - expected).abs() < 1e-2, "{value} is not {expected}");
+        // A line of telemetry comes every 10 ms.
+        assert!(
+            (value - expected).abs() < 1.5e-2,
+            "{value} is not {expected}"
+        );
     }
 
     #[test]

@@ -46,7 +46,7 @@ impl<'a> Schedule<'a> {
             staircases: session
                 .staircases
                 .iter()
-                .map(|named| named.initial.clone())
+                .map(|rule| rule.initial.clone())
                 .collect(),
             given_up: Vec::new(),
         }

@@ -1,10 +1,15 @@
 //! What a session file says, checked: everything that the plan and the executor need.
 
+use std::path::Path;
+
+use contact_model::material::{self, Material};
 use experiment_statistics::staircase::Staircase;
 use serde::{Deserialize, Serialize};
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
+
+use crate::{Design, Present, SessionError, Stimulus, file};
 
 /// A session, as its file describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,21 +22,25 @@ pub struct Session {
     pub cite: String,
     /// What the participant reads before the first trial.
     pub instruction: String,
-    /// How displays are set up; `None` if all stations present samples.
+    /// How displays are set up; `None`: no station presents a display, and the device only measures.
     pub device: Option<DeviceSetup>,
+    /// Materials that this session describes, by name; [`Session::material`] finds them and the named ones.
+    pub materials: Vec<(String, Material)>,
     /// Where the fingers go.
     pub stations: Vec<Station>,
+    /// What the stations present.
+    pub present: Present,
     /// What must hold before a trial.
     pub rest: Option<Rest>,
     /// How a trial proceeds.
     pub trial: TrialRules,
-    /// What the participant is asked after each contact; `None` if nothing.
+    /// What the participant is asked in each trial; `None` if nothing.
     pub answer: Option<Answer>,
     /// Which trials there are and in which order.
     pub design: Design,
     /// Staircases, whose trials the plan numbers.
-    pub staircases: Vec<NamedStaircase>,
-    /// Shortest break between two blocks, s.
+    pub staircases: Vec<StaircaseRule>,
+    /// Shortest break, s.
     pub break_s: f64,
     /// What makes a trial void.
     pub voids: VoidRules,
@@ -39,6 +48,49 @@ pub struct Session {
     pub score: Score,
     /// The text of the file.
     pub text: String,
+}
+
+impl Session {
+    /// Reads and checks a session file.
+    ///
+    /// # Errors
+    /// What is wrong with it: file, line, problem, and what is allowed.
+    pub fn read(path: &Path) -> Result<Self, SessionError> {
+        file::read(path)
+    }
+
+    /// Checks the text of a session file; `path` names it in errors.
+    ///
+    /// # Errors
+    /// What is wrong with it: file, line, problem, and what is allowed.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, SessionError> {
+        file::parse(text, path)
+    }
+
+    /// The material of a name: one that the session describes, or one of [`material::MATERIALS`].
+    #[must_use]
+    pub fn material(&self, name: &str) -> Option<Material> {
+        let described = self.materials.iter().find(|(known, _)| known == name);
+        described
+            .map(|(_, material)| *material)
+            .or_else(|| material::find(name).copied())
+    }
+
+    /// Whether the device has to be told the properties of a material, because it does not know its name.
+    #[must_use]
+    pub fn describes_material(&self, name: &str) -> bool {
+        self.materials.iter().any(|(known, _)| known == name)
+    }
+
+    /// The fingers of the device that present something in this session, in ascending order.
+    #[must_use]
+    pub fn device_fingers(&self) -> Vec<u8> {
+        let stimuli = self.present.cases.iter().flat_map(|case| &case.stations);
+        let mut fingers: Vec<u8> = stimuli.filter_map(Stimulus::device_finger).collect();
+        fingers.sort_unstable();
+        fingers.dedup();
+        fingers
+    }
 }
 
 /// How the device is set up.
@@ -126,7 +178,7 @@ pub enum Procedure {
 }
 
 /// How a trial proceeds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TrialRules {
     /// What happens in it.
     pub procedure: Procedure,
@@ -136,6 +188,8 @@ pub struct TrialRules {
     pub answer_s: f64,
     /// Whether the participant is told whether the answer was correct.
     pub feedback: bool,
+    /// Force to be followed with [`ContactRule::Force`], N.
+    pub target_force_n: Option<Quantity>,
 }
 
 /// What the participant is asked.
@@ -196,28 +250,78 @@ pub struct Score {
     pub chance: Option<f64>,
     /// Proportion correct that counts as told apart.
     pub threshold: Option<f64>,
-    /// Tables and tests of the analysis, by name.
+    /// Tables and tests of the analysis, by name; each is one of [`ANALYSES`].
     pub analyses: Vec<String>,
+    /// The published table with which `chi-squared-against` compares; one of [`PUBLISHED_TABLES`].
+    pub against: Option<String>,
+}
+
+/// Words for tables and tests of the analysis, each with what it needs of a session.
+pub const ANALYSES: [(&str, &str); 20] = [
+    ("pairs", "correct, and two materials in each trial"),
+    (
+        "pairs-by-mode",
+        "correct, and a sample and a display in each trial",
+    ),
+    ("identical-pairs", "correct = \"colder\""),
+    (
+        "confusion",
+        "correct = { factor = … } whose levels are the answers",
+    ),
+    (
+        "information",
+        "correct = { factor = … } whose levels are the answers",
+    ),
+    (
+        "oddity",
+        "three stations, which are the answers and the levels of the correct factor",
+    ),
+    ("same-different", "correct = \"same\""),
+    ("falls", "contact = \"hold\" or \"force\""),
+    ("exponential-fit", "contact = \"hold\" or \"force\""),
+    ("levene", "contact = \"hold\" or \"force\""),
+    ("pearson-with-model", "contact = \"hold\" or \"force\""),
+    ("force-matching", "contact = \"force\""),
+    ("anova-within", "a factor with two levels or more"),
+    (
+        "anova-split-plot",
+        "two parts or more, and a factor with two levels or more",
+    ),
+    ("tukey", "anova-within or anova-split-plot"),
+    (
+        "pearson-between-parts",
+        "confusion or falls, and two parts or more",
+    ),
+    (
+        "chi-squared-against",
+        "pairs or pairs-by-mode, and the key against",
+    ),
+    ("staircase", "a staircase"),
+    ("psychometric-fit", "correct, and pulses"),
+    ("magnitudes", "an answer by number_per_station"),
+];
+
+/// Published tables with which the analysis can compare.
+pub const PUBLISHED_TABLES: [&str; 1] = ["table-3-3"];
+
+/// A number in the description of a stimulus.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Quantity {
+    /// The same in all trials.
+    Fixed(f64),
+    /// The level of this factor.
+    Factor(String),
 }
 
 /// A staircase, whose level follows the answers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct NamedStaircase {
+pub struct StaircaseRule {
     /// Its name.
     pub name: String,
     /// The staircase before its first trial; its levels are K.
     pub initial: Staircase,
-}
-
-/// Which trials there are and in which order.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Design {}
-
-impl Session {
-    pub fn parse(text: &str, path: &std::path::Path) -> Result<Self, std::io::Error> {
-        todo!("{text} {path:?}")
-    }
-    pub fn custom_material(&self, name: &str) -> Option<contact_model::material::Material> {
-        todo!("{name}")
-    }
+    /// Name of the part in which it runs.
+    pub part: String,
+    /// Levels of factors in its trials, by factor.
+    pub levels: Vec<(String, String)>,
 }

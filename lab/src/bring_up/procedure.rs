@@ -245,7 +245,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             Value::Word(word) => explanation(word),
             Value::Number(_) => None,
         };
-        let why = [Some(broken), why].into_iter().flatten();
+        let why = [Some(broken), why.as_deref()].into_iter().flatten();
         let why: Vec<_> = why.filter(|why| !why.is_empty()).collect();
         let finding = format!(
             "{}: {found} in place of {}; {}",
@@ -348,7 +348,8 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
                 return Err(error.into());
             };
             let fault = tripped.map_or("", |fault| fault.name());
-            let explained = explanation(fault).unwrap_or("mend that first");
+            let explained = explanation(fault);
+            let explained = explained.as_deref().unwrap_or("mend that first");
             let finding =
                 format!("the device refuses its self-test (fault `{fault}`; '{why}'): {explained}");
             self.add(refused(stage, why, finding), Some(StageId::Load));

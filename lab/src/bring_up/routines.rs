@@ -277,7 +277,8 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             };
             if let Some(fault) = line.telemetry.fault() {
                 let fault = fault.name();
-                let why = super::fault_words::explanation(fault).unwrap_or("see docs/safety.md");
+                let why = super::fault_words::explanation(fault);
+                let why = why.as_deref().unwrap_or("see docs/safety.md");
                 self.client.ask(&PlainCommand::stream(0))?;
                 return Err(Interruption::Bench(format!(
                     "the device has tripped by `{fault}` while it held {celsius} °C: {why}"

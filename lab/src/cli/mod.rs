@@ -1,13 +1,18 @@
 //! The subcommands, and what they have in common.
 
+pub mod analyse;
 pub mod bring_up;
 pub mod commission;
 pub mod info;
 pub mod log;
+pub mod monitor;
 pub mod play;
 pub mod ports;
+pub mod replay;
+pub mod run;
 pub mod send;
 mod target;
+mod window;
 
 use std::io::{Write, stdout};
 
@@ -19,6 +24,13 @@ pub use thermal_sim::Failure;
 /// Writes a line to standard output.
 fn print(text: &str) -> Result<(), Failure> {
     writeln!(stdout(), "{text}")
+        .context("standard output")
+        .map_err(Failure::run)
+}
+
+/// Writes a text that ends with a line end to standard output.
+fn print_text(text: &str) -> Result<(), Failure> {
+    write!(stdout(), "{text}")
         .context("standard output")
         .map_err(Failure::run)
 }

@@ -13,6 +13,7 @@ use thermal_plant::Params;
 use thermal_sim::commissioning::CommissioningSetup;
 use thermal_sim::engine::NativeEngine;
 use thermal_sim::scene::Scene;
+use thermal_window::StopFlag;
 
 use super::Failure;
 
@@ -82,7 +83,7 @@ impl Target {
     }
 
     /// Opens the line of `--port` or `--tcp`.
-    fn open(&self) -> anyhow::Result<Box<dyn Link>> {
+    pub fn open(&self) -> anyhow::Result<Box<dyn Link>> {
         match (&self.port, &self.tcp) {
             (Some(port), _) => {
                 let link = link::serial(port);
@@ -114,6 +115,14 @@ impl Target {
 
 fn which_device() -> anyhow::Error {
     anyhow!("which device? --port NAME (`thermal-lab ports` lists them), --tcp ADDR or --simulated")
+}
+
+/// Lets Ctrl-C and the signals that end a program press a stop, and close the windows.
+pub fn stop_on_signals(stop: &StopFlag) -> Result<(), Failure> {
+    let stop = stop.clone();
+    ctrlc::set_handler(move || stop.press_and_close())
+        .context("Ctrl-C cannot be caught")
+        .map_err(Failure::run)
 }
 
 /// Two flags that Ctrl-C and the signals that end a program set: one that the link takes back when it ends a wait, and one

@@ -2,11 +2,13 @@
 //! this program is [`SimulatedLink`].
 
 mod lazy;
+mod paced;
 mod ports;
 mod served;
 mod stream;
 
 pub use lazy::LazyLink;
+pub use paced::PacedLink;
 pub use ports::{PortInfo, UsbId, ports};
 pub use served::{ServedLink, ServedOperator};
 pub use stream::{StreamLink, serial, tcp};

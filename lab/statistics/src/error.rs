@@ -17,8 +17,10 @@ pub enum StatisticsError {
         /// Its range.
         allowed: &'static str,
     },
-    /// An observation is infinite or no number.
-    #[error("observation {column} of {what} {row} is not finite, counted from 0")]
+    /// An observation is no number, or too large for its square to be one.
+    #[error(
+        "observation {column} of {what} {row}, counted from 0, is not a number from -1e100 to 1e100"
+    )]
     NotFinite {
         /// What a row of the data is: a subject, a group.
         what: &'static str,
@@ -96,6 +98,16 @@ pub(crate) fn inner_probability(what: &'static str, value: f64) -> Result<f64> {
     checked(what, value, "between 0 and 1, both excluded", |p| {
         p > 0.0 && p < 1.0
     })
+}
+
+/// A finite number whose square is one, too.
+pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64> {
+    checked(what, value, "a number from -1e100 to 1e100", is_number)
+}
+
+/// Whether a number and the sums of its squares are finite.
+pub(crate) fn is_number(value: f64) -> bool {
+    value.abs() <= 1e100
 }
 
 /// At least so many.

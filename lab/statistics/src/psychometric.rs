@@ -4,7 +4,7 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 
 use crate::distribution::{chi_square_tail, normal_cdf, normal_density, normal_quantile};
-use crate::error::{at_least, checked, inner_probability};
+use crate::error::{at_least, checked, finite, inner_probability};
 use crate::proportion::Proportion;
 use crate::sample::{mean_of, sum_of_squares};
 use crate::search::golden_section;
@@ -411,11 +411,10 @@ impl Shape {
     fn scaled(self, level: f64) -> Result<f64> {
         match self {
             Self::Weibull => {
-                let allowed = "positive and finite";
-                let level = checked("level", level, allowed, |x| x > 0.0 && x.is_finite())?;
-                Ok(level.ln())
+                let level = finite("level", level)?;
+                Ok(checked("level", level, "positive", |level| level > 0.0)?.ln())
             }
-            Self::CumulativeNormal => checked("level", level, "finite", f64::is_finite),
+            Self::CumulativeNormal => finite("level", level),
         }
     }
 

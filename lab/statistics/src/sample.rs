@@ -1,6 +1,6 @@
 //! Means and sums of squares of observations, and the checks that every statistic makes of its data.
 
-use crate::error::at_least;
+use crate::error::{at_least, is_number};
 use crate::{Result, StatisticsError};
 
 /// A confidence interval, in the unit of what is estimated.
@@ -61,13 +61,13 @@ pub(crate) fn varies(sum_of_squares: f64, observations: impl Iterator<Item = f64
 }
 
 pub(crate) fn check_row(what: &'static str, row: usize, values: &[f64]) -> Result<()> {
-    match values.iter().position(|y| !y.is_finite()) {
+    match values.iter().position(|&y| !is_number(y)) {
         Some(column) => Err(StatisticsError::NotFinite { what, row, column }),
         None => Ok(()),
     }
 }
 
-/// Checks that all observations are finite.
+/// Checks that all observations are numbers.
 pub(crate) fn check_rows<R: AsRef<[f64]>>(what: &'static str, rows: &[R]) -> Result<()> {
     let mut numbered = rows.iter().enumerate();
     numbered.try_for_each(|(row, values)| check_row(what, row, values.as_ref()))

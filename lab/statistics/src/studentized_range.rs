@@ -13,20 +13,24 @@ const MEANS_MAX: u32 = 50;
 /// freedom. Both integrals are sums of positive terms, so that small probabilities keep their digits.
 ///
 /// # Errors
-/// `q` is negative or no number, fewer than 2 or more than 50 means, or degrees of freedom that are not positive and finite.
+/// `q` is negative or no number, fewer than 2 or more than 50 means, or degrees of freedom that are below 1 or
+/// above 1e5.
 pub fn studentized_range_tail(q: f64, means: u32, df: f64) -> Result<f64> {
     let q = checked("q", q, "0 or more", |q| q >= 0.0)?;
     checked("number of means", f64::from(means), "from 2 to 50", |_| {
         (2..=MEANS_MAX).contains(&means)
     })?;
-    let df = degrees(df)?;
+    // With fewer than 1 the density has no end.
+    let df = checked("degrees of freedom", degrees(df)?, "1 or more", |df| {
+        df >= 1.0
+    })?;
     if q == 0.0 || q.is_infinite() {
         return Ok(if q == 0.0 { 1.0 } else { 0.0 });
     }
     // Over x = ln s, where s is the estimated over the true standard error: the density of x is proportional to
     // exp(df (x - e^2x / 2)), an analytic function that vanishes at both ends, for which the trapezoidal rule converges
     // exponentially. Its peak is at 0, its width about 1 / sqrt(2 df).
-    let step = (0.5 / df.sqrt()).min(0.1);
+    let step = (0.25 / df.sqrt()).min(0.05);
     let log_density = |x: f64| df * (x - 0.5 * ((2.0 * x).exp() - 1.0));
     let (mut weights, mut tail) = (0.0, 0.0);
     let mut add = |x: f64| {

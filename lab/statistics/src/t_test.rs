@@ -1,7 +1,7 @@
 //! Student's t of one sample and of pairs.
 
 use crate::distribution::{t_quantile, t_tail};
-use crate::error::{at_least, checked, inner_probability};
+use crate::error::{at_least, finite, inner_probability};
 use crate::sample::{check_equal_lengths, check_row, check_rows, mean_of, sum_of_squares, varies};
 use crate::{Interval, Result, StatisticsError};
 
@@ -27,7 +27,7 @@ pub struct TTest {
 pub fn one_sample(values: &[f64], expected: f64) -> Result<TTest> {
     check_row("sample", 0, values)?;
     at_least("observations", values.len(), 2)?;
-    let expected = checked("expected mean", expected, "finite", f64::is_finite)?;
+    let expected = finite("expected mean", expected)?;
     let squares = sum_of_squares(values);
     if !varies(squares, values.iter().copied()) {
         return Err(StatisticsError::NoVariation { what: "the sample" });

@@ -195,6 +195,22 @@ impl NativeFiveFingers {
 }
 
 impl<const FINGERS: usize> NativeDevice<FINGERS> {
+    /// The settings in the flash; `None` if none were saved.
+    #[must_use]
+    pub const fn stored_settings(&self) -> Option<&[StoredSettings; FINGERS]> {
+        self.stored.as_ref()
+    }
+
+    /// The device just after power-up with these settings in its flash.
+    #[must_use]
+    pub fn with_stored_settings(mut self, stored: [StoredSettings; FINGERS]) -> Self {
+        self.device.restore_settings(&stored);
+        self.handler = CommandHandler::from_stored(&stored);
+        self.stored = Some(stored);
+        self.read_chip();
+        self
+    }
+
     fn with_fingers(fingers: [Finger; FINGERS], pwm_period_steps: u16) -> Self {
         let settings = Settings::default();
         let mut native = Self {

@@ -22,6 +22,7 @@ mod log;
 mod physio;
 mod read;
 mod recorder;
+mod telemetry;
 
 use std::io;
 use std::path::PathBuf;
@@ -52,6 +53,18 @@ pub enum RecordingError {
         .0.display()
     )]
     Exists(PathBuf),
+    /// What was recorded belongs to another session file or seed.
+    #[error("{}: recorded with {what} {recorded}; given is {given}", path.display())]
+    OtherSession {
+        /// The file that says so.
+        path: PathBuf,
+        /// What differs.
+        what: &'static str,
+        /// Its value there.
+        recorded: String,
+        /// Its value now.
+        given: String,
+    },
     /// There is nothing to go on with.
     #[error("{}: there is no session to resume", .0.display())]
     Missing(PathBuf),

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::log::{Entry, LogLine};
 use super::recorder::{INFO, LOG, SESSION, SessionInfo, TELEMETRY};
-use super::{Folder, RecordingError, at};
+use super::{Folder, RecordingError, at, telemetry};
 use crate::record::TrialRecord;
-use crate::{Plan, Session};
+use crate::{Plan, Session, Update};
 
 /// A session of a participant as it was recorded.
 #[derive(Clone, Debug)]
@@ -58,6 +58,26 @@ impl RecordedSession {
     #[must_use]
     pub fn telemetry_path(&self) -> PathBuf {
         self.folder.source(TELEMETRY)
+    }
+
+    /// What participant and operator were told, and the telemetry, with their times, s, in order.
+    ///
+    /// # Errors
+    /// The telemetry cannot be read.
+    pub fn updates(&self) -> Result<Vec<(f64, Update)>, RecordingError> {
+        let told = self.log.iter().filter_map(|line| match &line.entry {
+            Entry::Update(update) => Some((line.t_s, update.clone())),
+            Entry::Event { .. } | Entry::Record { .. } => None,
+        });
+        let mut all: Vec<_> = told.collect();
+        let telemetry = telemetry::read(&self.telemetry_path())?;
+        all.extend(
+            telemetry
+                .into_iter()
+                .map(|(t_s, line)| (t_s, Update::Telemetry(line))),
+        );
+        all.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        Ok(all)
     }
 
     /// The records that count.

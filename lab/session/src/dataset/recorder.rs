@@ -13,7 +13,7 @@ use super::append::AppendFile;
 use super::folder::write_whole;
 use super::log::{Entry, LogLine};
 use super::read::{read_log, records_of};
-use super::{Folder, RecordingError, at, bids};
+use super::{Folder, RecordingError, at, bids, telemetry};
 use crate::record::TrialRecord;
 use crate::{Plan, Session, Update};
 
@@ -85,9 +85,6 @@ pub(super) const LOG: &str = "log.jsonl";
 pub(super) const TELEMETRY: &str = "telemetry.csv";
 const CLOCK: &str = "clock.json";
 
-/// Columns of the telemetry.
-const COLUMNS: &str = "t_s,finger,tick,state,fault,limited,setpoint_c,display_c,sink_c,skin_c,room_c,force_n,demand_a,current_a,evaluations\n";
-
 impl Recorder {
     /// Begins to record a participant's session in a data set, which is created if it is not there.
     ///
@@ -105,7 +102,7 @@ impl Recorder {
         if log_path.exists() {
             return Err(RecordingError::Exists(log_path));
         }
-        let plan_csv = plan.csv(session);
+        let plan_csv = plan.csv();
         let info = SessionInfo {
             title: session.title.clone(),
             task: session.task.clone(),
@@ -122,8 +119,8 @@ impl Recorder {
         write_whole(&folder.source(PLAN), plan_csv.as_bytes())?;
         bids::describe(&folder)?;
         let log = AppendFile::open(&log_path, 0)?;
-        let mut telemetry = AppendFile::open(&folder.source(TELEMETRY), 0)?;
-        telemetry.append(COLUMNS.as_bytes())?;
+        let mut rows = AppendFile::open(&folder.source(TELEMETRY), 0)?;
+        rows.append(telemetry::header().as_bytes())?;
         let mut recorder = Self {
             folder,
             session: session.clone(),
@@ -131,7 +128,7 @@ impl Recorder {
             info,
             clock: ClockReport::default(),
             log,
-            telemetry,
+            telemetry: rows,
             pending: Vec::new(),
             records: Vec::new(),
         };
@@ -148,7 +145,7 @@ impl Recorder {
         root: &Path,
         session: &Session,
         plan: &Plan,
-        (participant, _seed): (&str, u64),
+        (participant, seed): (&str, u64),
     ) -> Result<Self, RecordingError> {
         let folder = Folder::new(root, participant, &session.task);
         let log_path = folder.source(LOG);
@@ -161,13 +158,27 @@ impl Recorder {
             serde_json::from_slice(&info).map_err(|error| RecordingError::Content {
                 line: error.line(),
                 problem: error.to_string(),
-                path: info_path,
+                path: info_path.clone(),
             })?;
+        let hash = sha256(session.text.as_bytes());
+        for (what, recorded, given) in [
+            ("the session file of SHA-256", &info.session_sha256, &hash),
+            ("the seed", &info.seed.to_string(), &seed.to_string()),
+        ] {
+            if recorded != given {
+                return Err(RecordingError::OtherSession {
+                    path: info_path,
+                    what,
+                    recorded: recorded.clone(),
+                    given: given.clone(),
+                });
+            }
+        }
         let (lines, whole) = read_log(&log_path)?;
         let (records, telemetry_bytes) = records_of(&lines);
         let log = AppendFile::open(&log_path, whole)?;
-        let telemetry_bytes = telemetry_bytes.unwrap_or(COLUMNS.len() as u64);
-        let telemetry = AppendFile::open(&folder.source(TELEMETRY), telemetry_bytes)?;
+        let telemetry_bytes = telemetry_bytes.unwrap_or(telemetry::header().len() as u64);
+        let rows = AppendFile::open(&folder.source(TELEMETRY), telemetry_bytes)?;
         let clock_path = folder.source(CLOCK);
         let clock = fs::read(&clock_path).map_err(at(&clock_path))?;
         let mut recorder = Self {
@@ -177,7 +188,7 @@ impl Recorder {
             info,
             clock: serde_json::from_slice(&clock).unwrap_or_default(),
             log,
-            telemetry,
+            telemetry: rows,
             pending: Vec::new(),
             records,
         };
@@ -235,9 +246,9 @@ impl Recorder {
     pub fn trial_ended<'t>(
         &mut self,
         record: &TrialRecord,
-        telemetry: impl Iterator<Item = (f64, u8, &'t Telemetry)>,
+        lines: impl Iterator<Item = (f64, u8, &'t Telemetry)>,
     ) -> Result<(), RecordingError> {
-        let rows: String = telemetry.map(row).collect();
+        let rows: String = lines.map(telemetry::row).collect();
         self.telemetry.append(rows.as_bytes())?;
         self.pending.push(LogLine {
             t_s: record.end_s,
@@ -246,13 +257,13 @@ impl Recorder {
                 telemetry_bytes: self.telemetry.bytes(),
             },
         });
-        let mut lines = Vec::new();
+        let mut log = Vec::new();
         for line in self.pending.drain(..) {
             // Maps have text keys and numbers are finite, so nothing fails.
-            lines.extend(serde_json::to_vec(&line).unwrap_or_default());
-            lines.push(b'\n');
+            log.extend(serde_json::to_vec(&line).unwrap_or_default());
+            log.push(b'\n');
         }
-        self.log.append(&lines)?;
+        self.log.append(&log)?;
         self.records.push(record.clone());
         Ok(())
     }
@@ -272,28 +283,6 @@ impl Recorder {
     pub const fn folder(&self) -> &Folder {
         &self.folder
     }
-}
-
-/// A line of telemetry as a row.
-fn row((t_s, finger, line): (f64, u8, &Telemetry)) -> String {
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    let fault = line.fault().map_or("", |fault| fault.name());
-    format!(
-        "{t_s:.4},{finger},{},{},{fault},{},{},{},{},{},{},{},{},{},{}\n",
-        line.tick,
-        line.state.name(),
-        u8::from(line.limited),
-        number(line.setpoint_c),
-        number(line.display_c),
-        number(line.sink_c),
-        number(line.skin_c),
-        number(line.room_c),
-        number(line.force_n),
-        number(line.demand_a),
-        number(line.current_a),
-        line.evaluations
-            .map_or(String::new(), |count| count.to_string()),
-    )
 }
 
 /// JSON for people, with a line end.

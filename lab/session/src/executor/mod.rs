@@ -99,17 +99,17 @@ pub struct Executor<'a, L> {
 }
 
 impl<'a, L: Link> Executor<'a, L> {
-    /// A session on the device at a link, recorded by a recorder, which knows the trials of an earlier run. A session without
-    /// displays sends nothing on the link, and only its clock counts.
+    /// A session on the device of a client, recorded by a recorder, which knows the trials of an earlier run. A session without
+    /// displays sends nothing, and only the clock of the client's link counts.
     pub fn new(
         session: &'a Session,
-        link: L,
+        client: Client<L>,
         people: &'a mut dyn People,
         recorder: &'a mut Recorder,
     ) -> Self {
         Self {
             session,
-            client: Client::new(link),
+            client,
             people,
             recorder,
             clock_offset_ns: 0,
@@ -145,6 +145,10 @@ impl<'a, L: Link> Executor<'a, L> {
         while let Some(next) = schedule.next_trial() {
             if next.trial.break_before && next.attempt == 1 {
                 self.take_a_break()?;
+            }
+            let first_of_part = (plan.trials.iter()).find(|trial| trial.part == next.trial.part);
+            if first_of_part == Some(next.trial) && next.attempt == 1 {
+                self.instruct(&next.trial.part)?;
             }
             let record = self.run_trial(&next, plan.trials.len())?;
             schedule.ended(&record);
@@ -195,6 +199,23 @@ impl<'a, L: Link> Executor<'a, L> {
             } => self.touch(next.trial, reach_s, contact, max_s),
             Procedure::Intervals { interval_s, gap_s } => self.intervals(next, interval_s, gap_s),
         }
+    }
+
+    /// Lets the participant read the instruction of a part.
+    fn instruct(&mut self, part: &str) -> Result<(), SessionEnd> {
+        let of_part = self
+            .session
+            .design
+            .part(part)
+            .and_then(|part| part.instruction.clone());
+        let text = of_part.unwrap_or_else(|| self.session.instruction.clone());
+        if text.trim().is_empty() {
+            return Ok(());
+        }
+        self.inform(Update::Instruction(text));
+        let ready = "the participant has read the instruction".into();
+        self.operator(OperatorQuestion::Ready(ready))?;
+        Ok(())
     }
 
     /// Waits for the shortest break, and then for the operator.

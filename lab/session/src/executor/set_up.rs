@@ -75,8 +75,9 @@ impl<L: Link> Executor<'_, L> {
                 material,
             } = presented
             {
-                let command = match self.session.custom_material(material) {
-                    Some(custom) => PlainCommand::CustomMaterial(custom),
+                let mut own = self.session.materials.iter();
+                let command = match own.find(|(name, _)| name == material) {
+                    Some((_, properties)) => PlainCommand::CustomMaterial(*properties),
                     None => PlainCommand::Material(material.clone()),
                 };
                 self.command(Some(*device_finger), &command)?;

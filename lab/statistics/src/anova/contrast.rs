@@ -2,7 +2,7 @@
 
 use super::between::one_way;
 use crate::distribution::f_tail;
-use crate::error::at_least;
+use crate::error::{at_least, checked};
 use crate::sample::{check_equal_lengths, check_row, check_rows, mean_of, sum_of_squares, varies};
 use crate::{Result, StatisticsError};
 
@@ -71,6 +71,12 @@ pub fn contrast_between<R: AsRef<[f64]>>(groups: &[R], weights: &[f64]) -> Resul
 
 impl Contrast {
     fn new(estimate: f64, standard_error: f64, error_df: f64) -> Result<Self> {
+        let standard_error = checked(
+            "standard error of the contrast",
+            standard_error,
+            "finite",
+            f64::is_finite,
+        )?;
         let f = (estimate / standard_error).powi(2);
         Ok(Self {
             estimate,
@@ -95,8 +101,8 @@ fn check_weights(weights: &[f64], levels: usize) -> Result<()> {
     }
     let sum: f64 = weights.iter().sum();
     let size: f64 = weights.iter().map(|w| w.abs()).sum();
-    crate::error::checked("sum of the weights", sum, "0", |sum| {
+    checked("sum of the weights", sum, "0", |sum| {
         sum.abs() <= 1e-12 * size
     })?;
-    crate::error::checked("largest weight", size, "other than 0", |size| size > 0.0).map(|_| ())
+    checked("largest weight", size, "other than 0", |size| size > 0.0).map(|_| ())
 }

@@ -1,0 +1,499 @@
+//! The bench: participant, samples and device in virtual time, as the executor of a session meets them.
+
+mod trial;
+
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+use std::time::Duration;
+
+use contact_model::material::Material;
+use serde::Serialize;
+use thermal_client::link::{LineSplitter, Link, LinkError, ReceivedLine};
+use thermal_plant::finger::FingerParams;
+use thermal_plant::parameters::stream_seed;
+use thermal_plant::{ConfigError, Params};
+use thermal_session::{
+    AnswerKind, ContactRule, Decision, Departure, People, Phase, Plan, PlannedTrial, Presented,
+    Procedure, Response, Session, Update,
+};
+
+use crate::device::{PreparedDevice, RunningDevice};
+use crate::falls::{TouchSetup, mean_fall_k};
+use crate::observer::Task;
+use crate::operator::{Happening, Operator, SimulatedEvent};
+use crate::participant::{Participant, SkinParams};
+use crate::{HandParams, ObserverParams};
+
+use trial::RunningTrial;
+
+/// Why there is no bench for a session, or why it stopped.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BenchError {
+    /// A value that the simulated plant does not accept.
+    #[error(transparent)]
+    Plant(#[from] ConfigError),
+    /// The simulated device cannot be commissioned.
+    #[error("the simulated device cannot be commissioned: {0}")]
+    Commissioning(String),
+    /// The simulated device refuses a command, or does not do what it should.
+    #[error("the simulated device: {0}")]
+    Device(String),
+    /// A material whose properties are not known.
+    #[error("material {0} is not known")]
+    Material(String),
+    /// The simulated observer does not know what these answers mean.
+    #[error(
+        "the simulated observer does not understand the answers {0:?}: they must be names of stations, names of materials, \
+         'same' and 'different', or two intervals"
+    )]
+    Answers(Vec<String>),
+    /// The simulated finger is too thin.
+    #[error("the simulated finger is thinner than the depth of its receptors")]
+    NoReceptors,
+}
+
+/// Properties of the bench and of the participant.
+#[derive(Clone, Debug)]
+pub struct BenchOptions {
+    /// Noise and decisions; `None` for those of [`ObserverParams::of_session`].
+    pub observer: Option<ObserverParams>,
+    /// Movements.
+    pub hand: HandParams,
+    /// Skin temperatures.
+    pub skin: SkinParams,
+    /// The finger at every station.
+    pub finger: FingerParams,
+    /// Room temperature, °C; also that of samples.
+    pub room_c: f64,
+    /// Weight of the skin under the contact in the temperature at the skin thermistor, 0 to 1; `None` for that of the plant.
+    pub edge_share: Option<f64>,
+    /// Seed of the device's parts.
+    pub device_seed: u64,
+    /// What happens on purpose.
+    pub events: Vec<SimulatedEvent>,
+}
+
+impl Default for BenchOptions {
+    fn default() -> Self {
+        Self {
+            observer: None,
+            hand: HandParams::TYPICAL,
+            skin: SkinParams::TYPICAL,
+            finger: FingerParams::homogeneous(),
+            room_c: 24.0,
+            edge_share: None,
+            device_seed: 1,
+            events: Vec::new(),
+        }
+    }
+}
+
+impl BenchOptions {
+    /// Parameters of plants with this finger.
+    fn params(&self) -> Params {
+        let mut params = Params::nominal();
+        params.finger = self.finger.clone();
+        if let Some(share) = self.edge_share {
+            params.sensors.skin_sees_contact = share;
+        }
+        params
+    }
+}
+
+/// What the observer has felt in a trial, and the answer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Observation {
+    /// Number of the trial.
+    pub trial: u32,
+    /// Number of the attempt at it.
+    pub attempt: u32,
+    /// What each station presented, in words.
+    pub presented: Vec<String>,
+    /// Fall of each station, K, without noise, or of each interval; `None` where nothing was felt.
+    pub falls_k: Vec<Option<f64>>,
+    /// Time from the first landing, or the end of the last interval, to the decision, s.
+    pub decision_s: f64,
+    /// Number of touches of the hand until then.
+    pub touches: usize,
+    /// Skin before contact, °C.
+    pub skin_c: f64,
+    /// Index of the answer.
+    pub choice: Option<usize>,
+    /// Magnitudes of the stations.
+    pub numbers: Vec<f64>,
+}
+
+/// A simulated participant at a simulated bench, for one session.
+#[derive(Clone, Debug)]
+pub struct Bench(Rc<RefCell<State>>);
+
+/// The line to the device of a bench. A bench without displays has a line on which nothing answers, and only time passes.
+#[derive(Clone, Debug)]
+pub struct BenchLink(Rc<RefCell<State>>);
+
+/// Participant and operator of a bench.
+#[derive(Clone, Debug)]
+pub struct BenchPeople(Rc<RefCell<State>>);
+
+/// What does not change in a session.
+#[derive(Debug)]
+struct Setting {
+    session: Session,
+    /// Names of random streams begin with it.
+    key: String,
+    seed: u64,
+    options: BenchOptions,
+    params: Params,
+    participant: Participant,
+    task: Option<Task>,
+    device: Option<PreparedDevice>,
+}
+
+#[derive(Debug)]
+struct State {
+    setting: Setting,
+    device: Option<RunningDevice>,
+    to_send: Vec<u8>,
+    splitter: LineSplitter,
+    received: VecDeque<ReceivedLine>,
+    ms: u64,
+    trial: Option<RunningTrial>,
+    observations: Vec<Observation>,
+    operator: Operator,
+    decisions: VecDeque<Decision>,
+    failure: Option<BenchError>,
+}
+
+impl Bench {
+    /// The bench of a session for the participant with a code, drawn from a seed. A device is commissioned if a trial of the
+    /// plan presents one.
+    ///
+    /// # Errors
+    /// The session has something that cannot be simulated.
+    pub fn new(
+        session: &Session,
+        plan: &Plan,
+        code: &str,
+        seed: u64,
+        options: BenchOptions,
+    ) -> Result<Self, BenchError> {
+        let observer = options
+            .observer
+            .unwrap_or_else(|| ObserverParams::of_session(session));
+        let participant =
+            Participant::new(session, code, seed, &options.skin, options.hand, observer);
+        let params = options.params();
+        let stations = || plan.trials.iter().flat_map(|trial| &trial.presented);
+        for presented in stations() {
+            if let Presented::Sample { material } = presented {
+                known_material(session, material)?;
+            }
+        }
+        let device = match stations().filter_map(device_finger).max() {
+            Some(last) => Some(PreparedDevice::new(
+                &params,
+                options.room_c,
+                options.device_seed,
+                last + 1,
+            )?),
+            None => None,
+        };
+        let task = task(session, plan, &params, &participant, &options)?;
+        let key = format!("{} {code}", session.task);
+        let mut state = State {
+            setting: Setting {
+                session: session.clone(),
+                key,
+                seed,
+                options,
+                params,
+                participant,
+                task,
+                device,
+            },
+            device: None,
+            to_send: Vec::new(),
+            splitter: LineSplitter::default(),
+            received: VecDeque::new(),
+            ms: 0,
+            trial: None,
+            observations: Vec::new(),
+            operator: Operator::default(),
+            decisions: VecDeque::new(),
+            failure: None,
+        };
+        let skin_c = state.setting.participant.skin_c(0.0);
+        state.power_up(skin_c, "before the first trial")?;
+        Ok(Self(Rc::new(RefCell::new(state))))
+    }
+
+    /// The line to the device.
+    #[must_use]
+    pub fn link(&self) -> BenchLink {
+        BenchLink(Rc::clone(&self.0))
+    }
+
+    /// Participant and operator.
+    #[must_use]
+    pub fn people(&self) -> BenchPeople {
+        BenchPeople(Rc::clone(&self.0))
+    }
+
+    /// The participant.
+    #[must_use]
+    pub fn participant(&self) -> Participant {
+        self.0.borrow().setting.participant
+    }
+
+    /// What the observer has felt in each trial until its end, and the answers.
+    #[must_use]
+    pub fn observations(&self) -> Vec<Observation> {
+        self.0.borrow().observations.clone()
+    }
+}
+
+impl Link for BenchLink {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        let mut state = self.0.borrow_mut();
+        if state.device.is_some() {
+            state.to_send.extend(bytes);
+        }
+        Ok(())
+    }
+
+    fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
+        let mut state = self.0.borrow_mut();
+        let end = state.now() + timeout;
+        while state.received.is_empty() && state.now() < end {
+            state.step_1_ms();
+            if let Some(failure) = &state.failure {
+                return Err(LinkError::Gone(failure.to_string()));
+            }
+        }
+        Ok(state.received.pop_front())
+    }
+
+    fn now(&self) -> Duration {
+        self.0.borrow().now()
+    }
+}
+
+impl People for BenchPeople {
+    fn inform(&mut self, update: &Update) {
+        self.0.borrow_mut().inform(update);
+    }
+
+    fn response(&mut self) -> Option<Response> {
+        let mut state = self.0.borrow_mut();
+        let State {
+            trial, setting, ms, ..
+        } = &mut *state;
+        trial.as_mut()?.response(*ms, setting)
+    }
+
+    fn decision(&mut self) -> Option<Decision> {
+        self.0.borrow_mut().decisions.pop_front()
+    }
+}
+
+impl State {
+    const fn now(&self) -> Duration {
+        Duration::from_millis(self.ms)
+    }
+
+    /// The device as it is after power-up, if the bench has one. What is on the line is lost.
+    fn power_up(&mut self, skin_c: f64, purpose: &str) -> Result<(), BenchError> {
+        let setting = &self.setting;
+        let noise_seed = stream_seed(setting.seed, &format!("{} {purpose} device", setting.key));
+        self.device = match &setting.device {
+            Some(device) => Some(device.power_up(skin_c, noise_seed)?),
+            None => None,
+        };
+        self.to_send.clear();
+        self.received.clear();
+        self.splitter = LineSplitter::default();
+        Ok(())
+    }
+
+    fn inform(&mut self, update: &Update) {
+        let ms = self.ms;
+        match update {
+            Update::Trial { trial, attempt, of } => {
+                if let Err(error) = self.begin_trial(trial, *attempt, *of) {
+                    self.failure = Some(error);
+                }
+            }
+            Update::Decide(question) => {
+                let decision = self.operator.decide(question);
+                self.decisions.push_back(decision);
+            }
+            Update::Phase(phase) => self.begin_phase(*phase),
+            Update::TrialEnded { .. } => self.end_trial(),
+            _ => {}
+        }
+        if let Some(trial) = &mut self.trial {
+            trial.inform(update, ms, &self.setting);
+        }
+    }
+
+    fn begin_trial(
+        &mut self,
+        trial: &PlannedTrial,
+        attempt: u32,
+        of: usize,
+    ) -> Result<(), BenchError> {
+        self.end_trial();
+        self.operator.begin_trial();
+        self.decisions.clear();
+        let running = RunningTrial::new(trial, attempt, of, self.ms, &self.setting)?;
+        let purpose = format!("trial {} attempt {attempt}", trial.number);
+        self.power_up(running.skin_c(), &purpose)?;
+        self.trial = Some(running);
+        Ok(())
+    }
+
+    /// What the operator decides on purpose when a phase begins replaces other decisions.
+    fn begin_phase(&mut self, phase: Phase) {
+        let Some(trial) = &self.trial else {
+            return;
+        };
+        let decided = trial.happenings().find_map(|what| match what {
+            Happening::Decides(of, decision) if *of == phase => Some(*decision),
+            _ => None,
+        });
+        if let Some(decision) = decided {
+            self.decisions.clear();
+            self.decisions.push_back(decision);
+        }
+    }
+
+    /// Records what was felt. The fingers are at rest until the next trial.
+    fn end_trial(&mut self) {
+        if let Some(mut trial) = self.trial.take() {
+            self.observations
+                .push(trial.observation(self.ms, &self.setting));
+        }
+    }
+
+    fn step_1_ms(&mut self) {
+        let mut forces_n = [0.0; thermal_sim::five_fingers::FINGERS];
+        let mut faults = Vec::new();
+        if let Some(trial) = &mut self.trial {
+            trial.step_1_ms(self.ms, &mut forces_n);
+            trial.faults(self.ms, &mut faults);
+        }
+        if let Some(device) = &mut self.device {
+            let bytes = std::mem::take(&mut self.to_send);
+            device.run_1_ms(&bytes, &forces_n, &faults);
+        }
+        self.ms += 1;
+        if let Some(device) = &mut self.device {
+            device.receive(self.splitter.received());
+            let at = Duration::from_millis(self.ms);
+            let lines = self.splitter.complete().into_iter();
+            self.received
+                .extend(lines.map(|text| ReceivedLine { text, at }));
+        }
+        if let Some(trial) = &mut self.trial {
+            let felt = trial.feel(self.ms, self.device.as_mut(), &self.setting);
+            if let Err(error) = felt {
+                self.failure = Some(error);
+            }
+        }
+    }
+}
+
+/// Finger of the device whose display a station is.
+fn device_finger(presented: &Presented) -> Option<usize> {
+    match presented {
+        Presented::Nothing | Presented::Sample { .. } => None,
+        Presented::Material { device_finger, .. }
+        | Presented::Hold { device_finger, .. }
+        | Presented::Pulses { device_finger, .. } => Some(usize::from(*device_finger)),
+    }
+}
+
+/// What the observer decides in a session; `None` if it is asked nothing.
+fn task(
+    session: &Session,
+    plan: &Plan,
+    params: &Params,
+    participant: &Participant,
+    options: &BenchOptions,
+) -> Result<Option<Task>, BenchError> {
+    let Some(answer) = &session.answer else {
+        return Ok(None);
+    };
+    let words = match &answer.kind {
+        AnswerKind::NumberPerStation(none, full) => return Ok(Some(Task::Magnitude(*none, *full))),
+        AnswerKind::OneOf(words) => words,
+    };
+    let position = |wanted: &str| words.iter().position(|word| word == wanted);
+    let not_understood = || BenchError::Answers(words.clone());
+    if let Procedure::Intervals { .. } = session.trial.procedure {
+        return match words.len() {
+            2 => Ok(Some(Task::Interval(interval_sign(plan)))),
+            _ => Err(not_understood()),
+        };
+    }
+    if let (Some(same), Some(different)) = (position("same"), position("different")) {
+        return Ok(Some(Task::Same(same, different)));
+    }
+    let stations: Option<Vec<usize>> = words
+        .iter()
+        .map(|word| {
+            session
+                .stations
+                .iter()
+                .position(|station| station.name == *word)
+        })
+        .collect();
+    if let Some(stations) = stations {
+        return Ok(Some(match stations.len() {
+            0..=2 => Task::Colder(stations),
+            _ => Task::Different(stations),
+        }));
+    }
+    // Familiarisation: the observer has touched a sample of each material.
+    let setup = TouchSetup {
+        params: params.clone(),
+        skin_c: participant.rest_c,
+        room_c: options.room_c,
+        hand: participant.hand,
+        contact: ContactRule::Free,
+        decision_median_s: participant.observer.decision_median_s,
+        decision_sigma_ln: participant.observer.decision_sigma_ln,
+    };
+    let expected_k: Result<Vec<f64>, BenchError> = words
+        .iter()
+        .map(|word| {
+            let material = known_material(session, word).map_err(|_| not_understood())?;
+            mean_fall_k(&setup, &material)
+        })
+        .collect();
+    Ok(Some(Task::Identify(expected_k?)))
+}
+
+/// The material of a name in a session.
+fn known_material(session: &Session, name: &str) -> Result<Material, BenchError> {
+    (session.material(name)).ok_or_else(|| BenchError::Material(name.into()))
+}
+
+/// The direction that the participant knows: 1 if all intervals of the plan depart to the cold, -1 if all to the warm.
+fn interval_sign(plan: &Plan) -> Option<f64> {
+    let stations = plan.trials.iter().flat_map(|trial| &trial.presented);
+    let pulses = stations.filter_map(|presented| match presented {
+        Presented::Pulses { departures_k, .. } => Some(departures_k),
+        _ => None,
+    });
+    let mut directions = pulses.flatten().filter_map(|departure| {
+        let towards_k = match departure {
+            Departure::Fixed(k) => *k,
+            Departure::Staircase { standard_k, sign } => standard_k + sign,
+        };
+        (towards_k != 0.0).then_some(-towards_k.signum())
+    });
+    let first = directions.next()?;
+    directions.all(|sign| sign == first).then_some(first)
+}

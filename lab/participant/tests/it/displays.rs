@@ -1,0 +1,109 @@
+//! Sessions with the simulated device.
+
+use thermal_participant::{
+    BenchOptions, HandParams, Happening, ObserverParams, SimulatedEvent, SkinParams,
+};
+use thermal_session::{Decision, Phase};
+use thermal_sim::scene::{ActiveFault, FaultKind};
+
+use crate::run::{run, session};
+
+fn noise_free() -> BenchOptions {
+    BenchOptions {
+        observer: Some(ObserverParams::NOISE_FREE),
+        hand: HandParams::STEADY,
+        skin: SkinParams::EQUAL,
+        ..BenchOptions::default()
+    }
+}
+
+#[test]
+fn without_noise_real_and_simulated_materials_are_told_apart() {
+    let ran = run(
+        "p5",
+        &session("p5-real-and-simulated.toml", &[]),
+        noise_free(),
+        16,
+    );
+    let (correct, all) = ran.correct();
+    assert_eq!(
+        (correct, all),
+        (12, 12),
+        "{:?}",
+        ran.records
+            .iter()
+            .filter_map(|r| r.void.clone())
+            .collect::<Vec<_>>()
+    );
+    assert!(ran.records.iter().all(|record| record.void.is_none()));
+}
+
+#[test]
+fn trips_and_operators_void_trials_which_are_repeated() {
+    let event = |trial, what| SimulatedEvent {
+        trial,
+        attempt: Some(1),
+        what,
+    };
+    let options = BenchOptions {
+        events: vec![
+            event(
+                2,
+                Happening::FaultAfterLanding {
+                    fault: ActiveFault::from(FaultKind::ThermistorOpen),
+                    from_s: 1.0,
+                    for_s: 0.5,
+                },
+            ),
+            event(3, Happening::Decides(Phase::Contact, Decision::Void)),
+            event(4, Happening::DoesNotTouch),
+            event(5, Happening::DoesNotAnswer),
+        ],
+        ..noise_free()
+    };
+    let ran = run(
+        "p5-voids",
+        &session("p5-real-and-simulated.toml", &[]),
+        options,
+        6,
+    );
+    let voids: Vec<_> = (ran.records.iter())
+        .filter_map(|record| Some((record.trial, record.void.clone()?)))
+        .collect();
+    assert_eq!(
+        voids.iter().map(|(trial, _)| *trial).collect::<Vec<_>>(),
+        [2, 3, 4, 5],
+        "{voids:?}"
+    );
+    assert!(voids[0].1.contains("tripped"), "{voids:?}");
+    assert_eq!(ran.records.len(), 10);
+}
+
+#[test]
+fn thresholds_come_down_to_the_noise_of_the_observer() {
+    let ran = run(
+        "p9",
+        &session("p9-change-threshold.toml", &[]),
+        BenchOptions::default(),
+        60,
+    );
+    let (correct, all) = ran.correct();
+    assert!(
+        ran.records.iter().all(|record| record.void.is_none()),
+        "{:?}",
+        ran.records[0].void
+    );
+    assert!(correct * 2 > all, "{correct} of {all}");
+}
+
+#[test]
+fn three_displays_at_one_hand() {
+    let ran = run(
+        "p3",
+        &session("p3-localisation-displays.toml", &[]),
+        noise_free(),
+        6,
+    );
+    let (correct, all) = ran.correct();
+    assert_eq!((correct, all), (6, 6), "{:?}", ran.observations);
+}

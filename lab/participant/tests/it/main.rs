@@ -1,0 +1,6 @@
+//! Whole sessions of simulated participants, run by the executor.
+
+mod displays;
+mod reproducibility;
+mod run;
+mod samples;

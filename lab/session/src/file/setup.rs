@@ -1,0 +1,175 @@
+//! The tables `[device]`, `[stations]` and `[rest]`.
+
+use thermal_device::command::AssumedFinger;
+use thermal_device::control::Law;
+use thermal_device::reference::ContactModel;
+use thermal_device::safety::Setpoint;
+use thermal_protocol::CONTACT_MODEL_WORDS;
+
+use super::present::Presentation;
+use super::source::SessionError;
+use super::value::{Number, Value, Whole};
+use crate::{DeviceSetup, Rest, RestPlace, Station};
+
+pub(super) const DEVICE_KEYS: [&str; 6] = [
+    "law",
+    "mode",
+    "assumed_finger",
+    "object_c",
+    "skin_c",
+    "stream_ms",
+];
+pub(super) const OBJECT_C: Number = Number::new("object_c", -20.0, 60.0, None);
+pub(super) const DEVICE_SKIN_C: Number = Number::new("skin_c", 15.0, 42.0, None);
+/// Five fingers each send a line; 5 ms is the device's shortest interval for that.
+pub(super) const STREAM_MS: Whole = Whole::new("stream_ms", 5, 1000, Some(10));
+
+pub(super) const STATION_KEYS: [&str; 1] = ["finger"];
+
+pub(super) const REST_KEYS: [&str; 5] = ["place", "skin_c", "within_k", "for_s", "timeout_s"];
+pub(super) const REST_SKIN_C: Number = Number::new("skin_c", 20.0, 40.0, None);
+pub(super) const WITHIN_K: Number = Number::new("within_k", 0.05, 5.0, Some(0.3));
+pub(super) const FOR_S: Number = Number::new("for_s", 0.5, 600.0, Some(2.0));
+pub(super) const TIMEOUT_S: Number = Number::new("timeout_s", 1.0, 3600.0, Some(180.0));
+
+/// Set-points that the device accepts, °C.
+pub(super) fn setpoints_c() -> (f64, f64) {
+    let [least, most] = [Setpoint::MIN, Setpoint::MAX].map(|limit| limit.celsius().to_num());
+    (least, most)
+}
+
+/// The device; it must be described if a station presents a display.
+pub(super) fn device(
+    file: Option<&Value<'_>>,
+    present: &Presentation<'_>,
+) -> Result<Option<DeviceSetup>, SessionError> {
+    let Some(file) = file else {
+        return match &present.display {
+            None => Ok(None),
+            Some(display) => {
+                let problem = format!(
+                    "{} is a display; it is allowed beside a table [device]",
+                    display.key
+                );
+                Err(display.error(problem))
+            }
+        };
+    };
+    let table = file.table(&DEVICE_KEYS)?;
+    let or_word = |key: &Number, word: &str| match table.get(key.key) {
+        None => Ok(None),
+        Some(value) if value.is_string() && value.string("")? == word => Ok(None),
+        Some(value) => {
+            let (least, most) = key.range;
+            let wrong = |_| value.wrong(format!("{word:?} or {least} to {most}"));
+            value.number(key.range).map(Some).map_err(wrong)
+        }
+    };
+    Ok(Some(DeviceSetup {
+        law: table.word_or("law", &Law::PROTOCOL_WORDS, Law::Model)?,
+        mode: table.word_or("mode", &CONTACT_MODEL_WORDS, ContactModel::default())?,
+        assumed_finger: table.word_or(
+            "assumed_finger",
+            &AssumedFinger::PROTOCOL_WORDS,
+            AssumedFinger::default(),
+        )?,
+        object_c: or_word(&OBJECT_C, "room")?,
+        assumed_skin_c: or_word(&DEVICE_SKIN_C, "sensor")?,
+        stream_ms: table.whole(&STREAM_MS)?,
+    }))
+}
+
+/// The stations in the order of the file.
+pub(super) fn stations(file: &Value<'_>) -> Result<Vec<Station>, SessionError> {
+    const MOST: usize = 5;
+    let tables = file.any_table("a table for each station")?;
+    if !(1..=MOST).contains(&tables.values.len()) {
+        let problem = format!("{} stations; allowed is 1 to {MOST}", tables.values.len());
+        return Err(file.error(problem));
+    }
+    let read = tables.values.iter().map(|(name, value)| {
+        if RESERVED.contains(name) || !super::value::is_name(name) {
+            let problem = format!(
+                "{}: allowed as a name is {}, and none of {}",
+                value.key,
+                super::value::NAME,
+                super::value::listed(&RESERVED)
+            );
+            return Err(value.error(problem));
+        }
+        let table = value.table(&STATION_KEYS)?;
+        Ok(Station {
+            name: (*name).into(),
+            finger: table
+                .need("finger", "the participant's finger in words")?
+                .text(40)?,
+        })
+    });
+    read.collect()
+}
+
+/// Columns of recorded tables, and keys, which no factor and no station may be named after.
+pub(super) const RESERVED: [&str; 21] = [
+    "answer",
+    "attempt",
+    "block",
+    "break_before",
+    "by",
+    "correct",
+    "duration",
+    "onset",
+    "part",
+    "participant",
+    "participant_id",
+    "reason",
+    "response",
+    "response_time",
+    "sample",
+    "staircase",
+    "stim_file",
+    "target_force_n",
+    "trial",
+    "trial_type",
+    "void",
+];
+
+/// What must hold before a trial.
+pub(super) fn rest(
+    file: Option<&Value<'_>>,
+    present: &Presentation<'_>,
+) -> Result<Option<Rest>, SessionError> {
+    let Some(file) = file else {
+        return Ok(None);
+    };
+    let table = file.table(&REST_KEYS)?;
+    let places = [
+        ("pad", RestPlace::Pad),
+        ("display", RestPlace::Display),
+        ("air", RestPlace::Air),
+    ];
+    let rest = Rest {
+        place: table.word_or("place", &places, RestPlace::Pad)?,
+        skin_c: table.number(&REST_SKIN_C)?,
+        within_k: table.number(&WITHIN_K)?,
+        for_s: table.number(&FOR_S)?,
+        timeout_s: table.number(&TIMEOUT_S)?,
+    };
+    if let (RestPlace::Display, None, Some(place)) =
+        (rest.place, &present.display, table.get("place"))
+    {
+        return Err(place.error(
+            "rest.place = \"display\" without a display; allowed is \"pad\" or \"air\", or a station that presents a display",
+        ));
+    }
+    if rest.timeout_s <= rest.for_s {
+        let at = table
+            .get("timeout_s")
+            .or(table.get("for_s"))
+            .unwrap_or(file);
+        let (timeout_s, for_s) = (rest.timeout_s, rest.for_s);
+        let problem =
+            format!("rest.timeout_s = {timeout_s}; allowed is more than rest.for_s = {for_s}");
+        return Err(at.error(problem));
+    }
+    Ok(Some(rest))
+}

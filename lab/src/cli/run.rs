@@ -1,0 +1,185 @@
+//! `thermal-lab run`: a session with a participant, or with a simulated one.
+
+use std::io::{BufReader, stderr, stdin};
+use std::path::PathBuf;
+
+use anyhow::{Context, anyhow};
+use clap::Args;
+use thermal_client::client::Client;
+use thermal_client::link::{Interruptible, Link};
+use thermal_lab::link::{LazyLink, PacedLink};
+use thermal_lab::person::lines;
+use thermal_lab::terminal_people::TerminalPeople;
+use thermal_lab::watched::{Progress, Watched};
+use thermal_participant::{Bench, BenchOptions};
+use thermal_session::dataset::{Recorder, RecordingError};
+use thermal_session::{Executor, People, Plan, Schedule, Session, SessionEnd};
+use thermal_window::{Outline, StopFlag, Tones};
+
+use super::target::stop_on_signals;
+use super::{Failure, Target, print_text, window};
+
+/// Text after the options in the help.
+const USAGE: &str = "\
+Sessions are TOML files; those of lab/sessions/ are ready to be used and to be copied (docs/sessions.md). The data set has the
+layout of BIDS, and grows by a whole trial at a time: after a crash, a power cut or a stop, --resume goes on.
+
+  thermal-lab run lab/sessions/p5-real-and-simulated.toml --participant 01 --plan
+  thermal-lab run lab/sessions/p5-real-and-simulated.toml --participant 01 --port /dev/ttyACM0 --out data
+  thermal-lab run lab/sessions/p5-real-and-simulated.toml --participant 01 --simulated --headless --out data";
+
+#[derive(Args)]
+#[command(after_help = USAGE)]
+pub struct Arguments {
+    /// Session file
+    session: PathBuf,
+    /// Code of the participant, of letters and digits; never a name
+    #[arg(long, value_name = "CODE")]
+    participant: String,
+    /// Seed of the order of the trials; with --simulated also of participant and device
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Print the trials as CSV, and run nothing
+    #[arg(long)]
+    plan: bool,
+    /// Folder of the data set, which may have data of other participants and tasks
+    #[arg(long, value_name = "DIR", default_value = "target/sessions")]
+    out: PathBuf,
+    /// Go on with a session that was interrupted
+    #[arg(long)]
+    resume: bool,
+    /// Without windows: plain lines at a terminal
+    #[arg(long)]
+    headless: bool,
+    /// With --simulated: in real time, to look at it
+    #[arg(long, requires = "simulated")]
+    real_time: bool,
+}
+
+pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
+    let session = Session::read(&arguments.session).map_err(Failure::input)?;
+    let who = (arguments.participant.as_str(), arguments.seed);
+    let plan = Plan::new(&session, who.0, who.1)
+        .with_context(|| arguments.session.display().to_string())
+        .map_err(Failure::input)?;
+    if arguments.plan {
+        return print_text(&plan.csv());
+    }
+    let out = &arguments.out;
+    let recorder = if arguments.resume {
+        Recorder::resume(out, &session, &plan, who)
+    } else {
+        Recorder::create(out, &session, &plan, who, target.simulated)
+    };
+    let mut recorder = recorder.map_err(refused)?;
+    let stop = StopFlag::default();
+    stop_on_signals(&stop)?;
+    let all = Run {
+        arguments,
+        session: &session,
+        plan: &plan,
+    };
+    if arguments.headless {
+        let tones = (!target.simulated).then(Tones::start);
+        let mut screen = stderr();
+        let input = lines(BufReader::new(stdin()));
+        let stations = session.stations.len();
+        if target.simulated {
+            all.run(
+                target,
+                &mut recorder,
+                &stop,
+                &mut Progress::new(&mut screen, &stop),
+            )
+        } else {
+            let mut people =
+                TerminalPeople::of_session(input, &mut screen, stop.clone(), tones, stations);
+            all.run(target, &mut recorder, &stop, &mut people)
+        }
+    } else {
+        let outline = Outline::from(&session);
+        window::show(&session.title, Some(outline), &stop, |people| {
+            all.run(target, &mut recorder, &stop, people)
+        })
+    }
+}
+
+/// A folder that is not fit for the session is a wrong argument.
+fn refused(error: RecordingError) -> Failure {
+    match error {
+        RecordingError::Exists(_)
+        | RecordingError::Missing(_)
+        | RecordingError::OtherSession { .. } => Failure::input(error),
+        RecordingError::File { .. } | RecordingError::InUse(_) | RecordingError::Content { .. } => {
+            Failure::run(error)
+        }
+    }
+}
+
+/// What is run.
+struct Run<'a> {
+    arguments: &'a Arguments,
+    session: &'a Session,
+    plan: &'a Plan,
+}
+
+impl Run<'_> {
+    /// Runs the session with these persons, or with a simulated participant whom they watch.
+    fn run(
+        &self,
+        target: &Target,
+        recorder: &mut Recorder,
+        stop: &StopFlag,
+        people: &mut dyn People,
+    ) -> Result<(), Failure> {
+        if target.simulated {
+            let who = (self.arguments.participant.as_str(), self.arguments.seed);
+            let bench = Bench::new(
+                self.session,
+                self.plan,
+                who.0,
+                who.1,
+                BenchOptions::default(),
+            )
+            .map_err(Failure::input)?;
+            let mut watched = Watched::new(bench.people(), people);
+            let link: Box<dyn Link> = if self.arguments.real_time {
+                Box::new(PacedLink::new(bench.link()))
+            } else {
+                Box::new(bench.link())
+            };
+            let client = Client::new(Interruptible::new(link, stop.interrupts_link()));
+            return self.execute(client, &mut watched, recorder);
+        }
+        if self.session.device.is_none() {
+            let link = LazyLink::new(|| Err("this session has no display".into()));
+            let client = Client::new(Interruptible::new(link, stop.interrupts_link()));
+            return self.execute(client, people, recorder);
+        }
+        let link = target.open().map_err(Failure::input)?;
+        let link = Interruptible::new(link, stop.interrupts_link());
+        let client = Client::attach(link).map_err(Failure::run)?;
+        self.execute(client, people, recorder)
+    }
+
+    fn execute<L: Link>(
+        &self,
+        client: Client<L>,
+        people: &mut dyn People,
+        recorder: &mut Recorder,
+    ) -> Result<(), Failure> {
+        let records = recorder.records().to_vec();
+        let schedule =
+            Schedule::after(self.session, self.plan, &records).map_err(Failure::input)?;
+        let folder = recorder.folder().clone();
+        let executor = Executor::new(self.session, client, people, recorder);
+        let ended = executor.run(self.plan, schedule);
+        eprintln!("thermal-lab: data set: {}", folder.root().display());
+        ended.map_err(|end| match end {
+            SessionEnd::Unsuitable(_) => Failure::input(anyhow!(end)),
+            SessionEnd::Stopped | SessionEnd::Gone(_) | SessionEnd::Recording(_) => {
+                Failure::run(anyhow!(end))
+            }
+        })
+    }
+}

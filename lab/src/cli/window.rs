@@ -1,0 +1,47 @@
+//! Windows, in a build that has them.
+
+use thermal_window::{Outline, StopFlag, WindowPeople};
+
+use super::Failure;
+
+/// Runs something with the persons at the windows; returns when the windows are closed and it has ended.
+#[cfg(feature = "window")]
+pub fn show(
+    title: &str,
+    outline: Option<Outline>,
+    stop: &StopFlag,
+    worker: impl FnOnce(&mut WindowPeople) -> Result<(), Failure> + Send,
+) -> Result<(), Failure> {
+    use thermal_window::{Tones, WindowOptions, run_window};
+
+    let options = WindowOptions {
+        title: format!("{title} - thermal-lab"),
+        tones: outline.is_some().then(Tones::start),
+        outline,
+        stop: stop.clone(),
+    };
+    let shown = run_window(options, worker).map_err(Failure::input)?;
+    let latency = &shown.latency;
+    if let (Some(median_ms), Some(late_ms)) = (latency.percentile_ms(50), latency.percentile_ms(99))
+    {
+        eprintln!(
+            "thermal-lab: from an update to the screen: median {median_ms} ms, 99 % {late_ms} ms, longest {} ms, in {} frames",
+            latency.longest_ms(),
+            latency.frames()
+        );
+    }
+    shown.result
+}
+
+/// A build without windows says how to get one.
+#[cfg(not(feature = "window"))]
+pub fn show(
+    _title: &str,
+    _outline: Option<Outline>,
+    _stop: &StopFlag,
+    _worker: impl FnOnce(&mut WindowPeople) -> Result<(), Failure> + Send,
+) -> Result<(), Failure> {
+    Err(Failure::input(anyhow::anyhow!(
+        "this thermal-lab has no windows; give --headless, or build one: cargo build --release -p thermal-lab --features window"
+    )))
+}

@@ -1,0 +1,133 @@
+//! The worker of `monitor`: telemetry of a device, and the few orders that are safe at any time.
+
+use std::time::Duration;
+
+use thermal_client::client::{Client, ClientError, PlainCommand, QueryIdentity, ReceivedEvent};
+use thermal_client::link::{Link, LinkError};
+use thermal_session::{People, Update};
+
+/// Longest wait for telemetry, after which orders are looked at.
+const LOOK: Duration = Duration::from_millis(20);
+/// Times that the bridge is ordered off until the device answers.
+const OFF_ATTEMPTS: u32 = 3;
+
+/// What the operator of a monitored device can order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// Bridge off.
+    Off,
+    /// Self-test if it has not been passed, then the display at the temperature of the skin.
+    Arm,
+    /// Clear a fault that is no longer present.
+    Clear,
+}
+
+impl Order {
+    /// Those with a key of their own; the stop has another.
+    pub const ALL: [Self; 2] = [Self::Arm, Self::Clear];
+
+    /// Its key, a letter in lower case.
+    #[must_use]
+    pub const fn key(self) -> char {
+        match self {
+            Self::Off => 'o',
+            Self::Arm => 'a',
+            Self::Clear => 'c',
+        }
+    }
+
+    /// Its word on the line and on its button.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Off => "abort",
+            Self::Arm => "arm",
+            Self::Clear => "clear",
+        }
+    }
+}
+
+/// Whoever watches a device.
+pub trait MonitorPeople: People {
+    /// The order since the last call, if there is one.
+    fn order(&mut self) -> Option<Order>;
+
+    /// Whether the monitor is to end.
+    fn is_closing(&self) -> bool;
+}
+
+/// Streams telemetry and carries out orders until the operator ends it; then the bridge is off. The link's signs of life are
+/// those of the client.
+///
+/// # Errors
+/// The link is gone, or the device does not answer at the start or the end.
+pub fn monitor<L: Link>(
+    client: &mut Client<L>,
+    people: &mut impl MonitorPeople,
+    interval_ms: u32,
+) -> Result<(), ClientError> {
+    let identity = client.ask(&QueryIdentity)?;
+    if identity.can("events") {
+        client.ask(&PlainCommand::Events(true))?;
+    }
+    client.ask(&PlainCommand::stream(interval_ms))?;
+    while !people.is_closing() {
+        match client.next_telemetry(LOOK) {
+            Ok(Some(line)) => people.inform(&Update::Telemetry(line)),
+            // Whoever interrupts the wait has an order.
+            Ok(None) | Err(LinkError::Interrupted) => {}
+            Err(error) => return Err(error.into()),
+        }
+        while let Some(event) = client.take_event() {
+            people.inform(&Update::Event(event));
+            people.inform(&Update::Notice(event_text(&event)));
+        }
+        if let Some(order) = people.order() {
+            let text = carry_out(client, order)?;
+            people.inform(&Update::Notice(text));
+        }
+    }
+    let off = carry_out(client, Order::Off)?;
+    people.inform(&Update::Notice(off));
+    client.ask(&PlainCommand::stream(0))
+}
+
+fn event_text(received: &ReceivedEvent) -> String {
+    let finger = received
+        .finger
+        .map_or(String::new(), |finger| format!("finger {finger}: "));
+    format!(
+        "{finger}{} at tick {}",
+        received.event.kind.name(),
+        received.event.tick
+    )
+}
+
+/// Carries an order out, and says what the device answered. A refusal is no error.
+fn carry_out<L: Link>(client: &mut Client<L>, order: Order) -> Result<String, ClientError> {
+    let command = match order {
+        Order::Off => PlainCommand::Abort,
+        Order::Arm => PlainCommand::Arm,
+        Order::Clear => PlainCommand::Clear,
+    };
+    let attempts = if order == Order::Off { OFF_ATTEMPTS } else { 1 };
+    let mut answer = client.ask(&command);
+    for _ in 1..attempts {
+        if answer.is_ok() {
+            break;
+        }
+        answer = client.ask(&command);
+    }
+    match answer {
+        Ok(()) if order == Order::Off => Ok("bridge off".into()),
+        Ok(()) => Ok(format!("`{}`: ok", order.word())),
+        Err(ClientError::Link(LinkError::Interrupted)) => {
+            Ok(format!("`{}` was interrupted by the stop", order.word()))
+        }
+        Err(ClientError::Link(error)) => Err(error.into()),
+        Err(error) if order == Order::Off => Ok(format!(
+            "the device has not confirmed that the bridge is off: {error}. PRESS THE EMERGENCY STOP"
+        )),
+        Err(error) => Ok(error.to_string()),
+    }
+}

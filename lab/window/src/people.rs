@@ -1,0 +1,199 @@
+//! The two persons at the windows, as the executor sees them, and the desk at which the windows sit.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use thermal_session::{Decision, People, Response, Update};
+
+use crate::model::{Model, Outline};
+use crate::monitor::{MonitorPeople, Order};
+use crate::stop::StopFlag;
+use crate::tone::Tones;
+
+/// What windows and worker share.
+///
+/// Updates are folded where they arise, in the worker's thread: there is no queue that could grow, and the windows hold the lock
+/// only to copy the model.
+#[derive(Debug)]
+struct Shared {
+    model: Model,
+    response: Option<Response>,
+    decision: Option<Decision>,
+    order: Option<Order>,
+    /// When the oldest update came that no frame has drawn.
+    undrawn_since: Option<Duration>,
+}
+
+/// The windows' end: gives copies of the model, and takes what is pressed.
+#[derive(Clone, Debug)]
+pub struct Desk {
+    shared: Arc<Mutex<Shared>>,
+    stop: StopFlag,
+    zero: Instant,
+}
+
+/// The worker's end: participant and operator at the windows. Nothing waits here.
+#[derive(Debug)]
+pub struct WindowPeople {
+    desk: Desk,
+    tones: Option<Tones>,
+}
+
+impl WindowPeople {
+    /// Persons at the windows of a session, or of a monitored device; and the windows' end.
+    #[must_use]
+    pub fn new(outline: Option<Outline>, stop: StopFlag, tones: Option<Tones>) -> (Self, Desk) {
+        let shared = Shared {
+            model: Model::new(outline),
+            response: None,
+            decision: None,
+            order: None,
+            undrawn_since: None,
+        };
+        let desk = Desk {
+            shared: Arc::new(Mutex::new(shared)),
+            stop,
+            zero: Instant::now(),
+        };
+        (
+            Self {
+                desk: desk.clone(),
+                tones,
+            },
+            desk,
+        )
+    }
+
+    /// The operator's stop.
+    #[must_use]
+    pub const fn stop(&self) -> &StopFlag {
+        &self.desk.stop
+    }
+}
+
+impl People for WindowPeople {
+    fn inform(&mut self, update: &Update) {
+        if let (Update::Cue(cue), Some(tones)) = (update, &self.tones) {
+            tones.play(*cue);
+        }
+        let at = self.desk.now();
+        let mut shared = self.desk.shared();
+        match update {
+            // What was pressed before the question is no answer to it.
+            Update::Ask(_) | Update::Answered(_) => shared.response = None,
+            Update::Decide(_) => shared.decision = None,
+            _ => {}
+        }
+        shared.model.fold(update, at);
+        shared.undrawn_since = shared.undrawn_since.or(Some(at));
+    }
+
+    fn response(&mut self) -> Option<Response> {
+        self.desk.shared().response.take()
+    }
+
+    fn decision(&mut self) -> Option<Decision> {
+        if self.desk.stop.is_pressed() {
+            return Some(Decision::Stop);
+        }
+        self.desk.shared().decision.take()
+    }
+}
+
+impl MonitorPeople for WindowPeople {
+    fn order(&mut self) -> Option<Order> {
+        let mut shared = self.desk.shared();
+        if self.desk.stop.take() {
+            // Orders from before the stop do not come after it.
+            shared.order = None;
+            shared.model.set_stopped(false);
+            return Some(Order::Off);
+        }
+        shared.order.take()
+    }
+
+    fn is_closing(&self) -> bool {
+        self.desk.stop.is_closing()
+    }
+}
+
+impl Desk {
+    fn shared(&self) -> MutexGuard<'_, Shared> {
+        // A panic elsewhere leaves a model that can be shown, and a stop that must work.
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Time since the beginning.
+    #[must_use]
+    pub fn now(&self) -> Duration {
+        self.zero.elapsed()
+    }
+
+    /// The model for a frame, and how long its oldest update has waited for it.
+    #[must_use]
+    pub fn snapshot(&self) -> (Model, Option<Duration>) {
+        let mut shared = self.shared();
+        let waited = shared.undrawn_since.take();
+        let model = shared.model.clone();
+        (model, waited.map(|since| self.now().saturating_sub(since)))
+    }
+
+    /// The participant's answer; the first one to a question counts.
+    pub fn respond(&self, response: Response) {
+        let mut shared = self.shared();
+        let participant = shared.model.participant();
+        if participant.question.is_some() && !participant.answered {
+            shared.response = Some(response);
+            shared.model.responded();
+        }
+    }
+
+    /// The operator's decision; the first one to a question counts, and the stop always.
+    pub fn decide(&self, decision: Decision) {
+        if decision == Decision::Stop {
+            self.press_stop();
+            return;
+        }
+        let mut shared = self.shared();
+        if shared.model.question().is_some() {
+            shared.decision = Some(decision);
+            shared.model.decided();
+        }
+    }
+
+    /// An order to a monitored device.
+    pub fn order(&self, order: Order) {
+        if order == Order::Off {
+            self.press_stop();
+        } else {
+            self.shared().order = Some(order);
+        }
+    }
+
+    /// Stops: bridge off.
+    pub fn press_stop(&self) {
+        self.stop.press();
+        self.shared().model.set_stopped(true);
+    }
+
+    /// Stops, and closes the windows when the worker has ended.
+    pub fn close(&self) {
+        self.stop.press_and_close();
+        self.shared().model.set_stopped(true);
+    }
+
+    /// The stop.
+    #[must_use]
+    pub const fn stop(&self) -> &StopFlag {
+        &self.stop
+    }
+
+    /// The worker has ended: completed, or for a reason; the executor may have said so before.
+    pub fn end(&self, reason: Option<String>) {
+        let at = self.now();
+        let mut shared = self.shared();
+        if shared.model.end().is_none() {
+            shared.model.end_by(reason, at);
+        }
+    }
+}
