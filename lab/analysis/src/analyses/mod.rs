@@ -24,8 +24,11 @@ mod tukey;
 use crate::input::Task;
 use crate::report::{Section, TaskAnalysis};
 
+/// An analysis of a task.
+type Analyse = fn(&Task) -> Section;
+
 /// The analyses by their words, in the order of the page.
-const ANALYSES: [(&str, fn(&Task) -> Section); 20] = [
+const ANALYSES: [(&str, Analyse); 20] = [
     ("pairs", pairs::pairs),
     ("pairs-by-mode", pairs::by_mode),
     ("identical-pairs", identical::identical_pairs),

@@ -144,7 +144,7 @@ fn tasks() -> impl Strategy<Value = Task> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
     fn no_records_panic_or_give_a_number_that_is_not_finite(task in tasks()) {

@@ -136,3 +136,22 @@ fn published_results_stand_beside_those_of_shipped_sessions() {
             .all(|section| section.name != "published")
     );
 }
+
+#[test]
+fn same_or_different_has_no_sensitivity_of_a_choice_of_two() {
+    let analysis = of_task(&data::same_or_different(2));
+    let row = ["copper / abs", "R/S > 1"];
+    assert_eq!(
+        analysis.table("pairs-by-mode").cell(&row, "d' (2AFC)"),
+        &Cell::Nothing
+    );
+    assert_near(
+        analysis
+            .table("same-different")
+            .number(&["copper / abs"], "n"),
+        20.0,
+        0.0,
+    );
+    let anova = analysis.table("anova-within");
+    assert_near(anova.number(&["correct / %", "pair"], "n"), 2.0, 0.0);
+}
