@@ -381,6 +381,9 @@ fn courses_and_forces_come_from_the_telemetry() {
         let table = falls.table("exponential-fit");
         assert_near(table.number(&[&name], "time constant"), tau_s, 0.01);
         assert!(table.number(&[&name], "R²") > 0.9999);
+        // The course begins at the landing.
+        let at_landing_c = table.number(&[&name], "c") + table.number(&[&name], "a");
+        assert_near(at_landing_c, 34.5, 0.01);
         assert_near(table.number(&[&name], "n"), 6.0, 0.0);
     }
     assert_eq!(forces.table("force-courses").columns.len(), 6);
