@@ -8,7 +8,10 @@ const STYLE: &str = "body{max-width:76rem}table{font-size:.85rem;margin:.6rem 0 
 font-weight:600;padding:.3rem 0}td.n,th.n{text-align:right}td.n{font-variant-numeric:tabular-nums;white-space:nowrap}\
 figure{margin:1.2rem 0}figcaption{font-weight:600}.not{border-left:4px solid #b35900;padding-left:.8rem}\
 .simulated{border-left:4px solid #6639ba;padding-left:.8rem}nav ul{columns:2}th .u{font-weight:400;color:#666}\
-div.wide{overflow-x:auto}";
+div.wide,details{overflow-x:auto}details{margin-bottom:1.2rem}td.w{white-space:nowrap}";
+
+/// Letters of a cell from which it is wrapped.
+const WRAPPED: usize = 48;
 
 /// The page of all tasks.
 pub fn page(tasks: &[TaskAnalysis]) -> String {
@@ -28,6 +31,7 @@ pub fn page(tasks: &[TaskAnalysis]) -> String {
 
 fn of_task(task: &TaskAnalysis, is_one_of_many: bool) -> String {
     let mut body = String::new();
+    let heading = if is_one_of_many { "h3" } else { "h2" };
     if is_one_of_many {
         body += &format!("<h2>{}</h2>", escape(&task.title));
     }
@@ -42,7 +46,7 @@ fn of_task(task: &TaskAnalysis, is_one_of_many: bool) -> String {
     };
     body += "</p>";
     if task.is_simulated {
-        body += "<p class=\"simulated\">Participants and device were simulated: these are predictions, not measurements.</p>";
+        body += "<p class=\"simulated\">Participants that are marked as simulated below, and their device, were simulated: predictions, not measurements.</p>";
     }
     body += "<nav><ul>";
     for section in &task.sections {
@@ -56,7 +60,7 @@ fn of_task(task: &TaskAnalysis, is_one_of_many: bool) -> String {
     body + &task
         .sections
         .iter()
-        .map(|section| of_section(task, section))
+        .map(|section| of_section(task, section, heading))
         .collect::<String>()
 }
 
@@ -65,9 +69,9 @@ fn anchor(task: &TaskAnalysis, section: &Section) -> String {
     escape(&format!("{}-{}", task.task, section.name)).replace(['"', ' '], "-")
 }
 
-fn of_section(task: &TaskAnalysis, section: &Section) -> String {
+fn of_section(task: &TaskAnalysis, section: &Section, heading: &str) -> String {
     let mut text = format!(
-        "<h3 id=\"{}\">{}</h3>",
+        "<{heading} id=\"{}\">{}</{heading}>",
         anchor(task, section),
         escape(&section.title)
     );
@@ -93,6 +97,12 @@ fn of_section(task: &TaskAnalysis, section: &Section) -> String {
 }
 
 fn of_table(table: &Table) -> String {
+    // A column without any value, such as that of a score that the task has not, is in JSON and CSV only.
+    let has_value = |index: &usize| {
+        let mut cells = table.rows.iter().filter_map(|row| row.get(*index));
+        cells.any(|cell| *cell != Cell::Nothing)
+    };
+    let columns: Vec<usize> = (0..table.columns.len()).filter(has_value).collect();
     let is_number = |index: usize| {
         table
             .rows
@@ -113,7 +123,8 @@ fn of_table(table: &Table) -> String {
         )
     };
     let mut text = begin;
-    for (index, column) in table.columns.iter().enumerate() {
+    for &index in &columns {
+        let column = &table.columns[index];
         let unit = match column.unit {
             "" => String::new(),
             unit => format!(" <span class=\"u\">/ {}</span>", escape(unit)),
@@ -123,8 +134,14 @@ fn of_table(table: &Table) -> String {
     text += "</tr>";
     for row in &table.rows {
         text += "<tr>";
-        for (index, (cell, column)) in row.iter().zip(&table.columns).enumerate() {
-            text += &format!("<td{}>{}</td>", class(index), escape(&shown(cell, column)));
+        for &index in &columns {
+            let cell = row.get(index).unwrap_or(&Cell::Nothing);
+            let shown = shown(cell, &table.columns[index]);
+            let class = match class(index) {
+                "" if shown.chars().count() < WRAPPED => " class=\"w\"",
+                class => class,
+            };
+            text += &format!("<td{class}>{}</td>", escape(&shown));
         }
         text += "</tr>";
     }

@@ -4,7 +4,7 @@ use experiment_statistics::anova::{
     Effect, contrast_within, repeated_measures, split_plot as split_plot_of, two_within,
 };
 
-use super::design::{self, Contrast, Design};
+use super::design::{self, Contrast, Design, Marginal};
 use crate::cells::{Cells, distinct};
 use crate::input::Task;
 use crate::report::{Section, Table, cells, numbers, probabilities, words};
@@ -231,7 +231,7 @@ fn contrasts_of(design: &Design, table: &mut Table, section: &mut Section) {
     if design.contrast == Contrast::None || impossible(design).is_some() {
         return;
     }
-    let Some((_, levels, rows)) = design.marginal(0) else {
+    let Some(Marginal { levels, rows, .. }) = design.marginal(0) else {
         return;
     };
     let count = levels.len() as f64;

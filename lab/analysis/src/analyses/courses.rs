@@ -92,40 +92,41 @@ fn contacts(
 #[derive(Clone, Default)]
 struct Sums {
     contacts: usize,
-    cells: Vec<(f64, u32, usize)>,
+    /// Sums of the contacts' mean times and mean values, and number of contacts that have samples in the cell.
+    cells: Vec<(f64, f64, usize)>,
 }
 
 impl Sums {
-    /// Adds the samples of one contact.
+    /// Adds the samples of one contact, which counts once in each cell, however many samples it has there.
     fn add(&mut self, samples: &[(f64, f64)]) {
         if samples.is_empty() {
             return;
         }
         self.contacts += 1;
-        let mut last = None;
-        for (since_s, value) in samples {
-            let cell = (since_s / CELL_S) as usize;
-            if self.cells.len() <= cell {
-                self.cells.resize(cell + 1, (0.0, 0, 0));
+        let cell = |(since_s, _): &(f64, f64)| (since_s / CELL_S) as usize;
+        for of_cell in samples.chunk_by(|one, other| cell(one) == cell(other)) {
+            let index = cell(&of_cell[0]);
+            if self.cells.len() <= index {
+                self.cells.resize(index + 1, (0.0, 0.0, 0));
             }
-            let (sum, count, contacts) = &mut self.cells[cell];
-            *sum += value;
-            *count += 1;
-            if last != Some(cell) {
-                *contacts += 1;
-            }
-            last = Some(cell);
+            let (time, sum, contacts) = &mut self.cells[index];
+            let count = of_cell.len() as f64;
+            *time += of_cell.iter().map(|(since_s, _)| since_s).sum::<f64>() / count;
+            *sum += of_cell.iter().map(|(_, value)| value).sum::<f64>() / count;
+            *contacts += 1;
         }
     }
 
+    /// Mean time and mean value of each cell.
     fn points(&self) -> Vec<(f64, f64)> {
         let least = MOST * self.contacts as f64;
-        let cells = self.cells.iter().enumerate();
-        let whole =
-            cells.filter(|(_, (_, count, contacts))| *count > 0 && *contacts as f64 >= least);
-        whole
-            .map(|(cell, (sum, count, _))| ((cell as f64 + 0.5) * CELL_S, sum / f64::from(*count)))
-            .collect()
+        let whole = self
+            .cells
+            .iter()
+            .filter(|(.., contacts)| *contacts > 0 && *contacts as f64 >= least);
+        let means =
+            whole.map(|(time, sum, contacts)| (time / *contacts as f64, sum / *contacts as f64));
+        means.filter(|(_, mean)| mean.is_finite()).collect()
     }
 }
 
@@ -188,15 +189,15 @@ pub fn table(name: &str, caption: &str, unit: &'static str, courses: &[Course]) 
         .max()
         .unwrap_or(0);
     for cell in 0..longest {
-        let t_s = (cell as f64 + 0.5) * CELL_S;
+        let (from_s, to_s) = (cell as f64 * CELL_S, (cell + 1) as f64 * CELL_S);
         let at = |course: &Course| {
             course
                 .points
                 .iter()
-                .find(|(t, _)| (t - t_s).abs() < 0.5 * CELL_S)
+                .find(|(t, _)| (from_s..to_s).contains(t))
                 .map(|(_, y)| *y)
         };
-        let mut row = cells![t_s];
+        let mut row = cells![0.5 * (from_s + to_s)];
         row.extend(courses.iter().map(|course| at(course).into()));
         table.row(row);
     }
@@ -258,49 +259,34 @@ pub fn exponential_fit(task: &Task) -> Section {
             numbers("R²", "", 4),
         ],
     );
-    let mut curves = Vec::new();
-    for (series, course) in courses.iter().enumerate() {
-        let (t, y): (Vec<f64>, Vec<f64>) = course.points.iter().copied().unzip();
-        curves.push(Curve {
-            name: course.name.clone(),
-            color: color(series),
-            stroke: Stroke::Solid(2),
-            points: course.points.clone(),
-        });
-        match fit_exponential(&t, &y) {
-            Ok(fit) => {
-                let at = |t: f64| fit.offset + fit.amplitude * (-t / fit.time_constant).exp();
-                curves.push(Curve {
-                    name: "its fit".into(),
-                    color: color(series),
-                    stroke: Stroke::Dashed,
-                    points: t
-                        .iter()
-                        .map(|t| (*t, at(*t)))
-                        .filter(|(_, y)| y.is_finite())
-                        .collect(),
-                });
-                table.row(cells![
-                    course.name.clone(),
-                    course.contacts,
-                    fit.offset,
-                    fit.amplitude,
-                    fit.time_constant,
-                    fit.r_squared
-                ]);
-            }
-            Err(error) => section.lacks(&course.name, error),
+    let part_of = |course: &Course| {
+        course
+            .name
+            .rsplit_once(", ")
+            .map(|(part, _)| part.to_owned())
+    };
+    for part in distinct(courses.iter().map(part_of)) {
+        let own = courses.iter().filter(|course| part_of(course) == part);
+        let mut curves = Vec::new();
+        for (series, course) in own.enumerate() {
+            curves.extend(fitted(course, series, &mut table, &mut section));
         }
-    }
-    let times = positive_range(
-        curves
+        let times = curves
             .iter()
-            .flat_map(|curve| curve.points.iter().map(|(t, _)| *t)),
-    );
-    section.draw(
-        "Mean courses (lines) and fits (dashed)",
-        lines(times, "time since the landing / s", "skin / °C", &curves),
-    );
+            .flat_map(|curve| curve.points.iter().map(|(t, _)| *t));
+        section.draw(
+            format!(
+                "{}: mean courses (lines) and fits (dashed)",
+                part.unwrap_or_default()
+            ),
+            lines(
+                positive_range(times),
+                "time since the landing / s",
+                "skin / °C",
+                &curves,
+            ),
+        );
+    }
     section.add(table);
     section.add(self::table(
         "courses",
@@ -309,4 +295,44 @@ pub fn exponential_fit(task: &Task) -> Section {
         &courses,
     ));
     section
+}
+
+/// The curves of a course and of its fit, which gets a row.
+fn fitted(course: &Course, series: usize, table: &mut Table, section: &mut Section) -> Vec<Curve> {
+    let (t, y): (Vec<f64>, Vec<f64>) = course.points.iter().copied().unzip();
+    let material = course
+        .name
+        .rsplit_once(", ")
+        .map_or(&*course.name, |(_, material)| material);
+    let mut curves = vec![Curve {
+        name: material.into(),
+        color: color(series),
+        stroke: Stroke::Solid(2),
+        points: course.points.clone(),
+    }];
+    match fit_exponential(&t, &y) {
+        Ok(fit) => {
+            let at = |t: f64| fit.offset + fit.amplitude * (-t / fit.time_constant).exp();
+            curves.push(Curve {
+                name: "its fit".into(),
+                color: color(series),
+                stroke: Stroke::Dashed,
+                points: t
+                    .iter()
+                    .map(|t| (*t, at(*t)))
+                    .filter(|(_, y)| y.is_finite())
+                    .collect(),
+            });
+            table.row(cells![
+                course.name.clone(),
+                course.contacts,
+                fit.offset,
+                fit.amplitude,
+                fit.time_constant,
+                fit.r_squared
+            ]);
+        }
+        Err(error) => section.lacks(&course.name, error),
+    }
+    curves
 }

@@ -74,13 +74,13 @@ impl Design {
     }
 
     /// The cells of one factor alone, means over the levels of the other.
-    pub fn marginal(&self, factor: usize) -> Option<(&str, &[String], Vec<Vec<f64>>)> {
+    pub fn marginal(&self, factor: usize) -> Option<Marginal<'_>> {
         let (name, levels) = self.factors.get(factor)?;
-        let seconds = match self.factors.get(1) {
-            Some((_, seconds)) => seconds.len(),
-            None => return Some((name, levels, self.cells.rows.clone())),
-        };
+        let seconds = self.factors.get(1).map(|(_, seconds)| seconds.len());
         let row = |row: &Vec<f64>| -> Vec<f64> {
+            let Some(seconds) = seconds else {
+                return row.clone();
+            };
             let level = |level: usize| {
                 let cells = row
                     .iter()
@@ -93,8 +93,20 @@ impl Design {
             };
             (0..levels.len()).filter_map(level).collect()
         };
-        Some((name, levels, self.cells.rows.iter().map(row).collect()))
+        Some(Marginal {
+            factor: name,
+            levels,
+            rows: self.cells.rows.iter().map(row).collect(),
+        })
     }
+}
+
+/// The cells of one factor.
+pub struct Marginal<'a> {
+    pub factor: &'a str,
+    pub levels: &'a [String],
+    /// A row for each participant.
+    pub rows: Vec<Vec<f64>>,
 }
 
 /// The designs within participants, of what the session file asks for.

@@ -24,8 +24,11 @@ mod tukey;
 use crate::input::Task;
 use crate::report::{Section, TaskAnalysis};
 
+/// An analysis of a task.
+type Analyse = fn(&Task) -> Section;
+
 /// The analyses by their words, in the order of the page.
-const ANALYSES: [(&str, fn(&Task) -> Section); 20] = [
+const ANALYSES: [(&str, Analyse); 20] = [
     ("pairs", pairs::pairs),
     ("pairs-by-mode", pairs::by_mode),
     ("identical-pairs", identical::identical_pairs),
@@ -75,6 +78,18 @@ pub fn of_task(task: &Task) -> TaskAnalysis {
         sections,
     }
 }
+
+/// The words.
+#[cfg(test)]
+pub const WORDS: [&str; ANALYSES.len()] = {
+    let mut words = [""; ANALYSES.len()];
+    let mut index = 0;
+    while index < words.len() {
+        words[index] = ANALYSES[index].0;
+        index += 1;
+    }
+    words
+};
 
 /// Why a table of answers is empty.
 const NO_ANSWERS: &str = "no trial that counts has an answer that is scored";

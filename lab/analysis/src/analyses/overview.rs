@@ -58,8 +58,8 @@ pub fn participants(task: &Task) -> Section {
             participant.records.iter().filter(is_void).count(),
             trials.len(),
             silent,
-            correct,
-            scored.len(),
+            (!scored.is_empty()).then_some(correct),
+            (!scored.is_empty()).then_some(scored.len()),
             (!scored.is_empty()).then(|| 100.0 * correct as f64 / scored.len() as f64),
             median(trials.iter().filter_map(Trial::response_s)),
             begin_s
@@ -84,7 +84,7 @@ pub fn participants(task: &Task) -> Section {
     section
 }
 
-/// Reasons of void trials, their numbers left out so that like ones count together.
+/// Reasons of void trials, without their numbers, so that like ones count together.
 fn voids(task: &Task) -> Table {
     let mut table = Table::new(
         "voids",
@@ -107,7 +107,10 @@ fn voids(task: &Task) -> Table {
     let kind = |reason: &str| -> String {
         let words = reason
             .split(' ')
-            .filter(|word| word.trim_end_matches(',').parse::<f64>().is_err());
+            .map(|word| match word.trim_end_matches(',').parse::<f64>() {
+                Ok(_) => "…",
+                Err(_) => word,
+            });
         words.collect::<Vec<_>>().join(" ")
     };
     for reason in distinct(records().map(|(_, reason)| kind(reason))) {

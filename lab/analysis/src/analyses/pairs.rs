@@ -97,8 +97,7 @@ fn table_columns(mode: bool) -> Vec<Column> {
 
 /// d' of a choice of two, from the log-linear estimate; `None` where chance is not that of a choice of two.
 fn d_prime_of(task: &Task, share: &Share) -> Option<f64> {
-    let is_choice_of_two = task.chance == Some(0.5) && task.answers.len() == 2;
-    is_choice_of_two
+    is_choice_of_two(task)
         .then(|| d_prime(2, share.proportion()?.log_linear()).ok())
         .flatten()
 }
@@ -110,9 +109,18 @@ fn d_prime_note(task: &Task) -> String {
     let threshold = task.threshold.map_or(String::new(), |threshold| {
         format!("Told apart: at least {:.0} % correct. ", 100.0 * threshold)
     });
-    format!(
-        "{threshold}d' of a choice of two is √2 z(p), with p = (k + ½)/(n + 1), so that 0 and 100 % have one, too."
-    )
+    let d_prime = if is_choice_of_two(task) {
+        "d' of a choice of two is √2 z(p), with p = (k + ½)/(n + 1), so that 0 and 100 % have one, too."
+    } else {
+        "d' of a choice of two does not apply: the task is no choice of one of two stimuli."
+    };
+    threshold + d_prime
+}
+
+/// Whether the colder of two stations is named.
+fn is_choice_of_two(task: &Task) -> bool {
+    let is_station = |answer: &String| task.stations.contains(answer);
+    task.chance == Some(0.5) && task.answers.len() == 2 && task.answers.iter().all(is_station)
 }
 
 /// Answers by pair.

@@ -12,6 +12,8 @@ use crate::report::{Section, Table, cells, numbers, probabilities, words};
 const LAPSE_MAX: f64 = 0.06;
 /// Part between chance and certainty at which the threshold is taken: 75 % of a choice of two.
 const PART: f64 = 0.5;
+/// Relative difference below which levels are the same: a staircase multiplies and divides by its factor.
+const SAME_LEVEL: f64 = 1e-6;
 const SAMPLES: usize = 400;
 /// The same data give the same interval.
 const SEED: u64 = 1;
@@ -26,7 +28,10 @@ fn levels<'a>(trials: impl Iterator<Item = &'a Trial>) -> Vec<Level> {
         if level <= 0.0 {
             continue;
         }
-        let at = match counts.iter().position(|(known, ..)| *known == level) {
+        let at = match counts
+            .iter()
+            .position(|(known, ..)| (known / level - 1.0).abs() < SAME_LEVEL)
+        {
             Some(at) => at,
             None => {
                 counts.push((level, 0, 0));
@@ -54,7 +59,7 @@ pub fn psychometric_fit(task: &Task) -> Section {
     let proportion = chance + PART * (1.0 - chance);
     let mut section = Section::new("psychometric-fit", "Psychometric functions").note(format!(
         "Weibull functions, fitted by maximum likelihood, with chance {chance:.3} and a rate of lapses up to {LAPSE_MAX}. The \
-         threshold is the level with {:.1} % correct; its interval of 95 % is that of {SAMPLES} parametric bootstrap samples. p \
+         threshold is the level with {:.1} % correct; its interval of 95 % is that of {SAMPLES} parametric bootstrap samples, of all participants together. p \
          is that of the deviance: a small one says that the function does not describe the answers.",
         100.0 * proportion
     ));
@@ -103,11 +108,15 @@ pub fn psychometric_fit(task: &Task) -> Section {
                 fit.and_then(|fit| fit.threshold(proportion).map(|threshold| (fit, threshold)));
             match &fitted {
                 Ok((fit, threshold)) => {
-                    let bootstrap = fit.bootstrap(&levels, proportion, CONFIDENCE, SAMPLES, SEED);
-                    if let Err(error) = &bootstrap {
+                    let is_all = members.len() == task.participants.len();
+                    let bootstrap = is_all
+                        .then(|| fit.bootstrap(&levels, proportion, CONFIDENCE, SAMPLES, SEED));
+                    if let Some(Err(error)) = &bootstrap {
                         section.lacks(&format!("Interval of {condition}, {name}"), error);
                     }
-                    let interval = bootstrap.ok().map(|bootstrap| bootstrap.interval);
+                    let interval = bootstrap
+                        .and_then(Result::ok)
+                        .map(|bootstrap| bootstrap.interval);
                     table.row(cells![
                         condition.clone(),
                         name.clone(),

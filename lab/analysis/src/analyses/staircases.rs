@@ -53,6 +53,7 @@ pub fn staircase(task: &Task) -> Section {
     );
     for (index, (name, initial)) in task.staircases.iter().enumerate() {
         let mut curves = Vec::new();
+        let mut wrong_answers = Vec::new();
         let mut logarithms = Vec::new();
         for (series, participant) in task.participants.iter().enumerate() {
             let track = track(&participant.code, &participant.trials, index);
@@ -94,12 +95,7 @@ pub fn staircase(task: &Task) -> Section {
                 stroke: Stroke::Solid(2),
                 points: steps(&track.trials),
             });
-            curves.push(Curve {
-                name: "wrong answers".into(),
-                color: color(series),
-                stroke: Stroke::Dots,
-                points: wrong(&track.trials),
-            });
+            wrong_answers.extend(wrong(&track.trials));
         }
         if let Ok(test) = one_sample(&logarithms, 0.0) {
             let interval = test.interval(CONFIDENCE).ok();
@@ -114,13 +110,19 @@ pub fn staircase(task: &Task) -> Section {
             ]);
         }
         if !curves.is_empty() {
+            curves.push(Curve {
+                name: "wrong answers".into(),
+                color: color(7),
+                stroke: Stroke::Dots,
+                points: wrong_answers,
+            });
             let trials = positive_range(
                 curves
                     .iter()
                     .flat_map(|curve| curve.points.iter().map(|(x, _)| *x)),
             );
             section.draw(
-                format!("{name}: level by trial (lines) and wrong answers (dots)"),
+                format!("{name}: level by trial (lines) and wrong answers (dots); −1 is 0.1 K"),
                 lines(
                     trials,
                     "trial of the staircase",

@@ -4,7 +4,7 @@ use experiment_statistics::anova::{repeated_measures, two_within};
 use experiment_statistics::tukey::tukey as compare;
 
 use super::anova::impossible;
-use super::design::{self, Design};
+use super::design::{self, Design, Marginal};
 use crate::cells::mean;
 use crate::input::Task;
 use crate::report::{Section, Table, cells, numbers, probabilities, words};
@@ -66,7 +66,12 @@ fn levels(design: &Design, table: &mut Table, section: &mut Section) {
         return section.lacks(&design.dependent, why);
     }
     for factor in 0..design.factors.len() {
-        let Some((name, levels, rows)) = design.marginal(factor) else {
+        let Some(Marginal {
+            factor: name,
+            levels,
+            rows,
+        }) = design.marginal(factor)
+        else {
             continue;
         };
         // Two means are compared by the analysis of variance itself.

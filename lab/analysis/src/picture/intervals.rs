@@ -5,8 +5,8 @@ use plotters::style::text_anchor::HPos;
 
 use super::{FONT, GREY, color, svg, text_style, width};
 
-/// Height of a row and of the axis, pixels.
-const ROW: i32 = 24;
+/// Height of a row beside that of its series, and of the axis, pixels.
+const ROW: i32 = 17;
 const AXIS: i32 = 52;
 const WIDTH: i32 = 560;
 const MARGIN: i32 = 16;
@@ -47,8 +47,9 @@ impl Intervals<'_> {
         } else {
             90
         };
+        let height = ROW + APART * self.series.len().max(1) as i32;
         let names = if self.lines.is_empty() { MARGIN } else { 26 };
-        let bottom = names + ROW * rows.len() as i32;
+        let bottom = names + height * rows.len() as i32;
         let (low, high) = self.range;
         let x = |value: f64| {
             let part = ((value - low) / (high - low)).clamp(0.0, 1.0);
@@ -56,7 +57,7 @@ impl Intervals<'_> {
         };
         svg((left + WIDTH + legend + MARGIN, bottom + AXIS), |root| {
             for i in 0..rows.len() as i32 {
-                let y = names + ROW * i + ROW / 2;
+                let y = names + height * i + height / 2;
                 let grid = [(left, y), (left + WIDTH, y)];
                 root.draw(&PathElement::new(grid, BLACK.mix(0.08)))?;
             }
@@ -90,7 +91,7 @@ impl Intervals<'_> {
                 text_style(HPos::Center, BLACK),
             ))?;
             for (i, row) in rows.iter().enumerate() {
-                let y = names + ROW * i as i32 + ROW / 2;
+                let y = names + height * i as i32 + height / 2;
                 let name = Text::new(
                     (*row).to_owned(),
                     (left - 10, y),
@@ -110,7 +111,7 @@ impl Intervals<'_> {
             }
             if has_legend {
                 for (i, name) in self.series.iter().enumerate() {
-                    let at = (left + WIDTH + 24, names + ROW * i as i32 + ROW / 2);
+                    let at = (left + WIDTH + 24, names + 24 * i as i32 + 12);
                     root.draw(&Circle::new(at, 4, color(i).filled()))?;
                     root.draw(&Text::new(*name, (at.0 + 12, at.1 - FONT.1 / 2), FONT))?;
                 }

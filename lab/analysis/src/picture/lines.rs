@@ -6,7 +6,10 @@ use thermal_charts::{Curve, Legend, Panel};
 
 use super::svg;
 
-const SIZE: (i32, i32) = (1000, 380);
+const WIDTH: i32 = 1000;
+const HEIGHT: i32 = 380;
+/// Height of a line of the legend, pixels.
+const LINE: i32 = 20;
 
 /// Draws curves with a legend beside them.
 pub fn lines(
@@ -22,7 +25,8 @@ pub fn lines(
         y_name,
         legend: Legend::Beside(longest.unwrap_or(0) as u32 + 60),
     };
-    svg(SIZE, |root| panel.draw(root, curves))
+    let height = HEIGHT.max(LINE * curves.len() as i32 + 40);
+    svg((WIDTH, height), |root| panel.draw(root, curves))
 }
 
 /// The range from 0 to the largest of the values, which is not empty.

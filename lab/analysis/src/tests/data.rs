@@ -369,7 +369,7 @@ pub fn falls(participants: usize, folder: &Path) -> Task {
         }
         telemetry.push_str("torn li");
         let mut own = participant(&format!("P{person:02}"), trials);
-        own.telemetry = folder.join(format!("{}.csv", own.code));
+        own.telemetry = folder.join(format!("{}-{}.csv", task.name, own.code));
         std::fs::write(&own.telemetry, telemetry).expect("a folder of the test");
         task.participants.push(own);
     }
@@ -422,7 +422,7 @@ pub fn forces(participants: usize, folder: &Path) -> Task {
             }
         }
         let mut own = participant(&format!("P{person:02}"), trials);
-        own.telemetry = folder.join(format!("{}.csv", own.code));
+        own.telemetry = folder.join(format!("{}-{}.csv", task.name, own.code));
         std::fs::write(&own.telemetry, telemetry).expect("a folder of the test");
         task.participants.push(own);
     }

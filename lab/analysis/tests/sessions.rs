@@ -1,0 +1,174 @@
+//! The ready sessions, answered by chance, and their analyses.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use session_analysis::{TaskAnalysis, analyse};
+use thermal_session::dataset::{Folder, RecordedSession, SessionInfo};
+use thermal_session::record::{StationRecord, TrialRecord};
+use thermal_session::{ANALYSES, AnswerKind, Plan, PlannedTrial, Presented, Session};
+
+fn files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sessions");
+    let entries = std::fs::read_dir(folder).expect("the ready sessions");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let mut files: Vec<_> = paths
+        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
+        .collect();
+    files.sort();
+    files
+}
+
+/// A number from 0 to below 1 that looks random.
+fn scrambled(number: u32) -> f64 {
+    f64::from(number.wrapping_mul(2_654_435_769) >> 8) / f64::from(1u32 << 24)
+}
+
+fn record(session: &Session, planned: &PlannedTrial, person: u32) -> TrialRecord {
+    let chance = |salt: u32| scrambled(planned.number * 31 + person * 7919 + salt);
+    let answer = session.answer.as_ref().map(|answer| match &answer.kind {
+        AnswerKind::OneOf(words) => words[(chance(1) * words.len() as f64) as usize].clone(),
+        AnswerKind::NumberPerStation(low, high) => {
+            let number = |salt: u32| (low + (high - low) * chance(salt)).round().to_string();
+            (0..session.stations.len() as u32)
+                .map(number)
+                .collect::<Vec<_>>()
+                .join(";")
+        }
+    });
+    let begin_s = 30.0 * f64::from(planned.number);
+    let station = |(index, presented): (usize, &Presented)| StationRecord {
+        presented: presented.to_string(),
+        land_s: Some(begin_s + 5.0),
+        skin_before_c: Some(34.0),
+        skin_fall_k: Some(1.0 + chance(50 + index as u32)),
+        force_mean_n: Some(1.0 + chance(60)),
+        force_end_mean_n: planned.target_force_n,
+        force_error_rms_n: Some(0.1 * chance(61)),
+        force_settled_s: Some(chance(62)),
+        ..StationRecord::default()
+    };
+    TrialRecord {
+        trial: planned.number,
+        attempt: 1,
+        part: planned.part.clone(),
+        block: planned.block,
+        levels: planned.levels.clone(),
+        staircase_level_k: planned.staircase.map(|_| 0.05 + chance(70)),
+        begin_s,
+        land_s: Some(begin_s + 5.0),
+        lift_s: Some(begin_s + 15.0),
+        answer_s: Some(begin_s + 6.0 + 5.0 * chance(80)),
+        end_s: begin_s + 20.0,
+        target_force_n: planned.target_force_n,
+        is_correct: planned
+            .correct
+            .as_ref()
+            .map(|correct| Some(correct) == answer.as_ref()),
+        expected: planned.correct.clone(),
+        answer,
+        room_c: Some(24.0),
+        stations: planned.presented.iter().enumerate().map(station).collect(),
+        ..TrialRecord::default()
+    }
+}
+
+/// A session that somebody who guesses has done.
+fn recorded(session: &Session, person: u32) -> RecordedSession {
+    let participant = format!("P{person}");
+    let plan = Plan::new(session, &participant, 1).expect("a plan");
+    let records = plan
+        .trials
+        .iter()
+        .map(|planned| record(session, planned, person));
+    RecordedSession {
+        folder: Folder::new(Path::new("no such folder"), &participant, &session.task),
+        info: SessionInfo {
+            title: session.title.clone(),
+            task: session.task.clone(),
+            cite: session.cite.clone(),
+            participant,
+            seed: 1,
+            is_simulated: true,
+            program_version: String::new(),
+            session_sha256: String::new(),
+            plan_sha256: String::new(),
+            device: None,
+        },
+        records: records.collect(),
+        session: session.clone(),
+        plan,
+        log: Vec::new(),
+    }
+}
+
+fn of_one(sessions: &[RecordedSession]) -> TaskAnalysis {
+    let mut tasks = analyse(sessions).tasks;
+    assert_eq!(tasks.len(), 1);
+    tasks.remove(0)
+}
+
+#[test]
+fn every_word_of_the_ready_sessions_gives_its_tables() {
+    assert!(files().len() >= 11);
+    for file in files() {
+        let session = Session::read(&file).expect("a session");
+        let sessions: Vec<_> = (1..=3).map(|person| recorded(&session, person)).collect();
+        let analysis = of_one(&sessions);
+        for word in &session.score.analyses {
+            let section = analysis
+                .sections
+                .iter()
+                .find(|section| section.name == *word);
+            let section = section.unwrap_or_else(|| panic!("{}: {word}", file.display()));
+            // Courses need telemetry, and two windows are too few for a correlation.
+            if word != "exponential-fit"
+                && (session.task.as_str(), &**word) != ("p8", "pearson-with-model")
+            {
+                assert!(
+                    !section.tables.is_empty(),
+                    "{}: {word}: {:?}",
+                    file.display(),
+                    section.not_possible
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_analyses_are_those_that_a_session_file_may_ask_for() {
+    let mut session = Session::read(&files()[0]).expect("a session");
+    session.score.analyses = ANALYSES
+        .iter()
+        .map(|(word, _)| (*word).to_owned())
+        .collect();
+    let analysis = of_one(&[recorded(&session, 1)]);
+    let known: BTreeSet<_> = analysis
+        .sections
+        .iter()
+        .map(|section| section.name.clone())
+        .collect();
+    for word in &session.score.analyses {
+        assert!(known.contains(word), "{word}");
+    }
+    let unknown = "this version knows no such analysis";
+    let mut sentences = analysis
+        .sections
+        .iter()
+        .flat_map(|section| &section.not_possible);
+    assert!(!sentences.any(|sentence| sentence.contains(unknown)));
+}
+
+#[test]
+fn sessions_of_several_tasks_are_analysed_apart() {
+    let sessions: Vec<_> = files()
+        .iter()
+        .map(|file| recorded(&Session::read(file).expect("a session"), 1))
+        .collect();
+    let analysis = analyse(&sessions);
+    assert_eq!(analysis.tasks.len(), sessions.len());
+    assert!(analysis.page().contains("<h1>Analysis of experiments</h1>"));
+    let names: BTreeSet<_> = analysis.csv().into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names.len(), analysis.csv().len());
+}
