@@ -10,6 +10,8 @@ pub mod published;
 mod text;
 
 use contact_model::material::{Material, find};
+use experiment_statistics::StatisticsError;
+use experiment_statistics::correlation::pearson;
 use serde::Serialize;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
@@ -38,6 +40,9 @@ pub enum PredictionError {
     /// The simulated bench.
     #[error(transparent)]
     Bench(#[from] BenchError),
+    /// The answers have no correlation.
+    #[error(transparent)]
+    Statistics(#[from] StatisticsError),
     /// The search for the most likely observer.
     #[error("the fit failed: {0}")]
     Fit(String),
@@ -496,7 +501,7 @@ fn identification(observer: &ObserverParams) -> Result<Identification, Predictio
         diagonal.collect()
     });
     let [real, simulated] = &confusions;
-    let correlation = correlation(&real.concat(), &simulated.concat());
+    let correlation = pearson(&real.concat(), &simulated.concat())?.r;
     let overall: Vec<f64> = confusions
         .iter()
         .map(|rows| 100.0 * overall(rows))
@@ -536,18 +541,6 @@ fn identification(observer: &ObserverParams) -> Result<Identification, Predictio
         correlation,
         checks,
     })
-}
-
-/// Pearson's correlation.
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let (mean_a, mean_b) = (mean(a.iter().copied()), mean(b.iter().copied()));
-    let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
-        a.iter()
-            .zip(b)
-            .map(|(a, b)| of(a - mean_a, b - mean_b))
-            .sum()
-    };
-    sum(&|a, b| a * b) / (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt()
 }
 
 /// Section 4.3 at these temperatures of skin and room, °C, with both displays.
@@ -796,3 +789,6 @@ pub fn report() -> Result<Report, PredictionError> {
         without_table_3_3,
     })
 }
+
+#[cfg(test)]
+mod tests;
