@@ -10,6 +10,7 @@ use std::time::Duration;
 use contact_model::material::Material;
 use serde::Serialize;
 use thermal_client::link::{LineSplitter, Link, LinkError, ReceivedLine};
+use thermal_device::command::AssumedFinger;
 use thermal_plant::finger::FingerParams;
 use thermal_plant::parameters::stream_seed;
 use thermal_plant::{ConfigError, Params};
@@ -462,6 +463,7 @@ fn task(
         room_c: options.room_c,
         hand: participant.hand,
         contact: ContactRule::Free,
+        assumed_finger: AssumedFinger::default(),
         decision_median_s: participant.observer.decision_median_s,
         decision_sigma_ln: participant.observer.decision_sigma_ln,
     };

@@ -58,7 +58,11 @@ fn published_means_are_those_of_the_text() {
 
 #[test]
 fn the_display_of_this_device_is_nearer_to_a_sample_that_is_touched_once() {
-    let setup = setup(SECTION_4_3_C, ContactRule::Hold);
+    let setup = Condition {
+        lifts: false,
+        ..Condition::of_thesis(SECTION_4_3_C)
+    }
+    .setup();
     let device =
         PreparedDevice::new(&setup.params, setup.room_c, DEVICE_SEED, 1).expect("a device");
     let exploration = Exploration::new(&setup, 0);
