@@ -1,5 +1,6 @@
 //! Operator and participant at one terminal, without a window: plain lines out, lines of standard input in.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::sync::mpsc::TryRecvError;
 
@@ -29,7 +30,8 @@ pub struct TerminalPeople<'a> {
     response: Option<Response>,
     decision: Option<Decision>,
     order: Option<Order>,
-    state: Option<StateName>,
+    /// Last state of each finger.
+    states: BTreeMap<Option<u8>, StateName>,
     last_tick: Option<u32>,
     ended: bool,
 }
@@ -55,7 +57,7 @@ impl<'a> TerminalPeople<'a> {
             response: None,
             decision: None,
             order: None,
-            state: None,
+            states: BTreeMap::new(),
             last_tick: None,
             ended: false,
         }
@@ -171,10 +173,13 @@ impl<'a> TerminalPeople<'a> {
     /// State when it changes, and readings once a second.
     fn telemetry(&mut self, received: &ReceivedTelemetry) {
         let telemetry = &received.telemetry;
-        if self.state != Some(telemetry.state) {
-            self.state = Some(telemetry.state);
+        let before = self.states.insert(received.finger, telemetry.state);
+        if before != Some(telemetry.state) {
             let (word, meaning) = texts::state(telemetry.state);
-            self.tell(&format!("{word}: {meaning}"));
+            let of = received
+                .finger
+                .map_or(String::new(), |finger| format!("finger {finger}: "));
+            self.tell(&format!("{of}{word}: {meaning}"));
             if let Some(fault) = telemetry.fault() {
                 let words = thermal_client::fault_words(fault);
                 self.tell(&format!(

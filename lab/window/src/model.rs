@@ -245,6 +245,7 @@ impl Model {
     /// The worker has ended, completed or for a reason.
     pub(crate) fn end_by(&mut self, reason: Option<String>, at: Duration) {
         self.set_question(None);
+        self.stopped = false;
         self.participant = ParticipantView {
             stations: std::mem::take(&mut self.participant.stations),
             phase: Some(Phase::End),
@@ -306,7 +307,7 @@ impl Model {
     /// What the session waits for.
     #[must_use]
     pub fn gate(&self, now: Duration) -> Option<Gate> {
-        let (phase, since) = self.phase?;
+        let (phase, since) = self.phase.filter(|_| self.end.is_none())?;
         let outline = self.outline.as_ref()?;
         let waiting = Waiting {
             phase,

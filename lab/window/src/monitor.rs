@@ -66,9 +66,37 @@ pub fn monitor<L: Link>(
     people: &mut impl MonitorPeople,
     interval_ms: u32,
 ) -> Result<(), ClientError> {
+    let watched = watch(client, people, interval_ms);
+    // Also after a failure: the bridge may be driven.
+    let off = carry_out(client, Order::Off);
+    if let Ok(text) = &off {
+        people.inform(&Update::Notice(text.clone()));
+    }
+    match watched {
+        // Whoever closes the window interrupts the wait, too.
+        Ok(()) | Err(ClientError::Link(LinkError::Interrupted)) => {
+            off?;
+            client.ask(&PlainCommand::stream(0))
+        }
+        failed => failed,
+    }
+}
+
+fn watch<L: Link>(
+    client: &mut Client<L>,
+    people: &mut impl MonitorPeople,
+    interval_ms: u32,
+) -> Result<(), ClientError> {
     let identity = client.ask(&QueryIdentity)?;
-    if identity.can("events") {
-        client.ask(&PlainCommand::Events(true))?;
+    people.inform(&Update::Notice(format!(
+        "connected: {} {}, {} finger(s)",
+        identity.name, identity.version, identity.fingers
+    )));
+    match client.ask(&PlainCommand::Events(true)) {
+        Ok(()) => {}
+        // Firmware from before there were events.
+        Err(error) if error.refusal().is_some() => {}
+        Err(error) => return Err(error),
     }
     client.ask(&PlainCommand::stream(interval_ms))?;
     while !people.is_closing() {
@@ -87,9 +115,7 @@ pub fn monitor<L: Link>(
             people.inform(&Update::Notice(text));
         }
     }
-    let off = carry_out(client, Order::Off)?;
-    people.inform(&Update::Notice(off));
-    client.ask(&PlainCommand::stream(0))
+    Ok(())
 }
 
 fn event_text(received: &ReceivedEvent) -> String {
@@ -121,10 +147,7 @@ fn carry_out<L: Link>(client: &mut Client<L>, order: Order) -> Result<String, Cl
     match answer {
         Ok(()) if order == Order::Off => Ok("bridge off".into()),
         Ok(()) => Ok(format!("`{}`: ok", order.word())),
-        Err(ClientError::Link(LinkError::Interrupted)) => {
-            Ok(format!("`{}` was interrupted by the stop", order.word()))
-        }
-        Err(ClientError::Link(error)) => Err(error.into()),
+        Err(ClientError::Link(error @ LinkError::Gone(_))) => Err(error.into()),
         Err(error) if order == Order::Off => Ok(format!(
             "the device has not confirmed that the bridge is off: {error}. PRESS THE EMERGENCY STOP"
         )),

@@ -87,6 +87,7 @@ pub fn run_window<T: Send, E: Display + Send>(
         };
         // Two windows that wait for the monitor one after the other would have half its rate.
         native.glow_options.vsync = false;
+        let gone = WindowGone(&stop);
         let (desk, running, latency, end) = (&desk, &running, &latency, desk.clone());
         let shown = eframe::run_native(
             &title,
@@ -116,7 +117,7 @@ pub fn run_window<T: Send, E: Display + Send>(
                 }))
             }),
         );
-        stop.press_and_close();
+        drop(gone);
         let handle = lock(&handle).take();
         match (handle, shown) {
             (Some(handle), _) => Ok(Shown {
@@ -133,6 +134,16 @@ pub fn run_window<T: Send, E: Display + Send>(
 
 fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Stops the worker when the windows are gone, also by a panic of the toolkit, as when another program destroys a window: the scope
+/// then waits for the worker, which nobody could stop any more.
+struct WindowGone<'a>(&'a StopFlag);
+
+impl Drop for WindowGone<'_> {
+    fn drop(&mut self) {
+        self.0.press_and_close();
+    }
 }
 
 /// Says that the worker has ended, also by a panic.

@@ -173,13 +173,19 @@ impl Desk {
     /// Stops: bridge off.
     pub fn press_stop(&self) {
         self.stop.press();
-        self.shared().model.set_stopped(true);
+        self.show_stop();
+    }
+
+    fn show_stop(&self) {
+        let mut shared = self.shared();
+        let is_running = shared.model.end().is_none();
+        shared.model.set_stopped(is_running);
     }
 
     /// Stops, and closes the windows when the worker has ended.
     pub fn close(&self) {
         self.stop.press_and_close();
-        self.shared().model.set_stopped(true);
+        self.show_stop();
     }
 
     /// The stop.

@@ -11,6 +11,7 @@ use anyhow::{Result, bail};
 
 pub use components::Lints;
 pub use ngspice::install_ngspice;
+pub use python::package_python;
 pub use toolchain::{Choice, TARGET, Toolchain};
 
 /// The environment variable with the choice of the cross toolchain, inherited by calls of `cargo xtask firmware` from
@@ -39,6 +40,8 @@ pub struct Needs {
     pub generators: bool,
     /// ngspice, for the simulated circuits.
     pub circuits: bool,
+    /// A virtual environment for the package of `python/`.
+    pub package: bool,
 }
 
 impl Needs {
@@ -49,6 +52,7 @@ impl Needs {
         lints: false,
         generators: false,
         circuits: false,
+        package: false,
     };
 }
 
@@ -105,6 +109,9 @@ pub fn prepare(needs: Needs, permission: Permission) -> Result<Toolchain> {
                 }
                 if needs.circuits {
                     install_ngspice(permission);
+                }
+                if needs.package {
+                    python::install_package_needs(permission);
                 }
                 eprintln!("cross compiler: {toolchain}");
                 return Ok(toolchain);

@@ -6,7 +6,8 @@ use anyhow::{Context, Result, ensure};
 
 /// Licences that a dependency may have, by their SPDX identifiers. A program that contains the dependency may be passed on under
 /// MIT or Apache-2.0, with the notices of these licences.
-const ALLOWED: [&str; 8] = [
+/// OFL-1.1 and Ubuntu-font-1.0 are those of the fonts that windows contain; programs may contain them.
+const ALLOWED: [&str; 11] = [
     "0BSD",
     "Apache-2.0",
     "BSD-3-Clause",
@@ -14,7 +15,10 @@ const ALLOWED: [&str; 8] = [
     "ISC",
     "MIT",
     "NCSA",
+    "OFL-1.1",
+    "Ubuntu-font-1.0",
     "Unicode-3.0",
+    "Zlib",
 ];
 /// Licence of the emulator.
 pub const OF_EMULATOR: &str = "GPL-2.0";

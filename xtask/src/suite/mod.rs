@@ -8,7 +8,7 @@ use documented_figures::{GENERATORS_REQUIRED, python_with_mpmath};
 
 use crate::auxiliary_image;
 use crate::firmware::{self, Fingers};
-use crate::process::Invocation;
+use crate::process::{Invocation, workspace};
 use crate::setup::{self, Choice, Lints, Needs, Permission, Toolchain};
 use crate::step::Steps;
 use lanes::{Check, Lane};
@@ -58,6 +58,45 @@ fn figures() -> Check {
     check("figures of the documentation", ["xtask docs --check"])
 }
 
+/// The package of `python/`, with the interpreter of its virtual environment, at simulated devices of the program that the tests
+/// of the workspace have built.
+fn package(python: Option<&str>) -> Check {
+    let why = "python/ has no virtual environment; the set-up has said why";
+    let commands = python.ok_or(why).map(|python| {
+        let run = |line: &str| {
+            let words = line.split(' ').map(String::from);
+            // Nothing but the sources stays in the folder.
+            Invocation::new(python, words).env("PYTHONDONTWRITEBYTECODE", "1")
+        };
+        let hil_sim = workspace().join("target/release/hil-sim");
+        let tests = run("-m pytest -q -c python/pyproject.toml --rootdir python python/tests");
+        vec![
+            run("-m pip install --disable-pip-version-check --quiet --no-index --no-deps --no-build-isolation \
+                 --force-reinstall ./python"),
+            run("-m mypy --config-file python/pyproject.toml --cache-dir target/python-package/mypy \
+                 python/src python/tests python/examples"),
+            tests.env("THERMAL_DISPLAY_HIL_SIM", hil_sim.to_string_lossy()),
+        ]
+    });
+    Check {
+        title: "package for Python",
+        commands,
+    }
+}
+
+/// The windows, whose toolkit takes minutes to compile with optimisations: what they show is tested without a display, in the dev
+/// profile and without debug information, and the rest is checked, which generates no code.
+fn windows(lints: Lints) -> Check {
+    let clippy = "clippy --release --package thermal-lab --features window -- -Dwarnings";
+    let tests = "test --package thermal-window --features views --quiet";
+    let lines = [clippy, tests].map(|line| cargo(line).env("CARGO_PROFILE_DEV_DEBUG", "0"));
+    let check = Check {
+        title: "windows, without a display",
+        commands: Ok(lines.into()),
+    };
+    only_if(lints.clippy, NO_CLIPPY, check)
+}
+
 fn units(members: &[Member]) -> Check {
     let small = members::options(members, Member::is_small);
     let line = format!("test --release --quiet {small} --lib --bins --tests");
@@ -89,7 +128,12 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
 
 /// All checks: phases, in each of which lanes run side by side. Programs of the host are compiled in the release profile only,
 /// in which integer overflow panics, too.
-fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> {
+fn whole(
+    toolchain: &Toolchain,
+    choice: Choice,
+    lints: Lints,
+    python: Option<&str>,
+) -> Vec<Vec<Lane>> {
     let firmware_lints = lints.clippy || matches!(toolchain, Toolchain::Distribution(_));
     let image = |title, line| Check {
         title,
@@ -136,6 +180,7 @@ fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> 
             "test programs",
             ["test --release --workspace --no-run --quiet"],
         ),
+        windows(lints),
     ];
     let tests = choice.handed_to(cargo("test --release --workspace --no-fail-fast"));
     let on_target = choice.handed_to(cargo("xtask on-target --emulated --check"));
@@ -153,6 +198,7 @@ fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> 
                     title: "tests for a bare board, on the emulated one",
                     commands: Ok(vec![on_target]),
                 },
+                package(python),
             ],
         ],
     ]
@@ -165,7 +211,8 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
         if quick_only {
             quick(&members, lints)
         } else {
-            whole(toolchain, permission.choice, lints)
+            let python = setup::package_python();
+            whole(toolchain, permission.choice, lints, python.as_deref())
         }
     };
     let all = phases(&Toolchain::Active, Lints::ALL);
@@ -178,6 +225,7 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
                 lints: true,
                 generators: true,
                 circuits: !quick_only,
+                package: !quick_only,
             };
             Ok((setup::prepare(needs, permission)?, setup::lints()?))
         })?;
@@ -195,15 +243,15 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
 mod tests {
     use super::*;
 
-    fn checks(lints: Lints) -> Vec<Check> {
-        let phases = whole(&Toolchain::Active, Choice::Auto, lints);
+    fn checks(lints: Lints, python: Option<&str>) -> Vec<Check> {
+        let phases = whole(&Toolchain::Active, Choice::Auto, lints, python);
         phases.into_iter().flatten().flatten().collect()
     }
 
     /// Compiling it takes more than a minute for each profile.
     #[test]
     fn the_emulator_is_compiled_in_the_release_profile_only() {
-        for check in checks(Lints::ALL) {
+        for check in checks(Lints::ALL, Some("python3")) {
             for line in check.commands.unwrap() {
                 let line = line.to_string();
                 assert!(!line.contains("--workspace") || line.contains("--release"));
@@ -213,15 +261,17 @@ mod tests {
 
     #[test]
     fn a_missing_tool_leaves_out_its_own_checks_only() {
-        let skipped = |rustfmt, clippy| {
-            let checks = checks(Lints { rustfmt, clippy });
+        let skipped = |rustfmt, clippy, python| {
+            let checks = checks(Lints { rustfmt, clippy }, python);
             checks
                 .iter()
                 .filter(|check| check.commands.is_err())
                 .count()
         };
-        assert_eq!(skipped(true, true), 0);
-        assert_eq!(skipped(false, true), 1);
-        assert_eq!(skipped(true, false), 2);
+        let python = Some("python3");
+        assert_eq!(skipped(true, true, python), 0);
+        assert_eq!(skipped(false, true, python), 1);
+        assert_eq!(skipped(true, false, python), 2);
+        assert_eq!(skipped(true, true, None), 1);
     }
 }

@@ -34,7 +34,6 @@ pub(super) fn describe(folder: &Folder) -> Result<(), RecordingError> {
         "BIDSVersion": BIDS_VERSION,
         "DatasetType": "raw",
         "License": "n/a",
-        "Authors": ["n/a"],
         "GeneratedBy": [{ "Name": "thermal-lab", "Version": env!("CARGO_PKG_VERSION") }],
     });
     let participants = json!({ "participant_id": { "Description": "Code of the participant" } });

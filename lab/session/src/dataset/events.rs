@@ -303,6 +303,13 @@ pub(super) fn sidecar(session: &Session, plan: &Plan) -> Value {
     });
     let mut all: Map<String, Value> = described.collect();
     all.insert("TaskName".into(), session.title.clone().into());
+    all.insert("TaskDescription".into(), session.cite.clone().into());
     all.insert("Instructions".into(), session.instruction.clone().into());
+    let software = json!({
+        "OperatingSystem": "n/a",
+        "SoftwareName": "thermal-lab",
+        "SoftwareVersion": env!("CARGO_PKG_VERSION"),
+    });
+    all.insert("StimulusPresentation".into(), software);
     Value::Object(all)
 }

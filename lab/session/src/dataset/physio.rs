@@ -119,6 +119,7 @@ pub(super) fn sidecar(interval_ms: u32) -> Value {
     let mut about = json!({
         "SamplingFrequency": 1e3 / f64::from(interval_ms),
         "StartTime": 0.0,
+        "PhysioType": "generic",
         "Columns": names,
     });
     for (name, unit, description, _) in COLUMNS {

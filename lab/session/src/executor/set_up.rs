@@ -27,7 +27,6 @@ impl<L: Link> Executor<'_, L> {
             let common = [
                 PlainCommand::Checksum(true),
                 PlainCommand::Events(true),
-                PlainCommand::stream(device.stream_ms),
                 PlainCommand::Law(device.law),
                 PlainCommand::Mode(device.mode),
                 PlainCommand::AssumedFinger(device.assumed_finger),
@@ -36,6 +35,9 @@ impl<L: Link> Executor<'_, L> {
             ];
             for command in &common {
                 self.command(None, command)?;
+            }
+            for finger in &displays {
+                self.command(Some(*finger), &PlainCommand::stream(device.stream_ms))?;
             }
             self.choose_materials(trial)?;
         }

@@ -204,7 +204,7 @@ proptest! {
     }
 
     #[test]
-    fn a_tail_falls(f in 0.0..50.0f64, step in 0.01..5.0f64, a in 0.5..30.0f64, b in 0.5..300.0f64) {
+    fn a_tail_falls(f in 0.0..50.0f64, step in 0.01..5.0f64, a in 0.5..30.0f64, b in 1.0..300.0f64) {
         prop_assert!(f_tail(f + step, a, b) .expect("a p") <= f_tail(f, a, b).expect("a p"));
         prop_assert!(chi_square_tail(f + step, a).expect("a p") <= chi_square_tail(f, a).expect("a p"));
         let q = |q| studentized_range_tail(q, 4, b).expect("a p");

@@ -166,16 +166,27 @@ fn choose(ui: &mut Ui, words: &[String], size: f32) -> Option<Response> {
         if index < 9 {
             let cap = place.left_top() + vec2(size * 0.45, size * 0.35);
             let font = FontId::proportional(size * 0.6);
-            let arrow = match word.to_lowercase().as_str() {
-                "left" => "  ←",
-                "right" => "  →",
-                _ => "",
-            };
-            let text = format!("{}{arrow}", index + 1);
-            ui.painter().text(cap, Align2::LEFT_TOP, text, font, CALM);
+            ui.painter()
+                .text(cap, Align2::LEFT_TOP, index + 1, font, CALM);
+            let beside = cap + vec2(size * 0.8, size * 0.38);
+            let of_two = (words.len() == 2).then_some(index);
+            key_arrow(ui.painter(), word, of_two, beside, size);
         }
     }
     chosen
+}
+
+/// The arrow key of an answer that has one. It is drawn, because the font has no arrows.
+fn key_arrow(painter: &Painter, word: &str, of_two: Option<usize>, at: Pos2, size: f32) {
+    let length = vec2(size * 0.7, 0.0);
+    let stroke = Stroke::new(size * 0.06, CALM);
+    match (word.to_lowercase().as_str(), of_two) {
+        ("left", _) => painter.arrow(at + length, -length, stroke),
+        ("right", _) => painter.arrow(at, length, stroke),
+        (_, Some(0)) => painter.arrow(at + length, -length, stroke),
+        (_, Some(_)) => painter.arrow(at, length, stroke),
+        (_, None) => {}
+    }
 }
 
 /// A line for each station: its name, a scale, the number.

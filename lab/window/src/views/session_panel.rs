@@ -55,7 +55,8 @@ fn session(ui: &mut Ui, model: &Model, now: Duration) {
         let done = trial.number.saturating_sub(1) as f32 / view.of.max(1) as f32;
         ui.add(ProgressBar::new(done).desired_height(8.0));
     }
-    if let Some((phase, since)) = model.phase() {
+    let running = model.phase().filter(|_| model.end().is_none());
+    if let Some((phase, since)) = running {
         ui.separator();
         let passed = now.saturating_sub(since).as_secs_f64();
         ui.horizontal(|ui| {
@@ -68,7 +69,7 @@ fn session(ui: &mut Ui, model: &Model, now: Duration) {
         show_gate(ui, &gate);
     }
     let placement = model.placement();
-    if !placement.is_empty() {
+    if !placement.is_empty() && model.end().is_none() {
         ui.separator();
         ui.label(RichText::new("What goes where").strong());
         for line in placement {

@@ -25,12 +25,12 @@ pub const AMBER: Color32 = Color32::from_rgb(0xF2, 0xB1, 0x34);
 pub const fn colours(dark: bool) -> Colours {
     if dark {
         Colours {
-            setpoint: Color32::from_rgb(0x8C, 0x8C, 0x8C),
+            setpoint: Color32::from_rgb(0x70, 0x70, 0x70),
             display: Color32::from_rgb(0x56, 0xB4, 0xE9),
             skin: Color32::from_rgb(0xE6, 0x9F, 0x00),
             force: Color32::from_rgb(0x2B, 0xC4, 0x9A),
             current: Color32::from_rgb(0xE2, 0x9B, 0xC4),
-            demand: Color32::from_rgb(0x8C, 0x8C, 0x8C),
+            demand: Color32::from_rgb(0x70, 0x70, 0x70),
             warning: Color32::from_rgb(0xF0, 0xC0, 0x50),
             alarm: Color32::from_rgb(0xFF, 0x7A, 0x70),
             good: Color32::from_rgb(0x5E, 0xD0, 0x90),

@@ -1,0 +1,260 @@
+"""Telemetry: lines, the buffer that they go to, and how many were lost."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import TelemetryTimeout
+from .words import TELEMETRY_FIELDS, State, TelemetryField
+
+if TYPE_CHECKING:
+    from .connection import Connection
+
+TELEMETRY_DTYPE: np.dtype[Any] = np.dtype(
+    [
+        ("tick", np.uint32),
+        ("finger", np.uint8),
+        ("state", "U9"),
+        ("setpoint_c", np.float64),
+        ("display_c", np.float64),
+        ("sink_c", np.float64),
+        ("skin_c", np.float64),
+        ("room_c", np.float64),
+        ("force_n", np.float64),
+        ("demand_a", np.float64),
+        ("current_a", np.float64),
+        ("evaluations", np.int64),
+        ("remark", "U18"),
+        ("host_s", np.float64),
+        ("received_s", np.float64),
+        ("lost_before", np.uint32),
+    ]
+)
+"""Rows of telemetry. `tick` in ms since the device's reset; temperatures in °C, force in N, currents in A; NaN, and -1 for
+`evaluations`, is what the device does not know or was not asked for. `host_s` is when the tick happened and `received_s` when the
+line arrived, both s of `time.perf_counter()`. `lost_before` lines are missing before this one."""
+
+TelemetryArray = np.ndarray[Any, np.dtype[np.void]]
+"""One-dimensional structured array of `TELEMETRY_DTYPE`."""
+
+_NAN = float("nan")
+_COLUMN = {field: index for index, field in enumerate(TELEMETRY_FIELDS)}
+_STATES = frozenset(state.value for state in State)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One row of telemetry; see `TELEMETRY_DTYPE`."""
+
+    tick: int
+    finger: int
+    state: State
+    setpoint_c: float
+    display_c: float
+    sink_c: float
+    skin_c: float
+    room_c: float
+    force_n: float
+    demand_a: float
+    current_a: float
+    evaluations: int
+    remark: str
+    host_s: float
+    received_s: float
+    lost_before: int
+
+    @property
+    def fault(self) -> str | None:
+        """The fault by which the device is tripped."""
+        return self.remark if self.state is State.TRIPPED else None
+
+    @property
+    def limited(self) -> bool:
+        """Whether the set-point is limited."""
+        return self.remark == "limited"
+
+
+@dataclass(frozen=True)
+class Stream:
+    """What a finger streams."""
+
+    interval_ms: int
+    """0 if it does not stream."""
+    fields: tuple[TelemetryField, ...]
+    """In the order of a line."""
+
+
+@dataclass(frozen=True)
+class LineCounts:
+    """Lines that were not received as they were sent."""
+
+    lost: int = 0
+    """Telemetry lines that never came, by their ticks."""
+    damaged: int = 0
+    """Lines with a wrong checksum, or that are neither telemetry nor event nor answer."""
+    overwritten: int = 0
+    """Telemetry lines that came and were not taken before the buffer was full."""
+
+
+def parse_line(
+    content: str, fields: tuple[TelemetryField, ...]
+) -> tuple[int, str, list[float], int, str] | None:
+    """Tick, state, numbers, evaluations and remark of a line without finger and checksum; `None` if it is no telemetry
+    with these fields."""
+    words = content.split(" ")
+    count = len(fields)
+    # A line with all fields may have more words from a later firmware.
+    if len(words) < count + 4 or (count < len(TELEMETRY_FIELDS) and len(words) != count + 4):
+        return None
+    if words[0] != "T" or words[2] not in _STATES:
+        return None
+    numbers = [_NAN] * 8
+    evaluations = -1
+    try:
+        tick = int(words[1])
+        for field, word in zip(fields, words[3:]):
+            if word == "-":
+                continue
+            if field == "evaluations":
+                evaluations = int(word)
+            else:
+                numbers[_COLUMN[field]] = float(word)
+    except ValueError:
+        return None
+    if not 0 <= tick < 1 << 32:
+        return None
+    return tick, words[2], numbers, evaluations, words[3 + count]
+
+
+class TelemetryBuffer:
+    """Ring of rows: filled by the thread that reads the line, emptied by the user's."""
+
+    def __init__(self, rows: int) -> None:
+        self._rows: TelemetryArray = np.zeros(rows, dtype=TELEMETRY_DTYPE)
+        self._written = 0
+        self._taken = 0
+        self._overwritten = 0
+        self._latest: dict[int, tuple[Any, ...]] = {}
+        self._last_finger = 0
+        self.changed = threading.Condition()
+
+    def put(self, row: tuple[Any, ...]) -> None:
+        """Appends a row; the oldest one that was not taken goes if the buffer is full."""
+        with self.changed:
+            self._rows[self._written % len(self._rows)] = row
+            self._written += 1
+            if self._written - self._taken > len(self._rows):
+                self._taken += 1
+                self._overwritten += 1
+            self._last_finger = row[1]
+            self._latest[self._last_finger] = row
+            self.changed.notify_all()
+
+    def take(self) -> TelemetryArray:
+        """All rows that were not taken yet, oldest first."""
+        with self.changed:
+            size = len(self._rows)
+            indices = np.arange(self._taken, self._written) % size
+            self._taken = self._written
+            taken: TelemetryArray = self._rows[indices]
+            return taken
+
+    def latest(self, finger: int | None) -> Sample | None:
+        """The last row of a finger, or of any."""
+        row = self._latest.get(self._last_finger if finger is None else finger)
+        if row is None:
+            return None
+        tick, of, state, *values = row
+        return Sample(tick, of, State(state), *values)
+
+    @property
+    def waiting(self) -> int:
+        """Rows that were not taken yet."""
+        return self._written - self._taken
+
+    @property
+    def overwritten(self) -> int:
+        """Rows that were not taken in time."""
+        return self._overwritten
+
+    def forget_latest(self) -> None:
+        """The device has restarted or streams something else: what was the latest row is none any more."""
+        with self.changed:
+            self._latest.clear()
+
+
+class Telemetry:
+    """Telemetry of a device while it streams. All functions may be called from any thread."""
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self._buffer = connection.telemetry
+
+    def take(self) -> TelemetryArray:
+        """All rows since the last `take`, oldest first, as a structured array of `TELEMETRY_DTYPE`; does not wait."""
+        return self._buffer.take()
+
+    def latest(self, finger: int | None = None) -> Sample | None:
+        """The last row of a finger, or of any; `None` before the first one. Does not wait and takes nothing away."""
+        return self._buffer.latest(finger)
+
+    @property
+    def waiting(self) -> int:
+        """Rows that `take` would return."""
+        return self._buffer.waiting
+
+    def wait(self, rows: int = 1, timeout_s: float = 1.0) -> TelemetryArray:
+        """Waits until there are at least `rows` rows that were not taken, and takes all.
+
+        Raises `TelemetryTimeout`, and takes nothing, if there are not after `timeout_s`.
+        """
+        end_s = time.perf_counter() + timeout_s
+        with self._buffer.changed:
+            while self._buffer.waiting < rows:
+                self._connection.raise_if_unusable()
+                rest_s = end_s - time.perf_counter()
+                if rest_s <= 0:
+                    raise TelemetryTimeout(
+                        f"{self._buffer.waiting} rows of telemetry within {timeout_s:g} s instead of {rows}; "
+                        + self._connection.stream_in_words()
+                    )
+                self._buffer.changed.wait(min(rest_s, 0.1))
+        return self.take()
+
+    def wait_for(
+        self,
+        condition: Callable[[Sample], bool],
+        timeout_s: float = 5.0,
+        finger: int | None = None,
+    ) -> Sample:
+        """Waits for a sample that satisfies a condition, such as `lambda sample: sample.force_n > 0.5`. Takes nothing away.
+
+        Raises `TelemetryTimeout` after `timeout_s`, and `DeviceTripped` if the device trips meanwhile. Between two looks samples
+        may pass unseen.
+        """
+        end_s = time.perf_counter() + timeout_s
+        while True:
+            # A condition may be for a tripped device, so its row is looked at before the trip is an error.
+            trip = self._connection.trip(finger)
+            with self._buffer.changed:
+                sample = self._buffer.latest(finger)
+                if sample is not None and condition(sample):
+                    return sample
+                rest_s = end_s - time.perf_counter()
+                if rest_s > 0 and trip is None:
+                    self._buffer.changed.wait(min(rest_s, 0.1))
+            self._connection.raise_if_unusable()
+            if trip is not None:
+                self._connection.raise_if_tripped(finger, "what was waited for does not come")
+            if rest_s <= 0:
+                raise TelemetryTimeout(
+                    f"no telemetry satisfied the condition within {timeout_s:g} s; the last is {sample}; "
+                    + self._connection.stream_in_words()
+                )

@@ -1,0 +1,101 @@
+"""Words of the serial protocol."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Literal
+
+
+class State(str, Enum):
+    """State of a finger of the device."""
+
+    OFF = "off"
+    """Bridge off; nothing has been tested."""
+    SELF_TEST = "self-test"
+    """The self-test runs."""
+    READY = "ready"
+    """Bridge off; the self-test has been passed."""
+    ARMED = "armed"
+    """Display at skin temperature."""
+    PRESET = "preset"
+    """An object is presented, and no finger is on it."""
+    CONTACT = "contact"
+    """An object is presented to the finger on it."""
+    STIMULUS = "stimulus"
+    """The display follows the host: `hold`, `play`, `pulse`."""
+    TRIPPED = "tripped"
+    """Bridge off; a fault is latched until `clear`."""
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether the bridge may drive the tile in this state."""
+        return self not in (State.OFF, State.READY, State.TRIPPED)
+
+    def __str__(self) -> str:
+        return self.value
+
+
+class EventKind(str, Enum):
+    """Kind of an event."""
+
+    LAND = "land"
+    """A finger has landed."""
+    LIFT = "lift"
+    """A finger has lifted."""
+    START = "start"
+    """A course has started."""
+    END = "end"
+    """A course has ended by itself."""
+    TRIGGER = "trigger"
+    """A rising edge at the trigger input."""
+
+    def __str__(self) -> str:
+        return self.value
+
+
+Material = Literal[
+    "copper", "bronze", "stainless-steel", "granite", "g10", "abs", "foam", "baf2", "zns"
+]
+"""Materials that the device knows by name."""
+
+AssumedFinger = Literal["mean", "mean-on-pad", "thesis"]
+"""Finger that the device assumes for the one that touches."""
+
+ContactMode = Literal["contact", "semi-infinite"]
+"""Set-point with contact resistance, or for perfect contact."""
+
+Law = Literal["model", "pi", "pi-10hz"]
+"""Control law."""
+
+PlayStart = Literal["now", "trigger", "landing"]
+"""When a course starts: in the next tick, at the trigger input, or when the next finger lands."""
+
+PlayEnd = Literal["hold", "neutral"]
+"""What follows a course: its last temperature, or skin temperature in the state `armed`."""
+
+SlabBack = Literal["insulated", "held"]
+"""What is behind a slab: no heat passes, or the temperature stays."""
+
+TriggerEvent = Literal["land", "lift", "start", "end"]
+"""Events that can give a pulse at the trigger output."""
+
+Thermistor = Literal["display", "check", "sink", "skin", "room"]
+"""Thermistors; `check` is the second one of the display."""
+
+TelemetryField = Literal[
+    "setpoint", "display", "sink", "skin", "room", "force", "demand", "current", "evaluations"
+]
+"""Fields of telemetry that `stream` can choose."""
+
+TELEMETRY_FIELDS: tuple[TelemetryField, ...] = (
+    "setpoint",
+    "display",
+    "sink",
+    "skin",
+    "room",
+    "force",
+    "demand",
+    "current",
+    "evaluations",
+)
+"""All fields, in the order of a line."""
