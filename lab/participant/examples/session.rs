@@ -4,6 +4,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use thermal_client::client::Client;
 use thermal_client::link::Link;
 use thermal_participant::{Bench, BenchOptions};
 use thermal_session::dataset::Recorder;
@@ -25,8 +26,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let who = (code.as_str(), seed);
         let mut recorder = Recorder::create(Path::new(folder), &session, &plan, who, true)?;
         let mut people = bench.people();
-        Executor::new(&session, bench.link(), &mut people, &mut recorder)
-            .run(&plan, Schedule::new(&session, &plan))?;
+        Executor::new(
+            &session,
+            Client::new(bench.link()),
+            &mut people,
+            &mut recorder,
+        )
+        .run(&plan, Schedule::new(&session, &plan))?;
         let records = recorder.records();
         trials += records.len();
         void += records

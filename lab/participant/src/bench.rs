@@ -10,6 +10,7 @@ use std::time::Duration;
 use contact_model::material::Material;
 use serde::Serialize;
 use thermal_client::link::{LineSplitter, Link, LinkError, ReceivedLine};
+use thermal_device::command::AssumedFinger;
 use thermal_plant::finger::FingerParams;
 use thermal_plant::parameters::stream_seed;
 use thermal_plant::{ConfigError, Params};
@@ -62,8 +63,8 @@ pub struct BenchOptions {
     pub hand: HandParams,
     /// Skin temperatures.
     pub skin: SkinParams,
-    /// The finger at every station.
-    pub finger: FingerParams,
+    /// The finger at every station; `None` for the one that the session's device is told to assume, or the thesis's without one.
+    pub finger: Option<FingerParams>,
     /// Room temperature, °C; also that of samples.
     pub room_c: f64,
     /// Weight of the skin under the contact in the temperature at the skin thermistor, 0 to 1; `None` for that of the plant.
@@ -80,7 +81,7 @@ impl Default for BenchOptions {
             observer: None,
             hand: HandParams::TYPICAL,
             skin: SkinParams::TYPICAL,
-            finger: FingerParams::homogeneous(),
+            finger: None,
             room_c: 24.0,
             edge_share: None,
             device_seed: 1,
@@ -90,10 +91,19 @@ impl Default for BenchOptions {
 }
 
 impl BenchOptions {
-    /// Parameters of plants with this finger.
-    fn params(&self) -> Params {
+    /// Parameters of plants with the finger of a session.
+    fn params(&self, session: &Session) -> Params {
+        let assumed = session.device.as_ref().map(|device| device.assumed_finger);
         let mut params = Params::nominal();
-        params.finger = self.finger.clone();
+        params.finger = self.finger.clone().unwrap_or_else(|| match assumed {
+            None | Some(AssumedFinger::Thesis) => FingerParams::homogeneous(),
+            Some(AssumedFinger::Mean) => FingerParams::layered(),
+            // A finger that comes from an insulating pad loses no heat before the contact.
+            Some(AssumedFinger::MeanOnPad) => FingerParams {
+                air_w_m2k: 0.0,
+                ..FingerParams::layered()
+            },
+        });
         if let Some(share) = self.edge_share {
             params.sensors.skin_sees_contact = share;
         }
@@ -183,7 +193,7 @@ impl Bench {
             .unwrap_or_else(|| ObserverParams::of_session(session));
         let participant =
             Participant::new(session, code, seed, &options.skin, options.hand, observer);
-        let params = options.params();
+        let params = options.params(session);
         let stations = || plan.trials.iter().flat_map(|trial| &trial.presented);
         for presented in stations() {
             if let Presented::Sample { material } = presented {
@@ -462,6 +472,7 @@ fn task(
         room_c: options.room_c,
         hand: participant.hand,
         contact: ContactRule::Free,
+        assumed_finger: AssumedFinger::default(),
         decision_median_s: participant.observer.decision_median_s,
         decision_sigma_ln: participant.observer.decision_sigma_ln,
     };

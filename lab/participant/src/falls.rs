@@ -6,6 +6,7 @@ use contact_model::material::Material;
 use thermal_client::client::{Client, ClientError, PlainCommand, QueryState};
 use thermal_client::link::LinkError;
 use thermal_device::StateName;
+use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_plant::object::ObjectConfig;
@@ -41,6 +42,8 @@ pub struct TouchSetup {
     pub hand: HandParams,
     /// How it touches.
     pub contact: ContactRule,
+    /// The finger that a display is to assume.
+    pub assumed_finger: AssumedFinger,
     /// Median of the time to the decision, s.
     pub decision_median_s: f64,
     /// Standard deviation of its logarithm.
@@ -109,6 +112,7 @@ impl Exploration {
         for command in [
             PlainCommand::Law(law),
             PlainCommand::Mode(mode),
+            PlainCommand::AssumedFinger(setup.assumed_finger),
             PlainCommand::Material(material.into()),
             PlainCommand::ObjectTemperature(None),
         ] {

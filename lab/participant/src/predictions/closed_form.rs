@@ -1,17 +1,10 @@
 //! Proportions of correct answers in closed form, for falls without differences between touches.
 
-use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+
+use experiment_statistics::distribution::{normal_cdf, normal_density};
 
 use crate::ObserverParams;
-
-/// Distribution function of the standard normal distribution.
-fn normal_cdf(z: f64) -> f64 {
-    0.5 * libm::erfc(-z * FRAC_1_SQRT_2)
-}
-
-fn normal_density(z: f64) -> f64 {
-    libm::exp(-0.5 * z * z) / (2.0 * PI).sqrt()
-}
 
 /// Answers of an observer who sometimes answers at random among `answers`.
 fn with_lapses(observer: &ObserverParams, answers: f64, proportion: f64) -> f64 {
@@ -47,7 +40,7 @@ pub fn different(observer: &ObserverParams, target_k: f64, distractor_k: f64) ->
     let distractor_sd_k = factor * observer.sigma_k(distractor_k);
     let off_k = target_k - distractor_k;
     let u_sd_k = libm::hypot(target_sd_k, distractor_sd_k * FRAC_1_SQRT_2);
-    let d_sd_k = distractor_sd_k * std::f64::consts::SQRT_2;
+    let d_sd_k = distractor_sd_k * SQRT_2;
     if u_sd_k == 0.0 {
         let proportion = if off_k == 0.0 { 1.0 / 3.0 } else { 1.0 };
         return with_lapses(observer, 3.0, proportion);
@@ -108,11 +101,12 @@ pub fn identified(observer: &ObserverParams, fall_k: f64, expected_k: &[f64]) ->
 
 #[cfg(test)]
 mod tests {
+    use experiment_statistics::sensitivity::proportion_correct_oddity;
+
     use super::*;
 
     #[test]
     fn proportions_of_the_different_one_are_those_of_the_triangular_method() {
-        // d' of one standard deviation and more, from a simulation.
         let observer = ObserverParams {
             s0_k: 1.0,
             w: 0.0,
@@ -120,9 +114,13 @@ mod tests {
             lapse: 0.0,
             ..ObserverParams::TOUCH
         };
-        for (d, proportion) in [(0.0, 1.0 / 3.0), (1.0, 0.418), (1.83, 0.571), (3.0, 0.781)] {
+        for d in [0.0, 0.5, 1.0, 1.83, 3.0] {
             let predicted = different(&observer, d, 0.0);
-            assert!((predicted - proportion).abs() < 1e-3, "{d}: {predicted}");
+            let exact = proportion_correct_oddity(d).expect("a sensitivity");
+            assert!(
+                (predicted - exact).abs() < 1e-4,
+                "{d}: {predicted}, {exact}"
+            );
         }
     }
 

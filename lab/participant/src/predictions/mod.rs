@@ -10,10 +10,14 @@ pub mod published;
 mod text;
 
 use contact_model::material::{Material, find};
+use experiment_statistics::StatisticsError;
+use experiment_statistics::correlation::pearson;
 use serde::Serialize;
+use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_plant::Params;
+use thermal_plant::finger::FingerParams;
 use thermal_session::ContactRule;
 
 use crate::device::PreparedDevice;
@@ -38,6 +42,9 @@ pub enum PredictionError {
     /// The simulated bench.
     #[error(transparent)]
     Bench(#[from] BenchError),
+    /// The answers have no correlation.
+    #[error(transparent)]
+    Statistics(#[from] StatisticsError),
     /// The search for the most likely observer.
     #[error("the fit failed: {0}")]
     Fit(String),
@@ -179,10 +186,8 @@ pub struct IdenticalResult {
 /// Section 4.3 with both displays.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RealAgainstSimulated {
-    /// Skin and room, °C.
-    pub skin_room_c: (f64, f64),
-    /// Whether the participants lift and replace their fingers, as in the thesis.
-    pub lifts: bool,
+    /// Who touches, and how.
+    pub condition: Condition,
     /// Pairs of different materials.
     pub pairs: Vec<PairResult>,
     /// Mean per cent correct over them.
@@ -232,22 +237,57 @@ pub struct Report {
     pub tables: Vec<TableResult>,
     /// Section 4.2.
     pub identification: Identification,
-    /// Section 4.3 at its gate, with the skin that it reports, and at its gate with one touch in place of many.
-    pub real_against_simulated: [RealAgainstSimulated; 3],
+    /// Section 4.3 at its gate, with the skin that it reports, at its gate with one touch in place of many, and at its gate with
+    /// fingers of layered tissue.
+    pub real_against_simulated: Vec<RealAgainstSimulated>,
     /// Worth of errors of the skin's temperature.
     pub worth: Vec<Worth>,
 }
 
-/// Finger, room and hand of a section, with a participant at its temperatures, °C.
-fn setup((skin_c, room_c): (f64, f64), contact: ContactRule) -> TouchSetup {
-    TouchSetup {
-        params: Params::nominal(),
-        skin_c,
-        room_c,
-        hand: HandParams::TYPICAL,
-        contact,
-        decision_median_s: ObserverParams::TOUCH.decision_median_s,
-        decision_sigma_ln: ObserverParams::TOUCH.decision_sigma_ln,
+/// Who touches, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Condition {
+    /// Skin and room, °C.
+    pub skin_room_c: (f64, f64),
+    /// Whether the participants lift and replace their fingers, as in the thesis, or touch once.
+    pub lifts: bool,
+    /// Whether their fingers are layered tissue with blood, or the thesis's half-spaces; displays assume what they are.
+    pub is_layered: bool,
+}
+
+impl Condition {
+    /// The thesis's finger, which is lifted and replaced.
+    const fn of_thesis(skin_room_c: (f64, f64)) -> Self {
+        Self {
+            skin_room_c,
+            lifts: true,
+            is_layered: false,
+        }
+    }
+
+    fn setup(&self) -> TouchSetup {
+        let (skin_c, room_c) = self.skin_room_c;
+        let mut params = Params::nominal();
+        let assumed_finger = if self.is_layered {
+            params.finger = FingerParams::layered();
+            AssumedFinger::Mean
+        } else {
+            AssumedFinger::Thesis
+        };
+        TouchSetup {
+            params,
+            skin_c,
+            room_c,
+            hand: HandParams::TYPICAL,
+            contact: if self.lifts {
+                ContactRule::Free
+            } else {
+                ContactRule::Hold
+            },
+            assumed_finger,
+            decision_median_s: ObserverParams::TOUCH.decision_median_s,
+            decision_sigma_ln: ObserverParams::TOUCH.decision_sigma_ln,
+        }
     }
 }
 
@@ -260,7 +300,7 @@ fn material(name: &str) -> Result<&'static Material, BenchError> {
 /// # Errors
 /// The simulated plant does not accept a value.
 pub fn falls_of_chapter_3() -> Result<Falls, PredictionError> {
-    let setup = setup(SECTION_3, ContactRule::Free);
+    let setup = Condition::of_thesis(SECTION_3).setup();
     let names = TABLE_3_3_MATERIALS.iter().chain(&["granite"]);
     let falls_k: Result<Vec<_>, BenchError> = names
         .map(|name| Ok(((*name).to_owned(), mean_fall_k(&setup, material(name)?)?)))
@@ -420,12 +460,11 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 
 /// Mean falls of explorations on samples, and on the display in each of `modes`, K: a row for each material.
 fn falls_on_samples_and_displays(
-    skin_room_c: (f64, f64),
-    contact: ContactRule,
+    condition: Condition,
     materials: &[&str],
     modes: &[DisplayMode],
 ) -> Result<Vec<Vec<f64>>, PredictionError> {
-    let setup = setup(skin_room_c, contact);
+    let setup = condition.setup();
     let device = PreparedDevice::new(&setup.params, setup.room_c, DEVICE_SEED, 1)?;
     let explorations: Vec<Exploration> = (0..EXPLORATIONS)
         .map(|number| Exploration::new(&setup, number))
@@ -450,8 +489,7 @@ fn falls_on_samples_and_displays(
 /// Section 4.2, whose factor is fitted to both overall percentages.
 fn identification(observer: &ObserverParams) -> Result<Identification, PredictionError> {
     let falls_k = falls_on_samples_and_displays(
-        SECTION_4_2_C,
-        ContactRule::Free,
+        Condition::of_thesis(SECTION_4_2_C),
         &SECTION_4_2_MATERIALS,
         &[DisplayMode::SemiInfinitePi10Hz],
     )?;
@@ -496,7 +534,7 @@ fn identification(observer: &ObserverParams) -> Result<Identification, Predictio
         diagonal.collect()
     });
     let [real, simulated] = &confusions;
-    let correlation = correlation(&real.concat(), &simulated.concat());
+    let correlation = pearson(&real.concat(), &simulated.concat())?.r;
     let overall: Vec<f64> = confusions
         .iter()
         .map(|rows| 100.0 * overall(rows))
@@ -538,33 +576,16 @@ fn identification(observer: &ObserverParams) -> Result<Identification, Predictio
     })
 }
 
-/// Pearson's correlation.
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let (mean_a, mean_b) = (mean(a.iter().copied()), mean(b.iter().copied()));
-    let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
-        a.iter()
-            .zip(b)
-            .map(|(a, b)| of(a - mean_a, b - mean_b))
-            .sum()
-    };
-    sum(&|a, b| a * b) / (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt()
-}
-
-/// Section 4.3 at these temperatures of skin and room, °C, with both displays.
+/// Section 4.3 in a condition, with both displays.
 ///
 /// # Errors
 /// The simulated device cannot present something.
 pub fn real_against_simulated(
     observer: &ObserverParams,
-    skin_room_c: (f64, f64),
-    contact: ContactRule,
+    condition: Condition,
 ) -> Result<RealAgainstSimulated, PredictionError> {
-    let falls_k = falls_on_samples_and_displays(
-        skin_room_c,
-        contact,
-        &SECTION_4_3_MATERIALS,
-        &DisplayMode::ALL,
-    )?;
+    let falls_k =
+        falls_on_samples_and_displays(condition, &SECTION_4_3_MATERIALS, &DisplayMode::ALL)?;
     let named = || SECTION_4_3_MATERIALS.iter().zip(&falls_k).enumerate();
     let (mut pairs, mut identical) = (Vec::new(), Vec::new());
     for (of_real, (real, real_row)) in named() {
@@ -601,8 +622,7 @@ pub fn real_against_simulated(
         .iter()
         .map(|pair| (pair.correct[1] - pair.correct[0]).abs());
     Ok(RealAgainstSimulated {
-        skin_room_c,
-        lifts: contact == ContactRule::Free,
+        condition,
         means,
         largest_difference: differences.fold(0.0, f64::max),
         checks: check_section_4_3(&pairs, &identical),
@@ -781,14 +801,25 @@ pub fn report() -> Result<Report, PredictionError> {
         ),
     ];
     let observer = fitted.observer();
+    let at_gate = Condition::of_thesis(SECTION_4_3_C);
+    let conditions = [
+        at_gate,
+        Condition::of_thesis(SECTION_4_3_REPORTED_C),
+        Condition {
+            lifts: false,
+            ..at_gate
+        },
+        Condition {
+            is_layered: true,
+            ..at_gate
+        },
+    ];
+    let conditions = conditions.map(|condition| real_against_simulated(&observer, condition));
+    let conditions = conditions.into_iter();
     Ok(Report {
         tables,
         identification: identification(&observer)?,
-        real_against_simulated: [
-            real_against_simulated(&observer, SECTION_4_3_C, ContactRule::Free)?,
-            real_against_simulated(&observer, SECTION_4_3_REPORTED_C, ContactRule::Free)?,
-            real_against_simulated(&observer, SECTION_4_3_C, ContactRule::Hold)?,
-        ],
+        real_against_simulated: conditions.collect::<Result<_, _>>()?,
         worth: worth(&observer, &falls),
         falls,
         fitted,
@@ -796,3 +827,6 @@ pub fn report() -> Result<Report, PredictionError> {
         without_table_3_3,
     })
 }
+
+#[cfg(test)]
+mod tests;

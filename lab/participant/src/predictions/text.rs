@@ -114,16 +114,21 @@ impl fmt::Display for Identification {
 
 impl fmt::Display for RealAgainstSimulated {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (skin_c, room_c) = self.skin_room_c;
+        let (skin_c, room_c) = self.condition.skin_room_c;
         let [first, second] = DisplayMode::ALL.map(DisplayMode::words);
-        let touches = if self.lifts {
+        let finger = if self.condition.is_layered {
+            "layered finger"
+        } else {
+            "the thesis's finger"
+        };
+        let touches = if self.condition.lifts {
             "lifting and replacing"
         } else {
             "one touch"
         };
         writeln!(
             f,
-            "\nSection 4.3 (P5), predicted, {skin_c}/{room_c} C, {touches}: {first} and {second}"
+            "\nSection 4.3 (P5), predicted, {skin_c}/{room_c} C, {touches}, {finger}: {first} and {second}"
         )?;
         for pair in &self.pairs {
             let [a, b] = pair.correct;

@@ -97,6 +97,25 @@ fn thresholds_come_down_to_the_noise_of_the_observer() {
 }
 
 #[test]
+fn a_display_that_assumes_the_finger_feels_like_the_sample() {
+    let file = "p5-real-and-simulated-contact-model.toml";
+    let ran = run("p5-contact", &session(file, &[]), noise_free(), 16);
+    let identical = (ran.observations.iter()).filter(|felt| {
+        let words = |station: usize| felt.presented[station].rsplit(' ').next();
+        words(0) == words(1)
+    });
+    let mut pairs = 0;
+    for felt in identical {
+        let [Some(left_k), Some(right_k)] = felt.falls_k[..] else {
+            panic!("both are felt: {felt:?}");
+        };
+        assert!((left_k - right_k).abs() < 0.03, "{felt:?}");
+        pairs += 1;
+    }
+    assert_eq!(pairs, 4);
+}
+
+#[test]
 fn three_displays_at_one_hand() {
     let ran = run(
         "p3",

@@ -1,5 +1,6 @@
 //! Everything in a trial is a function of session, participant, seed, trial and attempt.
 
+use thermal_client::client::Client;
 use thermal_participant::{Bench, BenchOptions};
 use thermal_session::Executor;
 use thermal_session::dataset::Recorder;
@@ -39,9 +40,14 @@ fn a_trial_alone_is_that_of_the_sequence() {
         let mut people = bench.people();
         let first_three = &sequence.records[..3];
         let schedule = Schedule::after(&session, &plan, first_three).expect("the same session");
-        Executor::new(&session, bench.link(), &mut people, &mut recorder)
-            .run(&plan, schedule)
-            .expect("the session ends by itself");
+        Executor::new(
+            &session,
+            Client::new(bench.link()),
+            &mut people,
+            &mut recorder,
+        )
+        .run(&plan, schedule)
+        .expect("the session ends by itself");
         assert_eq!(bench.observations(), sequence.observations[3..], "{file}");
     }
 }

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use thermal_client::client::Client;
 use thermal_participant::{Bench, BenchOptions, Observation};
 use thermal_session::dataset::Recorder;
 use thermal_session::record::TrialRecord;
@@ -60,7 +61,12 @@ pub fn run(name: &str, session: &Session, options: BenchOptions, trials: usize) 
     let mut recorder =
         Recorder::create(&folder(name), session, &plan, (code, seed), true).expect("a recorder");
     let mut people = bench.people();
-    let executor = Executor::new(session, bench.link(), &mut people, &mut recorder);
+    let executor = Executor::new(
+        session,
+        Client::new(bench.link()),
+        &mut people,
+        &mut recorder,
+    );
     executor
         .run(&plan, Schedule::new(session, &plan))
         .expect("the session ends by itself");
