@@ -1,0 +1,122 @@
+//! A program that is killed, a full disk, and two programs with one folder.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::{RngExt, SeedableRng};
+use thermal_session::dataset::{Folder, recorded_sessions};
+
+use crate::folder::{assert_equal, with_session};
+use crate::program::{line, run, thermal_lab};
+
+/// Number of moments at which the program is killed: as this variable says, or few enough for a suite of tests.
+const KILLS_VARIABLE: &str = "THERMAL_LAB_KILLS";
+const KILLS: u32 = 3;
+
+#[test]
+fn a_session_that_was_killed_at_any_moment_is_resumed_to_the_same_data() {
+    let (folder, session) = with_session("killed");
+    let [whole, killed] = ["whole", "killed"].map(|name| folder.join(name));
+    let began = Instant::now();
+    assert!(run(&line(&session, &whole)).status.success());
+    let took = began.elapsed();
+    let kills = std::env::var(KILLS_VARIABLE)
+        .ok()
+        .and_then(|count| count.parse().ok());
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
+    let (mut in_the_middle, mut trials_kept) = (0, 0);
+    for _ in 0..kills.unwrap_or(KILLS) {
+        let _ignored = fs::remove_dir_all(&killed);
+        let after = took.mul_f64(random.random_range(0.05..1.0));
+        let mut child = thermal_lab(&line(&session, &killed))
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        sleep(after);
+        in_the_middle += u32::from(child.try_wait().unwrap().is_none());
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if log(&killed).exists() {
+            trials_kept +=
+                recorded_sessions(&killed).map_or(0, |sessions| sessions[0].records.len());
+            let resumed = run(&(line(&session, &killed) + " --resume"));
+            assert!(
+                resumed.status.success(),
+                "{}",
+                String::from_utf8_lossy(&resumed.stderr)
+            );
+        } else {
+            // Killed before it had begun: nothing is there that could be resumed.
+            assert!(run(&line(&session, &killed)).status.success());
+        }
+        assert_equal(&whole, &killed);
+    }
+    println!(
+        "{in_the_middle} of the kills found the program running; {trials_kept} trials were kept"
+    );
+    assert!(in_the_middle > 0);
+}
+
+fn log(root: &Path) -> std::path::PathBuf {
+    Folder::new(root, "01", "p5").source("log.jsonl")
+}
+
+#[test]
+fn a_full_disk_ends_the_session_with_a_message_and_loses_no_recorded_trial() {
+    let (folder, session) = with_session("full");
+    let [whole, full] = ["whole", "full"].map(|name| folder.join(name));
+    assert!(run(&line(&session, &whole)).status.success());
+    // No file may become longer than 300 KB, and the program is told so by an error of its writes.
+    let program = env!("CARGO_BIN_EXE_thermal-lab");
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 600; exec {program} {}",
+        line(&session, &full)
+    );
+    let output = Command::new("sh")
+        .args(["-c", &script])
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    assert!(
+        stderr.contains("telemetry.csv: ")
+            && stderr.contains("--resume goes on when there is room"),
+        "{stderr}"
+    );
+    let sessions = recorded_sessions(&full).unwrap();
+    let trials = sessions[0].records.len();
+    assert!(
+        (1..8).contains(&trials),
+        "{trials} trials before the disk was full"
+    );
+    assert!(run(&(line(&session, &full) + " --resume")).status.success());
+    assert_equal(&whole, &full);
+}
+
+#[test]
+fn two_programs_do_not_record_into_the_same_session() {
+    let (folder, session) = with_session("twice");
+    let out = folder.join("data");
+    let mut first = thermal_lab(&(line(&session, &out) + " --real-time"))
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let began = Instant::now();
+    while !log(&out).exists() && began.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(20));
+    }
+    let second = run(&(line(&session, &out) + " --resume"));
+    first.kill().unwrap();
+    first.wait().unwrap();
+    let stderr = String::from_utf8_lossy(&second.stderr);
+    assert_eq!(second.status.code(), Some(1), "{stderr}");
+    assert!(
+        stderr.contains("another program records this session"),
+        "{stderr}"
+    );
+}

@@ -1,0 +1,119 @@
+//! The executor on a line that breaks, and on one with garbage.
+
+use std::path::Path;
+use std::time::Duration;
+
+use thermal_client::client::Client;
+use thermal_lab::link::{Link, LinkError, ReceivedLine};
+use thermal_participant::{Bench, BenchOptions};
+use thermal_session::dataset::Recorder;
+use thermal_session::{Executor, Plan, Schedule, Session, SessionEnd};
+
+use crate::folder::{assert_equal, with_session};
+
+const WHO: (&str, u64) = ("01", 1);
+
+/// What a line does to a session.
+#[derive(Clone, Copy)]
+enum Defect {
+    None,
+    /// The cable is pulled at this time.
+    Pulled(Duration),
+    /// Every so many lines a line of garbage comes before one.
+    Garbage(u32),
+}
+
+/// The line of a bench with a defect.
+struct DefectiveLink<L> {
+    link: L,
+    defect: Defect,
+    lines: u32,
+    waiting: Option<ReceivedLine>,
+}
+
+impl<L: Link> Link for DefectiveLink<L> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        self.link.send(bytes)
+    }
+
+    fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
+        if let Defect::Pulled(at) = self.defect
+            && self.now() >= at
+        {
+            return Err(LinkError::Gone("the cable was pulled".into()));
+        }
+        if self.waiting.is_some() {
+            return Ok(self.waiting.take());
+        }
+        let received = self.link.receive(timeout)?;
+        if let (Defect::Garbage(interval), Some(line)) = (self.defect, &received) {
+            self.lines += 1;
+            if self.lines.is_multiple_of(interval) {
+                let garbage = ReceivedLine {
+                    text: "\u{fffd}T 12\u{0}3 arm".into(),
+                    at: line.at,
+                };
+                self.waiting = received;
+                return Ok(Some(garbage));
+            }
+        }
+        Ok(received)
+    }
+
+    fn now(&self) -> Duration {
+        self.link.now()
+    }
+}
+
+/// Runs or resumes the session, and returns how it has ended.
+fn run(session: &Path, out: &Path, resumes: bool, defect: Defect) -> Result<(), SessionEnd> {
+    let session = Session::read(session).unwrap();
+    let plan = Plan::new(&session, WHO.0, WHO.1).unwrap();
+    let mut recorder = if resumes {
+        Recorder::resume(out, &session, &plan, WHO).unwrap()
+    } else {
+        Recorder::create(out, &session, &plan, WHO, true).unwrap()
+    };
+    let records = recorder.records().to_vec();
+    let schedule = Schedule::after(&session, &plan, &records).unwrap();
+    let bench = Bench::new(&session, &plan, WHO.0, WHO.1, BenchOptions::default()).unwrap();
+    let link = DefectiveLink {
+        link: bench.link(),
+        defect,
+        lines: 0,
+        waiting: None,
+    };
+    let mut people = bench.people();
+    Executor::new(&session, Client::new(link), &mut people, &mut recorder).run(&plan, schedule)
+}
+
+#[test]
+fn a_pulled_cable_ends_the_session_and_loses_the_running_trial_only() {
+    let (folder, session) = with_session("pulled");
+    let [whole, pulled] = ["whole", "pulled"].map(|name| folder.join(name));
+    run(&session, &whole, false, Defect::None).unwrap();
+    let end = run(
+        &session,
+        &pulled,
+        false,
+        Defect::Pulled(Duration::from_secs(60)),
+    )
+    .unwrap_err();
+    let words = end.to_string();
+    assert!(matches!(end, SessionEnd::Gone(_)), "{words}");
+    assert!(
+        words.contains("Check cable and power") && words.contains("--resume"),
+        "{words}"
+    );
+    run(&session, &pulled, true, Defect::None).unwrap();
+    assert_equal(&whole, &pulled);
+}
+
+#[test]
+fn garbage_between_the_lines_changes_nothing() {
+    let (folder, session) = with_session("garbage");
+    let [whole, garbage] = ["whole", "garbage"].map(|name| folder.join(name));
+    run(&session, &whole, false, Defect::None).unwrap();
+    run(&session, &garbage, false, Defect::Garbage(7)).unwrap();
+    assert_equal(&whole, &garbage);
+}

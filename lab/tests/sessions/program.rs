@@ -1,0 +1,192 @@
+//! `thermal-lab run`, `analyse` and `replay` as a user starts them.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+use crate::folder::{assert_equal, contents, with_session};
+
+pub fn thermal_lab(line: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_thermal-lab"));
+    command.args(line.split(' ')).stdin(Stdio::null());
+    command
+}
+
+pub fn run(line: &str) -> Output {
+    thermal_lab(line).output().unwrap()
+}
+
+/// The command line of a simulated session.
+pub fn line(session: &Path, out: &Path) -> String {
+    format!(
+        "run {} --simulated --participant 01 --seed 1 --headless --out {}",
+        session.display(),
+        out.display()
+    )
+}
+
+fn stderr(output: &Output) -> &str {
+    std::str::from_utf8(&output.stderr).unwrap()
+}
+
+#[test]
+fn the_same_arguments_give_the_same_bytes_but_for_what_the_clock_says() {
+    let (folder, session) = with_session("same");
+    let [one, other] = ["one", "other"].map(|name| folder.join(name));
+    for out in [&one, &other] {
+        let done = run(&line(&session, out));
+        assert!(done.status.success(), "{}", stderr(&done));
+    }
+    assert_equal(&one, &other);
+    let another = folder.join("another");
+    let done = run(&line(&session, &another).replace("--seed 1", "--seed 2"));
+    assert!(done.status.success(), "{}", stderr(&done));
+    assert_ne!(contents(&one), contents(&another));
+}
+
+#[test]
+fn the_data_set_has_the_structure_of_bids() {
+    let (folder, session) = with_session("bids");
+    let out = folder.join("data");
+    fs::create_dir(&out).unwrap();
+    assert!(run(&line(&session, &out)).status.success());
+    let files = contents(&out);
+    let text = |name: &str| std::str::from_utf8(&files[Path::new(name)]).unwrap();
+    let json = |name: &str| serde_json::from_str::<Value>(text(name)).unwrap();
+    let description = json("dataset_description.json");
+    assert!(description["Name"].is_string() && description["BIDSVersion"].is_string());
+    assert_eq!(text("participants.tsv"), "participant_id\nsub-01\n");
+
+    let events = text("sub-01/beh/sub-01_task-p5_events.tsv");
+    let header: Vec<_> = events.lines().next().unwrap().split('\t').collect();
+    assert_eq!(header[..2], ["onset", "duration"]);
+    let about = json("sub-01/beh/sub-01_task-p5_events.json");
+    for column in &header {
+        assert!(
+            about[column]["Description"].is_string(),
+            "{column} has no description"
+        );
+    }
+    let rows: Vec<Vec<_>> = events
+        .lines()
+        .skip(1)
+        .map(|row| row.split('\t').collect())
+        .collect();
+    assert_eq!(rows.len(), 8);
+    let onset = |row: &Vec<&str>| row[0].parse::<f64>().unwrap();
+    assert!(
+        rows.iter()
+            .all(|row| row.len() == header.len() && row.iter().all(|cell| !cell.is_empty()))
+    );
+    assert!(
+        rows.windows(2)
+            .all(|pair| onset(&pair[0]) < onset(&pair[1]))
+    );
+
+    let physio = json("sub-01/beh/sub-01_task-p5_recording-finger0_physio.json");
+    let columns = physio["Columns"].as_array().unwrap().len();
+    assert_eq!(physio["SamplingFrequency"], 100.0);
+    assert_eq!(physio["StartTime"], 0.0);
+    let packed = &files[Path::new("sub-01/beh/sub-01_task-p5_recording-finger0_physio.tsv.gz")];
+    // RFC 1952: the time is in bytes 4 to 7.
+    assert_eq!(packed[..2], [0x1f, 0x8b]);
+    assert_eq!(packed[4..8], [0; 4]);
+    let mut unpacked = String::new();
+    std::io::Read::read_to_string(
+        &mut flate2::read::GzDecoder::new(&packed[..]),
+        &mut unpacked,
+    )
+    .unwrap();
+    let is_number = |cell: &str| cell == "n/a" || cell.parse::<f64>().is_ok();
+    assert!(
+        unpacked
+            .lines()
+            .all(|row| row.split('\t').count() == columns && row.split('\t').all(is_number))
+    );
+    // A row every 10 ms from the begin of the session to the end of the last trial.
+    let end_s = onset(&rows[7]) + rows[7][1].parse::<f64>().unwrap();
+    let length_s = unpacked.lines().count() as f64 / 100.0;
+    assert!(
+        (length_s - end_s).abs() < 0.1,
+        "{length_s} s of telemetry, {end_s} s of session"
+    );
+}
+
+#[test]
+fn a_plan_is_printed_without_a_device() {
+    let (_, session) = with_session("plan");
+    let plan = run(&format!(
+        "run {} --participant 01 --plan",
+        session.display()
+    ));
+    assert!(plan.status.success());
+    let text = String::from_utf8(plan.stdout).unwrap();
+    let header = text.lines().next().unwrap();
+    assert!(header.contains(",real,simulated,side,"), "{header}");
+    assert_eq!(text.lines().count(), 1 + 8);
+}
+
+#[test]
+fn wrong_arguments_are_answered_with_status_2() {
+    let (folder, session) = with_session("wrong");
+    let out = folder.join("data");
+    let expect = |line: &str, status: i32, words: &str| {
+        let output = run(line);
+        assert_eq!(
+            output.status.code(),
+            Some(status),
+            "{line}: {}",
+            stderr(&output)
+        );
+        assert!(
+            stderr(&output).contains(words),
+            "{line}: {}",
+            stderr(&output)
+        );
+    };
+    let resume = line(&session, &out) + " --resume";
+    expect(&resume, 2, "there is no session to resume");
+    assert!(run(&line(&session, &out)).status.success());
+    expect(
+        &line(&session, &out),
+        2,
+        "this participant has done this task",
+    );
+    expect(
+        &resume.replace("--seed 1", "--seed 2"),
+        2,
+        "recorded with the seed 1; given is 2",
+    );
+    expect(&line(&session, &out).replace("01", "Anna"), 2, "Anna");
+    fs::write(&session, "format = 1\ntitle = 3\n").unwrap();
+    expect(&line(&session, &out), 2, "short.toml:2: title = 3");
+    expect(&format!("analyse {}", session.display()), 2, "short.toml");
+}
+
+#[test]
+fn a_recorded_session_is_analysed_and_replayed() {
+    let (folder, session) = with_session("analysed");
+    let [data, page] = ["data", "page"].map(|name| folder.join(name));
+    assert!(run(&line(&session, &data)).status.success());
+    let analysed = run(&format!(
+        "analyse {} --json --out {}",
+        data.display(),
+        page.display()
+    ));
+    assert!(analysed.status.success(), "{}", stderr(&analysed));
+    let json: Value = serde_json::from_slice(&analysed.stdout).unwrap();
+    assert_eq!(json["tasks"][0]["task"], "p5");
+    assert!(
+        fs::read_to_string(page.join("analysis.html"))
+            .unwrap()
+            .contains("<svg")
+    );
+    let replayed = run(&format!(
+        "replay {} --headless --speed 10000",
+        data.display()
+    ));
+    assert!(replayed.status.success(), "{}", stderr(&replayed));
+    assert_eq!(stderr(&replayed).matches(" of 8, block").count(), 8);
+}
