@@ -117,7 +117,14 @@ impl Panel<'_> {
         });
         let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
         let margin = ((high - low) * 0.08).max(0.05);
-        let decimals = usize::from(high - low < 100.0);
+        let span = high - low + 2.0 * margin;
+        // Labels of neighbouring lines must differ.
+        let decimals = match span {
+            _ if span < 0.5 => 2,
+            _ if high - low < 100.0 => 1,
+            _ => 0,
+        };
+        let rounding = if decimals == 2 { 100.0 } else { 10.0 };
         let mut chart = ChartBuilder::on(area)
             .margin(MARGIN)
             .x_label_area_size(38)
@@ -129,7 +136,7 @@ impl Panel<'_> {
             .y_desc(self.y_name)
             // Adding zero converts a negative zero into zero.
             .y_label_formatter(&|value| {
-                format!("{:.decimals$}", (value * 10.0).round() / 10.0 + 0.0)
+                format!("{:.decimals$}", (value * rounding).round() / rounding + 0.0)
             })
             .light_line_style(TRANSPARENT)
             .label_style(FONT)

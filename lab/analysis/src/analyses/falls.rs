@@ -5,7 +5,7 @@ use experiment_statistics::standard_deviation;
 
 use super::design::Design;
 use crate::cells::{distinct, mean, means_of_participants, over_participants};
-use crate::input::{Task, finite};
+use crate::input::{Task, Trial, finite};
 use crate::picture::{Intervals, Mark};
 use crate::report::{Section, Table, cells, numbers, probabilities, words};
 
@@ -51,6 +51,14 @@ pub fn all(task: &Task) -> Vec<Fall> {
         }
     }
     falls
+}
+
+fn has_fall(trial: &Trial) -> bool {
+    trial
+        .record
+        .stations
+        .iter()
+        .any(|station| station.skin_fall_k.is_some())
 }
 
 /// Parts in which there are samples and simulated materials.
@@ -107,6 +115,15 @@ pub fn falls(task: &Task) -> Section {
     if falls.is_empty() {
         section.lacks("Falls", NO_FALLS);
         return section;
+    }
+    let measured = |part: &str| {
+        task.trials()
+            .any(|(_, trial)| trial.record.part == part && has_fall(trial))
+    };
+    for part in task.parts() {
+        if !measured(part) {
+            section.lacks(part, NO_FALLS);
+        }
     }
     let mut table = Table::new(
         "falls",
@@ -244,6 +261,13 @@ pub fn levene(task: &Task) -> Section {
         return section;
     }
     let groups = groups(task, &falls);
+    if groups.iter().all(|group| group.len() < 3) {
+        section.lacks(
+            "Levene's test",
+            "two means have equal distances from their own mean; three participants or more are needed",
+        );
+        return section;
+    }
     let mut table = Table::new(
         "levene",
         "Levene's test; n counts participants' means",

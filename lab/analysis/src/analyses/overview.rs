@@ -174,7 +174,8 @@ const OF_STATIONS: [OfStation; 6] = [
 /// Response times and measures by part, and trials by trial.
 pub fn measures(task: &Task) -> Section {
     let mut section = Section::new("measures", "Trials and measures").note(
-        "n counts trials that count, or contacts with a display; SD is that over them, participants mixed. Limited: contacts in \
+        "The response time counts from the first landing, so where a finger rests on the display it contains both intervals. \
+         n counts trials that count, or contacts with a display; SD is that over them, participants mixed. Limited: contacts in \
          which the set-point was limited or not followed at some time.",
     );
     let mut table = Table::new(

@@ -192,7 +192,7 @@ fn drawn(name: &str, series: usize, levels: &[Level], fit: Option<&Fit>) -> Vec<
         let p = fit?.probability(level).ok().and_then(finite)?;
         Some((level, 100.0 * p))
     };
-    vec![
+    let mut curves = vec![
         Curve {
             name: name.into(),
             color: color(series),
@@ -205,5 +205,7 @@ fn drawn(name: &str, series: usize, levels: &[Level], fit: Option<&Fit>) -> Vec<
             stroke: Stroke::Solid(2),
             points: (1..=200).filter_map(at).collect(),
         },
-    ]
+    ];
+    curves.retain(|curve| !curve.points.is_empty());
+    curves
 }

@@ -76,7 +76,7 @@ impl Intervals<'_> {
                 let value = low + f64::from(i) * self.step;
                 let at = x(value);
                 root.draw(&PathElement::new([(at, bottom), (at, bottom + 5)], BLACK))?;
-                let decimals = usize::from(self.step.fract() != 0.0);
+                let decimals = (-self.step.log10().floor()).clamp(0.0, 6.0) as usize;
                 let label = format!("{value:.decimals$}");
                 root.draw(&Text::new(
                     label,
