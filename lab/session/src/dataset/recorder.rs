@@ -117,6 +117,7 @@ impl Recorder {
         };
         write_whole(&folder.source(SESSION), session.text.as_bytes())?;
         write_whole(&folder.source(PLAN), plan_csv.as_bytes())?;
+        write_whole(&folder.source(INFO), &pretty(&info))?;
         bids::describe(&folder)?;
         let log = AppendFile::open(&log_path, 0)?;
         let mut rows = AppendFile::open(&folder.source(TELEMETRY), 0)?;
@@ -132,7 +133,6 @@ impl Recorder {
             pending: Vec::new(),
             records: Vec::new(),
         };
-        recorder.write_info()?;
         recorder.begin_now()?;
         Ok(recorder)
     }

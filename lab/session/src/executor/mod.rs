@@ -136,7 +136,8 @@ impl<'a, L: Link> Executor<'a, L> {
     }
 
     fn run_trials(&mut self, plan: &Plan, mut schedule: Schedule<'_>) -> Result<(), SessionEnd> {
-        self.phase(Phase::Connect);
+        // Not recorded: it belongs to this run of the program, and a resumed session has several.
+        self.people.inform(&Update::Phase(Phase::Connect));
         if self.session.device.is_some() {
             self.connect(plan)?;
         }

@@ -247,6 +247,8 @@ impl RunningTrial {
         let lift_s = last
             .and_then(|(_, lift)| *lift)
             .map_or(end_s, |tick| self.time_s(tick));
+        // The tone ends the contact; what the finger does on its way up is no part of it.
+        let lift_s = lift_s.min(self.contact_end_s.unwrap_or(lift_s));
         measure(&samples, text, self.land_s(finger), lift_s, target_force_n)
     }
 }
