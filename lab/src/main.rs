@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use cli::{
-    Failure, Target, analyse, bring_up, commission, info, log, monitor, play, ports, replay, run,
-    send,
+    Failure, Target, analyse, bring_up, commission, info, log, monitor, play, ports, predict,
+    replay, run, send,
 };
 
 /// The operator's side of a thermal display.
@@ -39,6 +39,8 @@ enum Command {
     Run(run::Arguments),
     /// Score a data set, and write a page, JSON and CSV
     Analyse(analyse::Arguments),
+    /// Print what simulated participants give for the experiments of the thesis, beside what was published
+    Predict(predict::Arguments),
     /// Show a recorded session once more
     Replay(replay::Arguments),
     /// Calibrate and tune a new device, step by step, and store the result
@@ -58,6 +60,7 @@ fn main() -> ExitCode {
         Command::Monitor(arguments) => monitor::run(&target, &arguments),
         Command::Run(arguments) => run::run(&target, &arguments),
         Command::Analyse(arguments) => analyse::run(&arguments),
+        Command::Predict(arguments) => predict::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Commission(arguments) => commission::run(&target, &arguments),
         Command::BringUp(arguments) => bring_up::run(&target, &arguments),

@@ -8,6 +8,7 @@ pub mod log;
 pub mod monitor;
 pub mod play;
 pub mod ports;
+pub mod predict;
 pub mod replay;
 pub mod run;
 pub mod send;

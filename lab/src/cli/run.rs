@@ -28,6 +28,9 @@ layout of BIDS, and grows by a whole trial at a time: after a crash, a power cut
   thermal-lab run lab/sessions/p5-real-and-simulated.toml --participant 01 --port /dev/ttyACM0 --out data
   thermal-lab run lab/sessions/p5-real-and-simulated.toml --participant 01 --simulated --headless --out data";
 
+/// Share of the contact in what a thermistor at its edge sees: section 4.4 of the thesis has measured 0.26 to 0.32 of the fall.
+const EDGE_SHARE: f64 = 0.28;
+
 #[derive(Args)]
 #[command(after_help = USAGE)]
 pub struct Arguments {
@@ -134,14 +137,20 @@ impl Run<'_> {
     ) -> Result<(), Failure> {
         if target.simulated {
             let who = (self.arguments.participant.as_str(), self.arguments.seed);
-            let bench = Bench::new(
-                self.session,
-                self.plan,
-                who.0,
-                who.1,
-                BenchOptions::default(),
-            )
-            .map_err(Failure::input)?;
+            // Where the fall of the skin is what is measured, the thermistor lies at the edge of the contact, as in section 4.4
+            // of the thesis, and not beside it.
+            let measures_falls = self
+                .session
+                .score
+                .analyses
+                .iter()
+                .any(|word| word == "falls");
+            let options = BenchOptions {
+                edge_share: measures_falls.then_some(EDGE_SHARE),
+                ..BenchOptions::default()
+            };
+            let bench = Bench::new(self.session, self.plan, who.0, who.1, options)
+                .map_err(Failure::input)?;
             let mut watched = Watched::new(bench.people(), people);
             let link: Box<dyn Link> = if self.arguments.real_time {
                 Box::new(PacedLink::new(bench.link()))

@@ -120,7 +120,14 @@ fn garbage_between_the_lines_changes_no_answer() {
         let sessions = recorded_sessions(folder).unwrap();
         let records = sessions[0].records.iter();
         records
-            .map(|record| (record.trial, record.void.clone(), record.levels.clone(), record.answer.clone()))
+            .map(|record| {
+                (
+                    record.trial,
+                    record.void.clone(),
+                    record.levels.clone(),
+                    record.answer.clone(),
+                )
+            })
             .collect()
     };
     assert_eq!(trials(&whole).len(), 8);

@@ -1,6 +1,5 @@
 //! The gate before a trial: the skin is at its temperature and does not move.
 
-use thermal_client::client::PlainCommand;
 use thermal_client::link::Link;
 
 use super::{Executor, TrialEnd};
@@ -22,11 +21,6 @@ impl<L: Link> Executor<'_, L> {
             RestPlace::Display => "Rest your finger on the display.".into(),
             RestPlace::Air => "Keep your fingers in the air.".into(),
         }));
-        if rest.place == RestPlace::Display {
-            for finger in displays {
-                self.command(Some(*finger), &PlainCommand::Hold(rest.skin_c, None))?;
-            }
-        }
         let mut holds_since_s = None;
         let mut until_s = self.now_s() + rest.timeout_s;
         loop {

@@ -5,7 +5,7 @@ use thermal_client::link::Link;
 use thermal_device::StateName;
 
 use super::{Executor, TrialEnd, unanswered};
-use crate::{OperatorQuestion, Phase, PlannedTrial, Presented, Procedure};
+use crate::{OperatorQuestion, Phase, PlannedTrial, Presented, Procedure, RestPlace};
 
 /// Longest time from `arm` until the device is armed, s; a self-test under a finger takes 1.8 s.
 const ARM_S: f64 = 5.0;
@@ -13,7 +13,9 @@ const ARM_S: f64 = 5.0;
 const AT_SETPOINT_K: f64 = 0.1;
 const AT_SETPOINT_MS: u32 = 300;
 const PREPARE_S: f64 = 20.0;
-/// Most time in which the device is watched before an object is presented, s, so that it knows the skin.
+/// Distance of a set-point from the temperature that is to be held at which it has arrived, K.
+const ARRIVED_K: f64 = 0.01;
+/// Least time from the begin of the trial until an object is presented, s, in which the device's filters see the skin.
 const WATCH_S: f64 = 2.6;
 
 impl<L: Link> Executor<'_, L> {
@@ -44,6 +46,7 @@ impl<L: Link> Executor<'_, L> {
         // A finger that stays on the display from trial to trial is not disturbed.
         if !self.continues(&displays)? {
             self.arm(&displays)?;
+            self.hold_rest_temperature(&displays)?;
             self.phase(Phase::Rest);
             self.place_samples(trial)?;
             self.wait_for_skin(&displays)?;
@@ -68,6 +71,22 @@ impl<L: Link> Executor<'_, L> {
             }
         }
         Ok(true)
+    }
+
+    /// Brings displays on which the fingers rest to the temperature of the rest, before a finger is put on them.
+    fn hold_rest_temperature(&mut self, displays: &[u8]) -> Result<(), TrialEnd> {
+        let Some(rest) = self
+            .session
+            .rest
+            .filter(|rest| rest.place == RestPlace::Display)
+        else {
+            return Ok(());
+        };
+        self.fingers.forget_states();
+        for finger in displays {
+            self.command(Some(*finger), &PlainCommand::Hold(rest.skin_c, None))?;
+        }
+        self.wait_for_setpoints(displays, |_| Some(rest.skin_c))
     }
 
     fn choose_materials(&mut self, trial: &PlannedTrial) -> Result<(), TrialEnd> {
@@ -126,7 +145,6 @@ impl<L: Link> Executor<'_, L> {
         if displays.is_empty() {
             return Ok(());
         }
-        // Time in which the device's filters see the skin of this trial.
         let since_s = self.trial.begin_s();
         self.wait_until(since_s + WATCH_S)?;
         self.fingers.forget_states();
@@ -147,10 +165,33 @@ impl<L: Link> Executor<'_, L> {
                 } => self.command(Some(device_finger), &PlainCommand::Hold(base_c, None))?,
             }
         }
+        self.wait_for_setpoints(displays, |finger| {
+            let mut all = trial.presented.iter();
+            all.find_map(|presented| match *presented {
+                Presented::Hold {
+                    device_finger,
+                    celsius,
+                } if device_finger == finger => Some(celsius),
+                Presented::Pulses {
+                    device_finger,
+                    base_c,
+                    ..
+                } if device_finger == finger => Some(base_c),
+                _ => None,
+            })
+        })
+    }
+
+    /// Waits until all displays are at their set-points, which for a finger of whom `held_c` says so has this temperature, °C.
+    fn wait_for_setpoints(
+        &mut self,
+        displays: &[u8],
+        held_c: impl Fn(u8) -> Option<f64>,
+    ) -> Result<(), TrialEnd> {
         let until_s = self.now_s() + PREPARE_S;
         let is_ready = |executor: &mut Self| {
             let mut all = displays.iter();
-            all.all(|finger| executor.is_at_setpoint(*finger))
+            all.all(|finger| executor.is_at_setpoint(*finger, held_c(*finger)))
         };
         if self.wait_for(until_s, is_ready)? {
             Ok(())
@@ -160,8 +201,9 @@ impl<L: Link> Executor<'_, L> {
         }
     }
 
-    /// Whether a display presents its stimulus and has been at its set-point for some time.
-    fn is_at_setpoint(&self, finger: u8) -> bool {
+    /// Whether a display presents its stimulus and has been at its set-point for some time. The set-point of a `hold` moves until
+    /// it is at `held_c`, °C.
+    fn is_at_setpoint(&self, finger: u8, held_c: Option<f64>) -> bool {
         let presents = matches!(
             self.fingers.state(finger),
             Some(StateName::Preset | StateName::Contact | StateName::Stimulus)
@@ -179,7 +221,13 @@ impl<L: Link> Executor<'_, L> {
                 .display_c
                 .zip(line.setpoint_c)
                 .map(|(display, setpoint)| (display - setpoint).abs());
-            off.is_some_and(|off_k| off_k <= AT_SETPOINT_K) && line.state != StateName::Armed
+            let arrived = held_c.is_none_or(|held_c| {
+                line.setpoint_c
+                    .is_some_and(|setpoint| (setpoint - held_c).abs() <= ARRIVED_K)
+            });
+            arrived
+                && off.is_some_and(|off_k| off_k <= AT_SETPOINT_K)
+                && line.state != StateName::Armed
         };
         presents && span_ms + stream_ms >= AT_SETPOINT_MS && lines.iter().all(near)
     }
