@@ -19,6 +19,9 @@ use thermal_device::reference::ContactModel;
 use thermal_plant::Params;
 use thermal_plant::finger::FingerParams;
 use thermal_session::ContactRule;
+use thermal_thesis::published::{
+    ANSWERS_OF_TABLE_3_3, ANSWERS_OF_TABLE_3_5, PublishedPair, discrimination, localisation,
+};
 
 use crate::device::PreparedDevice;
 use crate::falls::{Exploration, TouchSetup, mean_fall_k};
@@ -27,8 +30,8 @@ use closed_form::{colder, identified};
 use fit::{Cell, CellTask, Fitted, fit};
 use published::{
     SECTION_3, SECTION_4_2, SECTION_4_2_C, SECTION_4_2_CORRELATION, SECTION_4_2_MATERIALS,
-    SECTION_4_3_BELOW, SECTION_4_3_C, SECTION_4_3_MATERIALS, SECTION_4_3_REPORTED_C, TABLE_3_3,
-    TABLE_3_3_MATERIALS, TABLE_3_3_TRIALS, TABLE_3_5, TABLE_3_5_TRIALS, THRESHOLD_PERCENT,
+    SECTION_4_3_BELOW, SECTION_4_3_C, SECTION_4_3_MATERIALS, SECTION_4_3_REPORTED_C,
+    TABLE_3_3_MATERIALS, THRESHOLD_PERCENT,
 };
 
 /// Explorations over which falls on displays, and those on samples beside them, are averaged.
@@ -321,37 +324,30 @@ impl Falls {
 
 /// Cells of Table 3-3 with their labels.
 fn table_3_3(falls: &Falls) -> Vec<(String, Cell)> {
-    let cells = TABLE_3_3.iter();
-    let cell = |&(colder, warmer, percent): &(&str, &str, f64)| {
+    let cell = |pair: PublishedPair| {
         let cell = Cell {
-            task: CellTask::Colder([falls.of(colder), falls.of(warmer)]),
-            published: percent / 100.0,
-            trials: TABLE_3_3_TRIALS,
+            task: CellTask::Colder([falls.of(&pair.first), falls.of(&pair.second)]),
+            published: pair.percent / 100.0,
+            trials: ANSWERS_OF_TABLE_3_3,
         };
-        (format!("{colder} - {warmer}"), cell)
+        (format!("{} - {}", pair.first, pair.second), cell)
     };
-    cells.map(cell).collect()
+    discrimination().into_iter().map(cell).collect()
 }
 
 /// Cells of Table 3-5: those whose target is the colder, and those whose target is the warmer.
 fn table_3_5(falls: &Falls) -> [Vec<(String, Cell)>; 2] {
-    let cell = |target: &str, distractor: &str, percent: f64| {
+    let cell = |pair: PublishedPair| {
         let cell = Cell {
-            task: CellTask::Different(falls.of(target), falls.of(distractor)),
-            published: percent / 100.0,
-            trials: TABLE_3_5_TRIALS,
+            task: CellTask::Different(falls.of(&pair.first), falls.of(&pair.second)),
+            published: pair.percent / 100.0,
+            trials: ANSWERS_OF_TABLE_3_5,
         };
-        (format!("{target} among {distractor}"), cell)
+        (format!("{} among {}", pair.first, pair.second), cell)
     };
-    let rows = || TABLE_3_5.iter();
-    [
-        rows()
-            .map(|&(a, b, high_low, _)| cell(a, b, high_low))
-            .collect(),
-        rows()
-            .map(|&(a, b, _, low_high)| cell(b, a, low_high))
-            .collect(),
-    ]
+    let is_colder = |pair: &PublishedPair| falls.of(&pair.first) > falls.of(&pair.second);
+    let (high_low, low_high): (Vec<_>, Vec<_>) = localisation().into_iter().partition(is_colder);
+    [high_low, low_high].map(|rows| rows.into_iter().map(cell).collect())
 }
 
 fn table(

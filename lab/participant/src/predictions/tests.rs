@@ -50,8 +50,8 @@ fn the_observer_of_touch_is_the_fitted_one() {
 
 #[test]
 fn published_means_are_those_of_the_text() {
-    let mean_3_3 = mean(TABLE_3_3.iter().map(|(_, _, percent)| *percent));
-    let mean_3_5 = mean(TABLE_3_5.iter().map(|(_, _, a, b)| 0.5 * (a + b)));
+    let mean_of = |pairs: Vec<PublishedPair>| mean(pairs.iter().map(|pair| pair.percent));
+    let [mean_3_3, mean_3_5] = [discrimination(), localisation()].map(mean_of);
     assert_eq!(mean_3_3.round(), 90.0);
     assert_eq!(mean_3_5.round(), 57.0);
 }
