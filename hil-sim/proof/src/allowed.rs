@@ -164,12 +164,8 @@ pub static LOOPS: [Entry; 12] = [
     },
     Entry {
         trees: &[TICK],
-        names: &[
-            "thermal_device::stimulus::player::Cursor::advance",
-            "thermal_device::stimulus::player::Cursor::enter_segment",
-            "thermal_device::stimulus::ramp::Ramp::skip",
-        ],
-        why: "at most 46 ticks of a course: 32 since the landing and 14 ahead; each segment has at least one",
+        names: &["thermal_device::stimulus::player::Place::temperature"],
+        why: "a binary search among at most 128 points",
     },
     Entry {
         trees: &[TICK],

@@ -28,7 +28,7 @@ pub enum LineError {
 
 /// Collects the bytes received from the host to lines. An invalid line is dropped as a whole, and its first error is
 /// returned when its line ending arrives.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct LineReader {
     line: Line,
     error: Option<LineError>,

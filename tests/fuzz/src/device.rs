@@ -13,7 +13,8 @@ use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, FingerIndex, StateName, TriggerEdge};
 use thermal_display::protocol::{
-    CommandHandler, Error, LineReader, OutgoingLine, UnsolicitedLine, wrap_as_telemetry_line,
+    CommandHandler, Error, LineError, LineReader, OutgoingLine, UnsolicitedLine,
+    wrap_as_telemetry_line,
 };
 use thermal_display::settings::Settings;
 
@@ -175,14 +176,17 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     pub fn byte(&mut self, reader: &mut LineReader, byte: u8) {
         match reader.push(byte) {
             None => {}
-            Some(Err(error)) => {
-                let error = WithSourceFinger::from_whole_device(Error::from(error));
-                check_answer(&self.to_host(&error), false);
-            }
+            Some(Err(error)) => self.refuse(error),
             Some(Ok(line)) => {
                 let _ = self.line(&line);
             }
         }
+    }
+
+    /// Answers bytes that form no line.
+    pub fn refuse(&self, error: LineError) {
+        let error = WithSourceFinger::from_whole_device(Error::from(error));
+        check_answer(&self.to_host(&error), false);
     }
 
     /// A line to the host; its checksum is checked and taken away.

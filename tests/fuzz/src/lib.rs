@@ -1,7 +1,9 @@
 #![doc = include_str!("../README.md")]
 
 mod device;
+mod expected_lines;
 mod flash;
+mod lines;
 mod scene;
 mod settings;
 mod start;
@@ -21,11 +23,16 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 5] = [
+pub const TARGETS: [Target; 6] = [
     Target {
         name: "wire",
         run: wire::run,
         show: wire::show,
+    },
+    Target {
+        name: "lines",
+        run: lines::run,
+        show: lines::show,
     },
     Target {
         name: "station",

@@ -15,8 +15,6 @@ use crate::process::workspace;
 
 /// Limit for the time of one input, s; a longer one is reported as a hang.
 const HANG_S: u32 = 10;
-/// Largest size of an input, bytes.
-const LONGEST: u32 = 1024;
 /// Time between two lines of progress.
 const REPORT_INTERVAL: Duration = Duration::from_secs(10);
 const POLL: Duration = Duration::from_millis(100);
@@ -110,7 +108,7 @@ impl Engine {
             .env("FUZZ_TARGET", target.name())
             .arg(artifacts)
             .arg(format!("-timeout={HANG_S}"))
-            .arg(format!("-max_len={LONGEST}"));
+            .arg(format!("-max_len={}", target.longest()));
         command
     }
 

@@ -22,6 +22,8 @@ use instrument::Instrumented;
 pub enum Target {
     /// Bytes from the host, and ticks
     Wire,
+    /// Lines from the host without ticks
+    Lines,
     /// Samples and command lines
     Station,
     /// Settings that command lines can set, and readings corrected by them
@@ -36,6 +38,7 @@ impl Target {
     fn name(self) -> &'static str {
         match self {
             Self::Wire => "wire",
+            Self::Lines => "lines",
             Self::Station => "station",
             Self::Settings => "settings",
             Self::Flash => "flash",
@@ -59,8 +62,22 @@ impl Target {
 
     /// Dictionary of words for inputs.
     fn dictionary(self) -> Option<PathBuf> {
-        let path = workspace().join(format!("tests/fuzz/{}.dict", self.name()));
+        let words = match self {
+            // The words of the protocol are the same with and without ticks.
+            Self::Lines => Self::Wire,
+            other => other,
+        };
+        let path = workspace().join(format!("tests/fuzz/{}.dict", words.name()));
         path.is_file().then_some(path)
+    }
+
+    /// Largest size of an input, bytes.
+    const fn longest(self) -> u32 {
+        match self {
+            // Some lines, so that an execution is short.
+            Self::Lines => 160,
+            _ => 1024,
+        }
     }
 }
 

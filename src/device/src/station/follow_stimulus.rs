@@ -118,8 +118,7 @@ impl Station {
     }
 
     /// Begins the course that waits, if one does, with `elapsed` ticks of it behind the next reference; `tick` is the one
-    /// to which its time 0 belongs. For a tick only: it moves the course on by up to 46 ticks, which a command must not
-    /// lock the next finger's tick out for.
+    /// to which its time 0 belongs.
     fn begin_course(&mut self, elapsed: u32, tick: u32) {
         if let State::Stimulus(Stimulus::Wait(order, _)) = self.state {
             let course = self.courses.playing();

@@ -2,16 +2,20 @@
 
 use contact_model::fixed_point::Celsius;
 
-use super::ramp::Ramp;
+use super::line::temperature_on_line;
 use super::{Approach, STIMULUS_LEAD_TICKS, StimulusTemperatures};
 use crate::TICK_HZ;
 use crate::safety::Setpoint;
 
-/// A running command `hold`: the set-point on its way, and the same [`STIMULUS_LEAD_TICKS`] ahead.
+/// A running command `hold`: the set-point on its way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hold {
-    now: Ramp,
-    ahead: Ramp,
+    start: Celsius,
+    target: Celsius,
+    /// Duration of the way, ticks.
+    ticks: u32,
+    /// Ticks of it that have passed.
+    passed: u32,
     approach: Approach,
 }
 
@@ -28,10 +32,11 @@ impl Hold {
         let target = target.celsius();
         let way = u64::from(target.abs_diff(start).to_bits()) * u64::from(TICK_HZ);
         let ticks = way.div_ceil(u64::from(rate_k_s.to_bits().max(1).unsigned_abs()));
-        let ramp = Ramp::new(start, target, ticks as u32);
         Self {
-            now: ramp,
-            ahead: ramp,
+            start,
+            target,
+            ticks: ticks as u32,
+            passed: 0,
             approach: Approach::to(target),
         }
     }
@@ -39,26 +44,24 @@ impl Hold {
     /// Stays at this temperature, °C, which a display that is off it approaches.
     #[must_use]
     pub const fn at(celsius: Celsius) -> Self {
-        let ramp = Ramp::constant(celsius);
         Self {
-            now: ramp,
-            ahead: ramp,
+            start: celsius,
+            target: celsius,
+            ticks: 0,
+            passed: 0,
             approach: Approach::to(celsius),
         }
     }
 
     /// Moves on by one tick, and returns the temperatures of that tick for a display with this surface, °C.
     pub fn next_temperatures(&mut self, surface: Celsius) -> StimulusTemperatures {
-        // In the first tick, and not in the command, which locks out the tick of the next finger.
-        if self.ahead.ticks_left() == self.now.ticks_left() {
-            self.ahead.skip(STIMULUS_LEAD_TICKS);
-        }
-        self.now.advance();
-        self.ahead.advance();
-        let now = self.now.celsius();
-        let target = match self.now.ticks_left() {
-            0 => self.approach.next_target(surface, now),
-            _ => self.ahead.celsius(),
+        self.passed = self.ticks.min(self.passed.saturating_add(1));
+        let at = |passed| temperature_on_line(self.start, self.target, passed, self.ticks);
+        let now = at(self.passed);
+        let target = if self.passed < self.ticks {
+            at(self.passed.saturating_add(STIMULUS_LEAD_TICKS))
+        } else {
+            self.approach.next_target(surface, now)
         };
         StimulusTemperatures { now, target }
     }

@@ -3,7 +3,7 @@
 //! ```text
 //! upload --> Course --> CourseMemory --- play --> Player --> set-point now, and 14 ms ahead --> reference
 //!                                                   ^
-//! hold ------------------------------------> Hold --+-- Ramp: exact interpolation in integers
+//! hold ------------------------------------> Hold --+-- temperature_on_line: exact interpolation in integers
 //! ```
 
 mod approach;
@@ -11,8 +11,8 @@ mod course;
 mod course_memory;
 mod dose_of_course;
 mod hold;
+mod line;
 mod player;
-mod ramp;
 
 pub use approach::Approach;
 pub use course::{

@@ -2,7 +2,7 @@
 
 use contact_model::fixed_point::Celsius;
 
-use super::ramp::Ramp;
+use super::line::temperature_on_line;
 use super::{CoursePoint, STIMULUS_LEAD_TICKS, StimulusTemperatures};
 
 /// What starts a course.
@@ -64,85 +64,70 @@ pub struct PlayOrder {
 
 /// A place in a course that is played one or more times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Cursor {
-    /// The segment on which the place is.
-    ramp: Ramp,
-    /// Index of the point on which the segment ends.
-    point: u8,
+struct Place {
+    /// Time since the course has begun, or begun again, ms.
+    time_ms: u32,
     /// How many times the course is played after this time.
     times_left: u16,
 }
 
-impl Cursor {
-    /// The start of a course. Before its first point it has the temperature of that point.
-    fn new(points: &[CoursePoint], times: u16) -> Self {
-        Self {
-            ramp: points
-                .first()
-                .map_or(Ramp::constant(Celsius::ZERO), |first| {
-                    Ramp::new(first.temperature, first.temperature, first.time_ms)
-                }),
-            point: 0,
-            times_left: times.saturating_sub(1),
+impl Place {
+    /// The place `ticks` later in a course of this duration; at the end of the course it stays. The course is on its last point at
+    /// its end, and begins again in the tick after: that is 1 ms after its start.
+    fn later(self, ticks: u32, duration_ms: u32) -> Self {
+        let time_ms = self.time_ms.saturating_add(ticks);
+        // Every course has a duration, because it has two points; without one no time is behind it.
+        let ended = (time_ms.saturating_sub(1).checked_div(duration_ms)).unwrap_or(0);
+        match u32::from(self.times_left).checked_sub(ended) {
+            Some(times_left) => Self {
+                time_ms: time_ms - ended * duration_ms,
+                times_left: times_left as u16,
+            },
+            None => Self {
+                time_ms: duration_ms,
+                times_left: 0,
+            },
         }
     }
 
-    /// Moves on to the next segment if the present one has ended. Returns false at the end of the course.
+    /// The temperature of this place, °C. Before the first point it is that of the first. Searched for anew in each tick, in at most
+    /// eight steps, so that a tick does the same work however many points have passed since the last one.
     #[inline(never)]
-    fn enter_segment(&mut self, points: &[CoursePoint]) -> bool {
-        // Ends, because each round takes the next point or one of the repetitions. Only the first segment has no ticks, if
-        // the first point is at 0.
-        while self.ramp.ticks_left() == 0 {
-            let end = usize::from(self.point);
-            if let (Some(from), Some(to)) = (points.get(end), points.get(end + 1)) {
-                let ticks = to.time_ms.saturating_sub(from.time_ms);
-                self.ramp = Ramp::new(from.temperature, to.temperature, ticks);
-                self.point += 1;
-            } else if self.times_left > 0 {
-                *self = Self::new(points, self.times_left);
-            } else {
-                return false;
-            }
+    fn temperature(self, points: &[CoursePoint]) -> Celsius {
+        let next = points.partition_point(|point| point.time_ms <= self.time_ms);
+        let last_passed = next.checked_sub(1).and_then(|last| points.get(last));
+        match (last_passed, points.get(next)) {
+            (Some(from), Some(to)) => temperature_on_line(
+                from.temperature,
+                to.temperature,
+                self.time_ms - from.time_ms,
+                to.time_ms - from.time_ms,
+            ),
+            (Some(only), None) | (None, Some(only)) => only.temperature,
+            (None, None) => Celsius::ZERO,
         }
-        true
-    }
-
-    /// Moves on by `ticks`; at the end of the course it stays.
-    #[inline(never)]
-    fn advance(&mut self, points: &[CoursePoint], mut ticks: u32) {
-        while ticks > 0 && self.enter_segment(points) {
-            ticks -= self.ramp.skip(ticks);
-        }
-    }
-
-    fn is_at_end(&self, points: &[CoursePoint]) -> bool {
-        self.ramp.ticks_left() == 0
-            && self.times_left == 0
-            && usize::from(self.point) + 1 >= points.len()
     }
 }
 
 /// A course that plays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Player {
-    now: Cursor,
-    ahead: Cursor,
+    place: Place,
     /// What is added to the temperatures of the points, °C: the skin for a relative course, else 0.
     base: Celsius,
     end: CourseEnd,
 }
 
 impl Player {
-    /// Plays these points, which have `elapsed` ticks of the course behind them in the first tick.
+    /// Plays a course that has `elapsed` ticks behind it in the first tick.
     #[must_use]
     pub fn new(points: &[CoursePoint], base: Celsius, order: &PlayOrder, elapsed: u32) -> Self {
-        let mut now = Cursor::new(points, order.play_count);
-        now.advance(points, elapsed);
-        let mut ahead = now;
-        ahead.advance(points, STIMULUS_LEAD_TICKS);
+        let start = Place {
+            time_ms: 0,
+            times_left: order.play_count.saturating_sub(1),
+        };
         Self {
-            now,
-            ahead,
+            place: start.later(elapsed, duration_ms(points)),
             base,
             end: order.end,
         }
@@ -153,15 +138,22 @@ impl Player {
         &mut self,
         points: &[CoursePoint],
     ) -> (StimulusTemperatures, Option<CourseEnd>) {
+        let duration_ms = duration_ms(points);
+        let place = self.place;
+        let ahead = place.later(STIMULUS_LEAD_TICKS, duration_ms);
         let temperatures = StimulusTemperatures {
-            now: self.now.ramp.celsius().saturating_add(self.base),
-            target: self.ahead.ramp.celsius().saturating_add(self.base),
+            now: place.temperature(points).saturating_add(self.base),
+            target: ahead.temperature(points).saturating_add(self.base),
         };
-        let ended = self.now.is_at_end(points).then_some(self.end);
-        self.now.advance(points, 1);
-        self.ahead.advance(points, 1);
-        (temperatures, ended)
+        let is_at_end = place.times_left == 0 && place.time_ms >= duration_ms;
+        self.place = place.later(1, duration_ms);
+        (temperatures, is_at_end.then_some(self.end))
     }
+}
+
+/// Duration of a course, ms: the time of its last point.
+fn duration_ms(points: &[CoursePoint]) -> u32 {
+    points.last().map_or(0, |point| point.time_ms)
 }
 
 #[cfg(test)]

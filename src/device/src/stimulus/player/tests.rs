@@ -51,26 +51,66 @@ fn courses() -> impl Strategy<Value = Vec<CoursePoint>> {
     })
 }
 
+/// Plays a course to 100 ms after its end, which must be exact in each tick.
+fn check_exact(
+    points: &[CoursePoint],
+    times: u16,
+    elapsed: u32,
+    base: Celsius,
+) -> Result<(), TestCaseError> {
+    let mut player = Player::new(points, base, &order(times, CourseEnd::Neutral), elapsed);
+    let period_ms = points[points.len() - 1].time_ms;
+    let total_ms = period_ms * u32::from(times);
+    let at = |ms: u32| {
+        // A course is at its last point when it ends, and goes on from its first one in the next tick.
+        let ms = ms.min(total_ms);
+        let in_period = if ms > 0 && ms.is_multiple_of(period_ms) {
+            period_ms
+        } else {
+            ms % period_ms
+        };
+        exact(points, in_period) + i128::from(base.to_bits())
+    };
+    for ms in elapsed..total_ms + 100 {
+        let (temperatures, ended) = player.next_temperatures(points);
+        prop_assert_eq!(i128::from(temperatures.now.to_bits()), at(ms), "{} ms", ms);
+        prop_assert_eq!(
+            i128::from(temperatures.target.to_bits()),
+            at(ms + 14),
+            "{} ms",
+            ms
+        );
+        prop_assert_eq!(
+            ended,
+            (ms >= total_ms).then_some(CourseEnd::Neutral),
+            "{} ms",
+            ms
+        );
+    }
+    Ok(())
+}
+
 proptest! {
     #[test]
-    fn each_tick_is_the_exact_interpolation_and_its_target_that_of_12_ms_later(
+    fn each_tick_is_the_exact_interpolation_and_its_target_that_of_14_ms_later(
         points in courses(), times in 1u16..4, elapsed in 0u32..32, base in -5i32 << 22..5 << 22,
     ) {
-        let base = Celsius::from_bits(base);
-        let mut player = Player::new(&points, base, &order(times, CourseEnd::Neutral), elapsed);
-        let period_ms = points[points.len() - 1].time_ms;
-        let total_ms = period_ms * u32::from(times);
-        let at = |ms: u32| {
-            // A course is at its last point when it ends, and goes on from its first one in the next tick.
-            let ms = ms.min(total_ms);
-            let in_period = if ms > 0 && ms % period_ms == 0 { period_ms } else { ms % period_ms };
-            exact(&points, in_period) + i128::from(base.to_bits())
-        };
-        for ms in elapsed..total_ms + 100 {
-            let (temperatures, ended) = player.next_temperatures(&points);
-            prop_assert_eq!(i128::from(temperatures.now.to_bits()), at(ms), "{} ms", ms);
-            prop_assert_eq!(i128::from(temperatures.target.to_bits()), at(ms + 14), "{} ms", ms);
-            prop_assert_eq!(ended, (ms >= total_ms).then_some(CourseEnd::Neutral), "{} ms", ms);
+        check_exact(&points, times, elapsed, Celsius::from_bits(base))?;
+    }
+}
+
+#[test]
+fn courses_of_points_1_ms_apart_are_played_exactly_whatever_has_elapsed_before_their_first_tick() {
+    for (count, times) in [(2, 1), (2, 200), (3, 70), (48, 5), (128, 1), (128, 3)] {
+        let points: Vec<_> = (0..count)
+            .map(|point: u32| CoursePoint {
+                time_ms: point,
+                temperature: Celsius::from_bits((30 << 22) + (point * 7919 % 400_003) as i32),
+            })
+            .collect();
+        for elapsed in 0..=40 {
+            check_exact(&points, times, elapsed, Celsius::ZERO)
+                .unwrap_or_else(|error| panic!("{count} points, {elapsed} ms: {error}"));
         }
     }
 }
