@@ -54,6 +54,8 @@ impl Hold {
     }
 
     /// Moves on by one tick, and returns the temperatures of that tick for a display with this surface, °C.
+    // A function of its own, so that the code of ticks without a hold stays together in the flash: 7 cycles of their mean.
+    #[inline(never)]
     pub fn next_temperatures(&mut self, surface: Celsius) -> StimulusTemperatures {
         self.passed = self.ticks.min(self.passed.saturating_add(1));
         let at = |passed| temperature_on_line(self.start, self.target, passed, self.ticks);
