@@ -26,6 +26,7 @@ pub fn outline() -> Outline {
             timeout_s: 120.0,
         }),
         rules: TrialRules {
+            target_force_n: None,
             procedure: Procedure::Touch {
                 reach_s: 5.0,
                 contact: ContactRule::Free,
