@@ -32,6 +32,8 @@ pub struct Next<'a> {
     pub attempt: u32,
     /// Level of its staircase, K.
     pub level_k: Option<f64>,
+    /// Whether a break comes before it: its own, or that of a trial that was left out.
+    pub break_before: bool,
 }
 
 impl<'a> Schedule<'a> {
@@ -81,9 +83,11 @@ impl<'a> Schedule<'a> {
 
     /// The next trial, which is taken from those to come.
     pub fn next_trial(&mut self) -> Option<Next<'a>> {
+        let mut break_before = false;
         loop {
             let index = self.queue.pop_front()?;
             let trial = &self.plan.trials[index];
+            break_before |= trial.break_before && self.attempts[index] == 0;
             let staircase = trial.staircase.map(|staircase| &self.staircases[staircase]);
             if staircase.is_some_and(Staircase::is_finished) {
                 continue;
@@ -93,6 +97,7 @@ impl<'a> Schedule<'a> {
                 trial,
                 attempt: self.attempts[index],
                 level_k: staircase.map(Staircase::level),
+                break_before,
             });
         }
     }

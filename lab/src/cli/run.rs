@@ -70,7 +70,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     }
     let out = &arguments.out;
     let recorder = if arguments.resume {
-        Recorder::resume(out, &session, &plan, who)
+        Recorder::resume(out, &session, &plan, who, target.simulated)
     } else {
         Recorder::create(out, &session, &plan, who, target.simulated)
     };

@@ -70,7 +70,7 @@ fn run(session: &Path, out: &Path, resumes: bool, defect: Defect) -> Result<(), 
     let session = Session::read(session).unwrap();
     let plan = Plan::new(&session, WHO.0, WHO.1).unwrap();
     let mut recorder = if resumes {
-        Recorder::resume(out, &session, &plan, WHO).unwrap()
+        Recorder::resume(out, &session, &plan, WHO, true).unwrap()
     } else {
         Recorder::create(out, &session, &plan, WHO, true).unwrap()
     };

@@ -16,21 +16,31 @@ pub struct AppendFile {
 
 impl AppendFile {
     /// Opens a file, or creates it, and keeps its first `bytes`; what a program that was killed has written after them is
-    /// removed.
+    /// removed. With `alone` no other program can open it so.
     ///
     /// # Errors
-    /// The file cannot be opened, or another program has it.
-    pub fn open(path: &Path, bytes: u64) -> Result<Self, RecordingError> {
+    /// The file cannot be opened, is shorter, or another program has it.
+    pub fn open(path: &Path, bytes: u64, alone: bool) -> Result<Self, RecordingError> {
         let options = OpenOptions::new()
             .create(true)
             .truncate(false)
             .write(true)
             .clone();
         let mut file = options.open(path).map_err(at(path))?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(RecordingError::InUse(path.into())),
-            Err(TryLockError::Error(error)) => return Err(at(path)(error)),
+        if alone {
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => return Err(RecordingError::InUse(path.into())),
+                Err(TryLockError::Error(error)) => return Err(at(path)(error)),
+            }
+        }
+        let length = file.metadata().map_err(at(path))?.len();
+        if length < bytes {
+            return Err(RecordingError::Content {
+                path: path.into(),
+                line: 1,
+                problem: format!("it has {length} bytes; the log says that {bytes} were recorded"),
+            });
         }
         file.set_len(bytes).map_err(at(path))?;
         file.seek(SeekFrom::End(0)).map_err(at(path))?;

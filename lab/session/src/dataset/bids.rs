@@ -97,6 +97,9 @@ fn add_participant(folder: &Folder) -> Result<(), RecordingError> {
         .lines()
         .next()
         .map_or(0, |header| header.split('\t').count() - 1);
+    if !list.ends_with('\n') {
+        list.push('\n');
+    }
     list += &format!("{code}{}\n", "\tn/a".repeat(others));
     write_whole(&path, list.as_bytes())
 }

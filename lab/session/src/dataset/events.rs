@@ -129,7 +129,7 @@ fn columns(session: &Session, plan: &Plan) -> Vec<Column> {
         column(
             "response_time",
             Some("s"),
-            "From the first landing to the answer",
+            "From the first landing, or the first tone, to the answer",
             |trial| {
                 number(
                     trial

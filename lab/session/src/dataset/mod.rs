@@ -35,9 +35,17 @@ pub use recorder::{DeviceReport, Recorder, SessionInfo};
 /// Why data cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    /// The operating system refuses.
+    /// The operating system does not let a file be written.
     #[error("{}: {error}. What was recorded before is whole; --resume goes on when there is room", path.display())]
     File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// The operating system does not let a file be read.
+    #[error("{}: {error}", path.display())]
+    Unreadable {
         /// The file.
         path: PathBuf,
         /// Why.
@@ -83,6 +91,14 @@ pub enum RecordingError {
 /// Names the file of an error of the operating system.
 fn at(path: &std::path::Path) -> impl Fn(io::Error) -> RecordingError + '_ {
     move |error| RecordingError::File {
+        path: path.into(),
+        error,
+    }
+}
+
+/// The same of a file that is read.
+fn unreadable(path: &std::path::Path) -> impl Fn(io::Error) -> RecordingError + '_ {
+    move |error| RecordingError::Unreadable {
         path: path.into(),
         error,
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::log::{Entry, LogLine};
 use super::recorder::{INFO, LOG, SESSION, SessionInfo, TELEMETRY};
-use super::{Folder, RecordingError, at, telemetry};
+use super::{Folder, RecordingError, telemetry, unreadable};
 use crate::record::TrialRecord;
 use crate::{Plan, Session, Update};
 
@@ -33,11 +33,11 @@ impl RecordedSession {
     /// A file cannot be read or does not say what it should.
     pub fn read(folder: Folder) -> Result<Self, RecordingError> {
         let info_path = folder.source(INFO);
-        let info = fs::read(&info_path).map_err(at(&info_path))?;
+        let info = fs::read(&info_path).map_err(unreadable(&info_path))?;
         let info: SessionInfo = serde_json::from_slice(&info)
             .map_err(|error| content(&info_path, error.line(), &error))?;
         let session_path = folder.source(SESSION);
-        let text = fs::read_to_string(&session_path).map_err(at(&session_path))?;
+        let text = fs::read_to_string(&session_path).map_err(unreadable(&session_path))?;
         let session = Session::parse(&text, &session_path)
             .map_err(|error| content(&session_path, 1, &error))?;
         let plan = Plan::new(&session, &info.participant, info.seed)
@@ -95,11 +95,11 @@ pub fn recorded_sessions(root: &Path) -> Result<Vec<RecordedSession>, RecordingE
     let mut sessions = Vec::new();
     for participant in names(&source, "sub-")? {
         for task in names(&source.join(format!("sub-{participant}")), "task-")? {
-            sessions.push(RecordedSession::read(Folder::new(
-                root,
-                &participant,
-                &task,
-            ))?);
+            let folder = Folder::new(root, &participant, &task);
+            // A session that was killed while it began has no log yet.
+            if folder.source(LOG).exists() {
+                sessions.push(RecordedSession::read(folder)?);
+            }
         }
     }
     Ok(sessions)
@@ -108,8 +108,8 @@ pub fn recorded_sessions(root: &Path) -> Result<Vec<RecordedSession>, RecordingE
 /// The folders whose names begin with a word, in order, without the word.
 fn names(folder: &Path, word: &str) -> Result<Vec<String>, RecordingError> {
     let mut names = Vec::new();
-    for entry in fs::read_dir(folder).map_err(at(folder))? {
-        let name = entry.map_err(at(folder))?.file_name();
+    for entry in fs::read_dir(folder).map_err(unreadable(folder))? {
+        let name = entry.map_err(unreadable(folder))?.file_name();
         let name = name.to_str().and_then(|name| name.strip_prefix(word));
         names.extend(name.map(str::to_owned));
     }
@@ -117,31 +117,35 @@ fn names(folder: &Path, word: &str) -> Result<Vec<String>, RecordingError> {
     Ok(names)
 }
 
-/// The lines of a log up to the last record, and their length in bytes. What follows is of a trial that has not ended.
+/// The lines of a log up to and including the last record, and their length in bytes. What follows is of a trial that has not
+/// ended, and may be damaged.
 pub(super) fn read_log(path: &Path) -> Result<(Vec<LogLine>, u64), RecordingError> {
-    let text = fs::read(path).map_err(at(path))?;
+    let text = fs::read(path).map_err(unreadable(path))?;
     let (mut lines, mut bytes) = (Vec::new(), 0u64);
-    let mut whole = (0, 0);
+    let mut committed = (0, 0);
+    let mut damaged = None;
     for (number, line) in (1..).zip(text.split_inclusive(|byte| *byte == b'\n')) {
         bytes += line.len() as u64;
         match serde_json::from_slice::<LogLine>(line) {
             Ok(line) => lines.push(line),
-            // A program that was killed may leave a part of a line at the end.
-            Err(_) if bytes == text.len() as u64 => break,
-            Err(error) => return Err(content(path, number, &error)),
+            Err(error) => {
+                damaged = damaged.or(Some((number, error)));
+                continue;
+            }
         }
-        if matches!(
-            lines.last(),
-            Some(LogLine {
-                entry: Entry::Record { .. },
-                ..
-            })
-        ) {
-            whole = (lines.len(), bytes);
+        if let Some(LogLine {
+            entry: Entry::Record { .. },
+            ..
+        }) = lines.last()
+        {
+            if let Some((number, error)) = &damaged {
+                return Err(content(path, *number, error));
+            }
+            committed = (lines.len(), bytes);
         }
     }
-    lines.truncate(whole.0);
-    Ok((lines, whole.1))
+    lines.truncate(committed.0);
+    Ok((lines, committed.1))
 }
 
 /// The records of a log, and the length of the telemetry up to the last one.

@@ -13,7 +13,7 @@ use super::append::AppendFile;
 use super::folder::write_whole;
 use super::log::{Entry, LogLine};
 use super::read::{read_log, records_of};
-use super::{Folder, RecordingError, at, bids, telemetry};
+use super::{Folder, RecordingError, bids, telemetry, unreadable};
 use crate::record::TrialRecord;
 use crate::{Plan, Session, Update};
 
@@ -38,8 +38,8 @@ pub struct SessionInfo {
     pub session_sha256: String,
     /// SHA-256 of `plan.csv`.
     pub plan_sha256: String,
-    /// The device; none if the session has no displays.
-    pub device: Option<Value>,
+    /// The device, and others with which the session was resumed; none if the session has no displays.
+    pub devices: Vec<Value>,
 }
 
 /// What a device says of itself.
@@ -99,7 +99,8 @@ impl Recorder {
     ) -> Result<Self, RecordingError> {
         let folder = Folder::new(root, participant, &session.task);
         let log_path = folder.source(LOG);
-        if log_path.exists() {
+        // A session that has ended before its first trial leaves nothing that could be lost.
+        if log_path.exists() && !records_of(&read_log(&log_path)?.0).0.is_empty() {
             return Err(RecordingError::Exists(log_path));
         }
         let plan_csv = plan.csv();
@@ -113,16 +114,16 @@ impl Recorder {
             program_version: env!("CARGO_PKG_VERSION").into(),
             session_sha256: sha256(session.text.as_bytes()),
             plan_sha256: sha256(plan_csv.as_bytes()),
-            device: None,
+            devices: Vec::new(),
         };
         write_whole(&folder.source(SESSION), session.text.as_bytes())?;
+        let log = AppendFile::open(&log_path, 0, true)?;
         write_whole(&folder.source(PLAN), plan_csv.as_bytes())?;
         write_whole(&folder.source(INFO), &pretty(&info))?;
         bids::describe(&folder)?;
-        let log = AppendFile::open(&log_path, 0)?;
-        let mut rows = AppendFile::open(&folder.source(TELEMETRY), 0)?;
+        let mut rows = AppendFile::open(&folder.source(TELEMETRY), 0, false)?;
         rows.append(telemetry::header().as_bytes())?;
-        let mut recorder = Self {
+        Self {
             folder,
             session: session.clone(),
             plan: plan.clone(),
@@ -132,9 +133,8 @@ impl Recorder {
             telemetry: rows,
             pending: Vec::new(),
             records: Vec::new(),
-        };
-        recorder.begin_now()?;
-        Ok(recorder)
+        }
+        .begun()
     }
 
     /// Goes on with a session that was interrupted: what a program that was killed has written of its last trial is removed.
@@ -146,25 +146,41 @@ impl Recorder {
         session: &Session,
         plan: &Plan,
         (participant, seed): (&str, u64),
+        is_simulated: bool,
     ) -> Result<Self, RecordingError> {
         let folder = Folder::new(root, participant, &session.task);
         let log_path = folder.source(LOG);
         if !log_path.exists() {
             return Err(RecordingError::Missing(log_path));
         }
+        let (lines, committed) = read_log(&log_path)?;
+        let (records, telemetry_bytes) = records_of(&lines);
+        let Some(telemetry_bytes) = telemetry_bytes else {
+            return Err(RecordingError::Missing(log_path));
+        };
         let info_path = folder.source(INFO);
-        let info = fs::read(&info_path).map_err(at(&info_path))?;
+        let info = fs::read(&info_path).map_err(unreadable(&info_path))?;
         let info: SessionInfo =
             serde_json::from_slice(&info).map_err(|error| RecordingError::Content {
                 line: error.line(),
                 problem: error.to_string(),
                 path: info_path.clone(),
             })?;
-        let hash = sha256(session.text.as_bytes());
-        for (what, recorded, given) in [
-            ("the session file of SHA-256", &info.session_sha256, &hash),
-            ("the seed", &info.seed.to_string(), &seed.to_string()),
-        ] {
+        let given = [
+            sha256(session.text.as_bytes()),
+            seed.to_string(),
+            sha256(plan.csv().as_bytes()),
+            kind(is_simulated).into(),
+        ];
+        for ((what, recorded), given) in [
+            ("the session file of SHA-256", &info.session_sha256),
+            ("the seed", &info.seed.to_string()),
+            ("the plan of SHA-256", &info.plan_sha256),
+            ("a participant who is", &kind(info.is_simulated).into()),
+        ]
+        .into_iter()
+        .zip(&given)
+        {
             if recorded != given {
                 return Err(RecordingError::OtherSession {
                     path: info_path,
@@ -174,14 +190,11 @@ impl Recorder {
                 });
             }
         }
-        let (lines, whole) = read_log(&log_path)?;
-        let (records, telemetry_bytes) = records_of(&lines);
-        let log = AppendFile::open(&log_path, whole)?;
-        let telemetry_bytes = telemetry_bytes.unwrap_or(telemetry::header().len() as u64);
-        let rows = AppendFile::open(&folder.source(TELEMETRY), telemetry_bytes)?;
-        let clock_path = folder.source(CLOCK);
-        let clock = fs::read(&clock_path).map_err(at(&clock_path))?;
-        let mut recorder = Self {
+        let log = AppendFile::open(&log_path, committed, true)?;
+        let rows = AppendFile::open(&folder.source(TELEMETRY), telemetry_bytes, false)?;
+        // A clock that cannot be read has nothing that the data need.
+        let clock = fs::read(folder.source(CLOCK)).unwrap_or_default();
+        Self {
             folder,
             session: session.clone(),
             plan: plan.clone(),
@@ -191,23 +204,20 @@ impl Recorder {
             telemetry: rows,
             pending: Vec::new(),
             records,
-        };
-        recorder.begin_now()?;
-        Ok(recorder)
+        }
+        .begun()
     }
 
-    fn begin_now(&mut self) -> Result<(), RecordingError> {
+    /// Notes that it has begun or goes on.
+    fn begun(mut self) -> Result<Self, RecordingError> {
         self.clock.began.push(utc_now());
         self.clock.computer = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
-        self.write_clock()
+        self.write_clock()?;
+        Ok(self)
     }
 
     fn write_clock(&self) -> Result<(), RecordingError> {
         write_whole(&self.folder.source(CLOCK), &pretty(&self.clock))
-    }
-
-    fn write_info(&self) -> Result<(), RecordingError> {
-        write_whole(&self.folder.source(INFO), &pretty(&self.info))
     }
 
     /// The records so far, also those of the runs before.
@@ -228,8 +238,11 @@ impl Recorder {
     /// # Errors
     /// The file cannot be written.
     pub fn device(&mut self, report: &DeviceReport) -> Result<(), RecordingError> {
-        self.info.device = serde_json::to_value(report).ok();
-        self.write_info()
+        let report = serde_json::to_value(report).unwrap_or_default();
+        if self.info.devices.last() != Some(&report) {
+            self.info.devices.push(report);
+        }
+        write_whole(&self.folder.source(INFO), &pretty(&self.info))
     }
 
     /// Takes note of what participant and operator are told at a time of the session, s.
@@ -257,15 +270,19 @@ impl Recorder {
                 telemetry_bytes: self.telemetry.bytes(),
             },
         });
+        self.write_pending()?;
+        self.records.push(record.clone());
+        Ok(())
+    }
+
+    fn write_pending(&mut self) -> Result<(), RecordingError> {
         let mut log = Vec::new();
         for line in self.pending.drain(..) {
             // Maps have text keys and numbers are finite, so nothing fails.
             log.extend(serde_json::to_vec(&line).unwrap_or_default());
             log.push(b'\n');
         }
-        self.log.append(&log)?;
-        self.records.push(record.clone());
-        Ok(())
+        self.log.append(&log)
     }
 
     /// Writes the files of the data set from what is recorded.
@@ -273,6 +290,7 @@ impl Recorder {
     /// # Errors
     /// They cannot be written. What is recorded stays.
     pub fn finish(&mut self) -> Result<(), RecordingError> {
+        self.write_pending()?;
         self.clock.ended = Some(utc_now());
         self.write_clock()?;
         bids::write(&self.folder, &self.session, &self.plan, &self.records)
@@ -290,6 +308,11 @@ pub(super) fn pretty<T: Serialize>(value: &T) -> Vec<u8> {
     let mut text = serde_json::to_vec_pretty(value).unwrap_or_default();
     text.push(b'\n');
     text
+}
+
+/// Whether participant and device are simulated, in words.
+const fn kind(is_simulated: bool) -> &'static str {
+    if is_simulated { "simulated" } else { "real" }
 }
 
 fn sha256(bytes: &[u8]) -> String {

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use thermal_client::client::{ReceivedTelemetry, Telemetry};
 
-use super::{RecordingError, at};
+use super::{RecordingError, unreadable};
 
 /// Columns of the values, in the order of a line on the wire.
 const VALUES: [&str; 9] = [
@@ -54,7 +54,7 @@ pub(super) fn row((t_s, finger, line): (f64, u8, &Telemetry)) -> String {
 
 /// All lines with their times, s.
 pub(super) fn read(path: &Path) -> Result<Vec<(f64, ReceivedTelemetry)>, RecordingError> {
-    let unreadable = |error: csv::Error| at(path)(io::Error::other(error.to_string()));
+    let unreadable = |error: csv::Error| unreadable(path)(io::Error::other(error.to_string()));
     let mut rows = csv::Reader::from_path(path).map_err(unreadable)?;
     let mut lines = Vec::new();
     for (number, row) in (2..).zip(rows.records()) {

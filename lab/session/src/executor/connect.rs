@@ -1,12 +1,11 @@
 //! The begin of a session: which device is this, and is it ready?
 
-use thermal_client::client::{ClientError, QueryCause, QueryIdentity, QueryState};
+use thermal_client::client::{ClientError, PlainCommand, QueryCause, QueryIdentity, QueryState};
 use thermal_client::commissioning::settings;
 use thermal_client::link::Link;
-use thermal_device::StateName;
 
 use super::fingers::Fingers;
-use super::{Executor, SessionEnd, TrialEnd, unanswered};
+use super::{Executor, SessionEnd};
 use crate::dataset::DeviceReport;
 use crate::{OperatorQuestion, Plan, Presented, Update};
 
@@ -41,21 +40,48 @@ impl<L: Link> Executor<'_, L> {
             identity,
             settings: all_settings,
         })?;
+        // Another program may have left it driven.
+        self.switch_off()?;
+        self.clear_trips()
+    }
+
+    /// Lets the operator clear the faults by which fingers of the device have tripped.
+    pub(super) fn clear_trips(&mut self) -> Result<(), SessionEnd> {
         for finger in 0..self.fingers.count() as u8 {
-            let address = self.fingers.address(finger);
-            let status = self.client.ask_finger(address, &QueryState).map_err(ends)?;
-            if let StateName::Tripped(fault) = status.state {
-                self.recover(fault.name())?;
+            while let Some(fault) = self.fault_of(finger)? {
+                let explanation = self.cause_of_trip(finger)?;
+                self.operator(OperatorQuestion::Tripped {
+                    fault: fault.into(),
+                    explanation,
+                })?;
+                let address = self.fingers.address(finger);
+                match self.client.ask_finger(address, &PlainCommand::Clear) {
+                    Ok(()) => {}
+                    Err(ClientError::Link(error)) => return Err(error.into()),
+                    Err(refused) => {
+                        self.inform(Update::Notice(format!(
+                            "it cannot be cleared yet: {refused}"
+                        )));
+                    }
+                }
             }
         }
         Ok(())
     }
 
-    /// Asks the operator what to do about a trip until the fault is cleared.
-    pub(super) fn recover(&mut self, fault: &'static str) -> Result<(), SessionEnd> {
-        let cause = self.client.ask(&QueryCause).map_err(ends)?;
-        let mut explanation = cause.map_or(String::new(), |cause| {
-            let celsius = |value: Option<f64>| value.map_or("-".into(), |c| format!("{c:.2} C"));
+    /// The fault by which a finger of the device has tripped.
+    fn fault_of(&mut self, finger: u8) -> Result<Option<&'static str>, SessionEnd> {
+        let address = self.fingers.address(finger);
+        let status = self.client.ask_finger(address, &QueryState).map_err(ends)?;
+        Ok(status.state.fault().map(|fault| fault.name()))
+    }
+
+    /// What was measured when a finger of the device tripped.
+    fn cause_of_trip(&mut self, finger: u8) -> Result<String, SessionEnd> {
+        let address = self.fingers.address(finger);
+        let cause = self.client.ask_finger(address, &QueryCause).map_err(ends)?;
+        let celsius = |value: Option<f64>| value.map_or("-".into(), |c| format!("{c:.2} C"));
+        Ok(cause.map_or(String::new(), |cause| {
             format!(
                 "display {}, second thermistor {}, sink {}, current {:.2} A",
                 celsius(cause.display_c),
@@ -63,30 +89,15 @@ impl<L: Link> Executor<'_, L> {
                 celsius(cause.sink_c),
                 cause.current_a
             )
-        });
-        loop {
-            self.operator(OperatorQuestion::Tripped {
-                fault: fault.into(),
-                explanation: explanation.clone(),
-            })?;
-            match self.command(None, &thermal_client::client::PlainCommand::Clear) {
-                Ok(()) => return Ok(()),
-                Err(TrialEnd::Session(end)) => return Err(end),
-                Err(TrialEnd::Void(why)) => {
-                    explanation = format!("it cannot be cleared yet: {why}");
-                    self.inform(Update::Notice(explanation.clone()));
-                }
-                Err(TrialEnd::Tripped(_)) => {}
-            }
-        }
+        }))
     }
 }
 
-/// A question without an answer ends a session that has not begun.
+/// What a question without an answer means for the session.
 fn ends(error: ClientError) -> SessionEnd {
-    match unanswered(error) {
-        TrialEnd::Session(end) => end,
-        TrialEnd::Void(why) => SessionEnd::Unsuitable(why),
-        TrialEnd::Tripped(fault) => SessionEnd::Unsuitable(fault.into()),
+    match error {
+        ClientError::Link(error) => error.into(),
+        ClientError::TimedOut { .. } => SessionEnd::Gone(error.to_string()),
+        other => SessionEnd::Unsuitable(other.to_string()),
     }
 }

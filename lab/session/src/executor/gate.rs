@@ -7,6 +7,8 @@ use crate::{Decision, OperatorQuestion, Rest, RestPlace, Update};
 
 /// Span of the mean and of the slope, ms.
 const SPAN_MS: u32 = 1000;
+/// Interval at which the skin is looked at, s.
+const POLL_S: f64 = 0.01;
 /// Largest slope, K/s.
 const SLOPE_MAX_K_S: f64 = 0.02;
 
@@ -33,7 +35,9 @@ impl<L: Link> Executor<'_, L> {
                 return Ok(());
             }
             if now_s >= until_s {
-                let skin_c = displays.iter().find_map(|finger| self.skin(*finger));
+                let skin_c = (displays.iter())
+                    .find(|finger| !self.is_rested(**finger, &rest))
+                    .and_then(|finger| self.skin(*finger));
                 let decision = self.operator(OperatorQuestion::SkinNotReady {
                     skin_c: skin_c.map(|(mean_c, _)| mean_c),
                     wanted_c: rest.skin_c,
@@ -44,7 +48,7 @@ impl<L: Link> Executor<'_, L> {
                     Decision::Wait | Decision::Stop => until_s = self.now_s() + rest.timeout_s,
                 }
             }
-            self.step()?;
+            self.wait_until(now_s + POLL_S)?;
         }
     }
 
@@ -59,7 +63,7 @@ impl<L: Link> Executor<'_, L> {
         let lines = self.trial.last_lines(finger, SPAN_MS);
         let (first, last) = lines.first().zip(lines.last())?;
         let stream_ms = self.session.device.as_ref()?.stream_ms;
-        if last.tick - first.tick + stream_ms < SPAN_MS {
+        if last.tick.saturating_sub(first.tick) + stream_ms < SPAN_MS {
             return None;
         }
         let half = lines.len() / 2;

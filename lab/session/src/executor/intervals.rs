@@ -11,6 +11,9 @@ use crate::{Cue, Departure, Phase, Presented, Update};
 /// Departures below this are none, K: a course has steps of 1 ms.
 const DEPARTURE_MIN_K: f64 = 0.002;
 
+/// Force above which a finger is on the display, N.
+const ON_DISPLAY_N: f64 = 0.05;
+
 impl<L: Link> Executor<'_, L> {
     /// The trial from the first interval to the answer.
     pub(super) fn intervals(
@@ -37,7 +40,7 @@ impl<L: Link> Executor<'_, L> {
         for (index, departure) in (0u8..).zip(departures_k) {
             if index > 0 {
                 let gap_end_s = self.now_s() + gap_s;
-                self.wait_until(gap_end_s)?;
+                self.wait_on_display(device_finger, gap_end_s)?;
             }
             let begin_s = self.now_s();
             self.trial.touch_cue_s.get_or_insert(begin_s);
@@ -64,29 +67,42 @@ impl<L: Link> Executor<'_, L> {
                 };
                 self.command(Some(device_finger), &pulse)?;
             }
-            self.wait_until(begin_s + interval_s)?;
+            self.wait_on_display(device_finger, begin_s + interval_s)?;
         }
         let now_s = self.now_s();
         self.trial.contact_end_s = Some(now_s);
         self.respond(next.trial)
     }
 
+    /// Lets time pass until a time of the session, s, while the finger must stay on the display.
+    fn wait_on_display(&mut self, finger: u8, until_s: f64) -> Result<(), TrialEnd> {
+        let has_lifted = |executor: &mut Self| {
+            executor.check_force(&[finger]);
+            !executor.presses(finger)
+        };
+        if self.wait_for(until_s, has_lifted)? {
+            return Err(TrialEnd::Void("the finger has left the display".into()));
+        }
+        Ok(())
+    }
+
+    /// Whether a finger is on its display.
+    fn presses(&self, finger: u8) -> bool {
+        let line = self.trial.last_line(finger);
+        line.and_then(|line| line.force_n)
+            .is_some_and(|force_n| force_n > ON_DISPLAY_N)
+    }
+
     /// Waits for the finger on the display, where it stays from trial to trial.
     fn wait_for_finger(&mut self, finger: u8) -> Result<(), TrialEnd> {
-        let contact_n = 0.05;
-        let presses = |executor: &mut Self| {
-            let line = executor.trial.last_line(finger);
-            line.and_then(|line| line.force_n)
-                .is_some_and(|force_n| force_n > contact_n)
-        };
-        if !presses(self) {
+        if !self.presses(finger) {
             self.inform(Update::Instruction(
                 "Rest your finger on the display.".into(),
             ));
         }
         let land_s = self.session.trial.land_s;
         let until_s = self.now_s() + land_s;
-        if self.wait_for(until_s, presses)? {
+        if self.wait_for(until_s, |executor| executor.presses(finger))? {
             Ok(())
         } else {
             Err(TrialEnd::Void(format!(

@@ -27,6 +27,9 @@ use crate::{Decision, OperatorQuestion, People, Phase, Plan, Procedure, Session,
 use fingers::Fingers;
 use trial::RunningTrial;
 
+/// Void trials in sequence after which the operator is asked.
+const VOIDS_IN_SEQUENCE: usize = 3;
+
 /// Why a session has ended before its last trial. What was recorded until then is whole, and the session can be resumed.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionEnd {
@@ -39,6 +42,11 @@ pub enum SessionEnd {
          --resume goes on with the trial that was running"
     )]
     Gone(String),
+    /// The device has not confirmed that its bridge is off.
+    #[error(
+        "THE BRIDGE MAY STILL BE ON: `abort` was not confirmed ({0}). PRESS THE EMERGENCY STOP. What was recorded is whole"
+    )]
+    NotOff(String),
     /// The device cannot run the session.
     #[error("the device cannot run this session: {0}")]
     Unsuitable(String),
@@ -73,12 +81,11 @@ impl From<LinkError> for SessionEnd {
     }
 }
 
-/// What a line without its reply means for the trial.
-fn unanswered(error: ClientError) -> TrialEnd {
+/// What a command without its reply means for the trial. A device that answers nothing at all is found before the next one.
+fn trial_end_of(error: ClientError) -> TrialEnd {
     match error {
         ClientError::Link(error) => error.into(),
-        ClientError::TimedOut { .. } => SessionEnd::Gone(error.to_string()).into(),
-        refused => TrialEnd::Void(refused.to_string()),
+        other => TrialEnd::Void(other.to_string()),
     }
 }
 
@@ -96,6 +103,13 @@ pub struct Executor<'a, L> {
     trial: RunningTrial,
     /// What the operator has decided, until it is used.
     decision: Option<Decision>,
+    /// Whether the operator is being asked.
+    operator_is_asked: bool,
+    /// Time of the last line of telemetry, or of the command from which on it must come, s; `None` while the device does not
+    /// stream.
+    streaming_since_s: Option<f64>,
+    /// Whether the session's clock runs, so that what happens is recorded. Before that the device is connected.
+    is_recording: bool,
 }
 
 impl<'a, L: Link> Executor<'a, L> {
@@ -116,6 +130,9 @@ impl<'a, L: Link> Executor<'a, L> {
             fingers: Fingers::default(),
             trial: RunningTrial::default(),
             decision: None,
+            operator_is_asked: false,
+            streaming_since_s: None,
+            is_recording: false,
         }
     }
 
@@ -129,22 +146,29 @@ impl<'a, L: Link> Executor<'a, L> {
         self.phase(Phase::End);
         let off = self.switch_off();
         let written = self.recorder.finish().map_err(SessionEnd::from);
-        let ended = ended.and(off).and(written);
+        let ended = match off {
+            // Nothing is more important than a bridge that may be on.
+            Err(end @ SessionEnd::NotOff(_)) => Err(end),
+            off => ended.and(off).and(written),
+        };
         let why = ended.as_ref().err().map(ToString::to_string);
         self.people.inform(&Update::Ended(why));
         ended
     }
 
     fn run_trials(&mut self, plan: &Plan, mut schedule: Schedule<'_>) -> Result<(), SessionEnd> {
-        // Not recorded: it belongs to this run of the program, and a resumed session has several.
-        self.people.inform(&Update::Phase(Phase::Connect));
+        self.phase(Phase::Connect);
         if self.session.device.is_some() {
             self.connect(plan)?;
         }
+        if !self.recorder.records().is_empty() {
+            self.operator(OperatorQuestion::Ready("the session goes on".into()))?;
+        }
         // The session's clock goes on where the last recorded trial has ended.
         self.clock_offset_ns = self.recorder.end_ns() - self.link_ns();
+        self.is_recording = true;
         while let Some(next) = schedule.next_trial() {
-            if next.trial.break_before && next.attempt == 1 {
+            if next.break_before {
                 self.take_a_break()?;
             }
             let first_of_part = (plan.trials.iter()).find(|trial| trial.part == next.trial.part);
@@ -172,13 +196,12 @@ impl<'a, L: Link> Executor<'a, L> {
             attempt: next.attempt,
             of,
         });
+        self.ask_about_voids()?;
+        self.clear_trips()?;
         let void = match self.conduct(next) {
             Ok(()) => self.trial.void.take(),
             Err(TrialEnd::Void(why)) => Some(why),
-            Err(TrialEnd::Tripped(fault)) => {
-                self.recover(fault)?;
-                Some(format!("the device tripped: {fault}"))
-            }
+            Err(TrialEnd::Tripped(fault)) => Some(format!("the device tripped: {fault}")),
             Err(TrialEnd::Session(end)) => return Err(end),
         };
         self.take_late_lines()?;
@@ -219,20 +242,44 @@ impl<'a, L: Link> Executor<'a, L> {
         Ok(())
     }
 
+    /// Asks the operator after some void trials in sequence, so that an absent participant does not use up the plan.
+    fn ask_about_voids(&mut self) -> Result<(), SessionEnd> {
+        let records = self.recorder.records();
+        let voids = records.iter().rev().map_while(|record| record.void.clone());
+        let voids: Vec<_> = voids.collect();
+        if voids.is_empty() || !voids.len().is_multiple_of(VOIDS_IN_SEQUENCE) {
+            return Ok(());
+        }
+        let text = format!(
+            "{} trials in sequence were void, the last one: {}",
+            voids.len(),
+            voids[0]
+        );
+        self.operator(OperatorQuestion::Ready(text))?;
+        Ok(())
+    }
+
     /// Waits for the shortest break, and then for the operator.
     fn take_a_break(&mut self) -> Result<(), SessionEnd> {
+        // Counted from the last trial, so that a resumed session has the same times.
+        let end_s = seconds(self.recorder.end_ns()) + self.session.break_s;
         self.switch_off()?;
         self.phase(Phase::Break);
-        let end_s = self.now_s() + self.session.break_s;
-        self.outside_of_trials(|executor| executor.wait_until(end_s))?;
+        match self.wait_until(end_s) {
+            Err(TrialEnd::Session(end)) => return Err(end),
+            // The next trial finds a device that has tripped or restarted.
+            Ok(()) | Err(TrialEnd::Void(_) | TrialEnd::Tripped(_)) => {}
+        }
         self.operator(OperatorQuestion::BreakOver)?;
         Ok(())
     }
 
     /// Tells participant and operator, and records it.
     fn inform(&mut self, update: Update) {
-        let now_s = self.now_s();
-        self.recorder.update(now_s, &update);
+        if self.is_recording {
+            let now_s = self.now_s();
+            self.recorder.update(now_s, &update);
+        }
         self.people.inform(&update);
     }
 
@@ -251,7 +298,7 @@ impl<'a, L: Link> Executor<'a, L> {
     }
 }
 
-/// Seconds of a time in ns, in steps of 0.1 ms: finer than any clock here, and the same whatever the times before.
+/// Seconds of a time in ns, rounded to 0.1 ms, so that a resumed session, whose clock has another offset, records the same times.
 fn seconds(ns: i64) -> f64 {
     (ns as f64 / 1e5).round() / 1e4
 }

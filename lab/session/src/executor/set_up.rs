@@ -4,7 +4,7 @@ use thermal_client::client::{PlainCommand, QueryState, Telemetry};
 use thermal_client::link::Link;
 use thermal_device::StateName;
 
-use super::{Executor, TrialEnd, unanswered};
+use super::{Executor, TrialEnd, trial_end_of};
 use crate::{OperatorQuestion, Phase, PlannedTrial, Presented, Procedure, RestPlace};
 
 /// Longest time from `arm` until the device is armed, s; a self-test under a finger takes 1.8 s.
@@ -15,14 +15,21 @@ const AT_SETPOINT_MS: u32 = 300;
 const PREPARE_S: f64 = 20.0;
 /// Distance of a set-point from the temperature that is to be held at which it has arrived, K.
 const ARRIVED_K: f64 = 0.01;
-/// Least time from the begin of the trial until an object is presented, s, in which the device's filters see the skin.
-const WATCH_S: f64 = 2.6;
+/// Least time from the begin of the trial until an object is presented, s: ten time constants of the device's filter of the skin,
+/// which begins when it is armed.
+const SKIN_FILTER_SETTLE_S: f64 = 2.6;
 
 impl<L: Link> Executor<'_, L> {
     /// Sets the device up for a trial, and arms it; then tells the operator what goes where, and waits for the skin.
     pub(super) fn set_up_device(&mut self, trial: &PlannedTrial) -> Result<(), TrialEnd> {
         let session = self.session;
         let displays: Vec<u8> = device_fingers(trial).collect();
+        for finger in 0..self.fingers.count() as u8 {
+            if !displays.contains(&finger) {
+                self.command(Some(finger), &PlainCommand::Abort)?;
+                self.command(Some(finger), &PlainCommand::stream(0))?;
+            }
+        }
         if let Some(device) = &session.device
             && !displays.is_empty()
         {
@@ -41,10 +48,14 @@ impl<L: Link> Executor<'_, L> {
             for finger in &displays {
                 self.command(Some(*finger), &PlainCommand::stream(device.stream_ms))?;
             }
+            let now_s = self.now_s();
+            self.streaming_since_s = Some(now_s);
             self.choose_materials(trial)?;
+        } else {
+            self.streaming_since_s = None;
         }
         // A finger that stays on the display from trial to trial is not disturbed.
-        if !self.continues(&displays)? {
+        if !self.finger_stays_on_display(&displays)? {
             self.arm(&displays)?;
             self.hold_rest_temperature(&displays)?;
             self.phase(Phase::Rest);
@@ -56,7 +67,7 @@ impl<L: Link> Executor<'_, L> {
     }
 
     /// Whether the fingers stay on displays that have presented intervals in the trial before.
-    fn continues(&mut self, displays: &[u8]) -> Result<bool, TrialEnd> {
+    fn finger_stays_on_display(&mut self, displays: &[u8]) -> Result<bool, TrialEnd> {
         if !matches!(self.session.trial.procedure, Procedure::Intervals { .. }) {
             return Ok(false);
         }
@@ -65,7 +76,7 @@ impl<L: Link> Executor<'_, L> {
             let status = self
                 .client
                 .ask_finger(address, &QueryState)
-                .map_err(unanswered)?;
+                .map_err(trial_end_of)?;
             if status.state != StateName::Stimulus {
                 return Ok(false);
             }
@@ -146,7 +157,7 @@ impl<L: Link> Executor<'_, L> {
             return Ok(());
         }
         let since_s = self.trial.begin_s();
-        self.wait_until(since_s + WATCH_S)?;
+        self.wait_until(since_s + SKIN_FILTER_SETTLE_S)?;
         self.fingers.forget_states();
         for presented in &trial.presented {
             match *presented {
@@ -209,8 +220,8 @@ impl<L: Link> Executor<'_, L> {
             Some(StateName::Preset | StateName::Contact | StateName::Stimulus)
         );
         let lines = self.trial.last_lines(finger, AT_SETPOINT_MS);
-        let span_ms =
-            (lines.first().zip(lines.last())).map_or(0, |(first, last)| last.tick - first.tick);
+        let span_ms = (lines.first().zip(lines.last()))
+            .map_or(0, |(first, last)| last.tick.saturating_sub(first.tick));
         let stream_ms = self
             .session
             .device
@@ -221,13 +232,15 @@ impl<L: Link> Executor<'_, L> {
                 .display_c
                 .zip(line.setpoint_c)
                 .map(|(display, setpoint)| (display - setpoint).abs());
-            let arrived = held_c.is_none_or(|held_c| {
-                line.setpoint_c
-                    .is_some_and(|setpoint| (setpoint - held_c).abs() <= ARRIVED_K)
-            });
-            arrived
-                && off.is_some_and(|off_k| off_k <= AT_SETPOINT_K)
-                && line.state != StateName::Armed
+            let arrived = match held_c {
+                Some(held_c) => {
+                    line.state == StateName::Stimulus
+                        && (line.setpoint_c)
+                            .is_some_and(|setpoint| (setpoint - held_c).abs() <= ARRIVED_K)
+                }
+                None => matches!(line.state, StateName::Preset | StateName::Contact),
+            };
+            arrived && off.is_some_and(|off_k| off_k <= AT_SETPOINT_K)
         };
         presents && span_ms + stream_ms >= AT_SETPOINT_MS && lines.iter().all(near)
     }

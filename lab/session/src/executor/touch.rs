@@ -30,6 +30,14 @@ impl<L: Link> Executor<'_, L> {
             self.wait_until(now_s + reach_s)?;
         }
         self.phase(Phase::Contact);
+        if displays
+            .iter()
+            .any(|finger| self.trial.is_touching(*finger))
+        {
+            let why = "a finger was on the display before the tone to touch";
+            return Err(TrialEnd::Void(why.into()));
+        }
+        self.trial.forget_contacts();
         let cue_s = self.now_s();
         self.trial.touch_cue_s = Some(cue_s);
         self.inform(Update::TargetForce(trial.target_force_n));
@@ -104,6 +112,7 @@ impl<L: Link> Executor<'_, L> {
     fn wait_for_landings(&mut self, displays: &[u8], cue_s: f64) -> Result<(), TrialEnd> {
         let land_s = self.session.trial.land_s;
         let all_landed = |executor: &mut Self| {
+            executor.check_force(displays);
             displays
                 .iter()
                 .all(|finger| executor.trial.land_s(*finger).is_some())
@@ -137,7 +146,7 @@ impl<L: Link> Executor<'_, L> {
     }
 
     /// A trial with too much force does not count; the participant goes on undisturbed.
-    fn check_force(&mut self, displays: &[u8]) {
+    pub(super) fn check_force(&mut self, displays: &[u8]) {
         let max_n = self.session.voids.force_max_n;
         for finger in displays {
             let force_n = self.trial.last_line(*finger).and_then(|line| line.force_n);
@@ -183,7 +192,10 @@ impl<L: Link> Executor<'_, L> {
                 "the display was {off_k:.2} K from its set-point at the landing; allowed are {} K",
                 rules.display_off_preset_k
             ))
-        } else if let Some(contact_s) = record.contact_s.filter(|s| *s < rules.contact_min_s) {
+        } else if let Some(contact_s) = (displays.iter())
+            .map(|finger| self.trial.contact_s(*finger))
+            .find(|contact_s| *contact_s < rules.contact_min_s)
+        {
             Some(format!(
                 "a contact of {contact_s:.2} s; allowed are {} s or more",
                 rules.contact_min_s

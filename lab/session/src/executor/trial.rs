@@ -64,7 +64,10 @@ impl RunningTrial {
             .last()
             .is_none_or(|last| last.tick < line.telemetry.tick);
         if !follows {
+            // The trial is void; ticks of before the restart have no time any more.
             self.tick_offset_ns = None;
+            lines.clear();
+            self.contacts.iter_mut().for_each(Vec::clear);
         }
         let offset_ns = at_ns - i64::from(line.telemetry.tick) * TICK_NS;
         let soonest_ns = self
@@ -80,6 +83,22 @@ impl RunningTrial {
         if let Some(contacts) = self.contacts.get_mut(usize::from(finger)) {
             contacts.push((tick, None));
         }
+    }
+
+    /// Forgets contacts that have ended before the tone to touch.
+    pub fn forget_contacts(&mut self) {
+        self.contacts.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Time for which a finger has touched its display, until now, s.
+    pub fn contact_s(&self, finger: u8) -> f64 {
+        let contacts = self.contacts.get(usize::from(finger));
+        let now = self.last_line(finger).map_or(0, |line| line.tick);
+        let ticks = contacts
+            .into_iter()
+            .flatten()
+            .map(|(land, lift)| lift.unwrap_or(now).saturating_sub(*land));
+        f64::from(ticks.sum::<u32>()) / 1e3
     }
 
     /// Takes note of a lift.
@@ -174,13 +193,9 @@ impl RunningTrial {
         };
         let lifts = displays().filter_map(|finger| contacts(finger).last()?.1);
         let lift_s = lifts.map(|tick| self.time_s(tick)).reduce(f64::max);
-        let duration_ticks = |finger: u8| {
-            let ended = contacts(finger).iter();
-            ended
-                .map(|(land, lift)| lift.map_or(0, |lift| lift.saturating_sub(*land)))
-                .sum::<u32>()
-        };
-        let contact_ticks = displays().map(duration_ticks).max();
+        let contact_s = displays()
+            .map(|finger| self.contact_s(finger))
+            .reduce(f64::max);
         let room_c = land_s.and_then(|land_s| {
             let lines = self.telemetry.first()?;
             lines
@@ -207,7 +222,7 @@ impl RunningTrial {
                 .map(|finger| contacts(finger).len() as u32)
                 .max()
                 .unwrap_or(0),
-            contact_s: contact_ticks.map(|ticks| f64::from(ticks) / 1e3),
+            contact_s,
             target_force_n: planned.target_force_n,
             answer: self.answer(session),
             expected: planned.correct.clone(),

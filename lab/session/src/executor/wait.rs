@@ -2,24 +2,26 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{PlainCommand, ReceivedTelemetry};
-use thermal_client::link::Link;
+use thermal_client::client::{ClientError, PlainCommand, ReceivedTelemetry};
+use thermal_client::link::{Link, LinkError};
 use thermal_device::StateName;
 use thermal_device::events::DeviceEventKind;
 
-use super::{Executor, SessionEnd, TrialEnd, unanswered};
+use super::{Executor, SessionEnd, TrialEnd, seconds, trial_end_of};
 use crate::{Decision, OperatorQuestion, Update};
 
 /// Longest time between two looks at the keys.
-const SLICE: Duration = Duration::from_millis(10);
+const KEY_POLL_INTERVAL: Duration = Duration::from_millis(10);
+/// Number of times that the bridge is ordered off until the device confirms it.
+const OFF_ATTEMPTS: u32 = 3;
+/// Time without telemetry after which a device that streams has stopped: this many intervals, and at least this, s.
+const SILENT_INTERVALS: f64 = 3.0;
+const SILENT_S: f64 = 0.5;
 
 impl<L: Link> Executor<'_, L> {
     /// Lets time pass until a time of the session, s.
     pub(super) fn wait_until(&mut self, until_s: f64) -> Result<(), TrialEnd> {
-        while self.now_s() < until_s {
-            self.step()?;
-        }
-        Ok(())
+        self.wait_for(until_s, |_| false).map(|_| ())
     }
 
     /// Lets time pass until a condition holds, at most until a time of the session, s. Returns whether it holds.
@@ -32,18 +34,23 @@ impl<L: Link> Executor<'_, L> {
             if holds(self) {
                 return Ok(true);
             }
-            if self.now_s() >= until_s {
+            let rest_s = until_s - self.now_s();
+            if rest_s <= 0.0 {
                 return Ok(false);
             }
-            self.step()?;
+            let rest = Duration::from_secs_f64(rest_s);
+            self.step(rest.min(KEY_POLL_INTERVAL))?;
         }
     }
 
-    /// Lets time pass until the next line of telemetry, at most 10 ms, and takes note of what has come.
-    pub(super) fn step(&mut self) -> Result<(), TrialEnd> {
+    /// Lets time pass until the next line of telemetry, at most for `longest`, and takes note of what has come and of what was
+    /// pressed.
+    fn step(&mut self, longest: Duration) -> Result<(), TrialEnd> {
         match self.people.decision() {
             Some(Decision::Stop) => return Err(SessionEnd::Stopped.into()),
-            Some(Decision::Void) => return Err(TrialEnd::Void("by the operator".into())),
+            Some(Decision::Void) if !self.operator_is_asked => {
+                return Err(TrialEnd::Void("by the operator".into()));
+            }
             Some(decision) => self.decision = Some(decision),
             None => {}
         }
@@ -56,13 +63,10 @@ impl<L: Link> Executor<'_, L> {
             self.trial.is_asked = false;
             self.inform(Update::Answered(Some(response)));
         }
-        let line = self
-            .client
-            .next_telemetry(SLICE)
-            .map_err(SessionEnd::from)?;
+        let line = (self.client.next_telemetry(longest)).map_err(SessionEnd::from)?;
         self.take_events();
         let Some(line) = line else {
-            return Ok(());
+            return self.check_silence();
         };
         let follows = self.received(&line);
         if let StateName::Tripped(fault) = line.telemetry.state {
@@ -74,12 +78,26 @@ impl<L: Link> Executor<'_, L> {
         Ok(())
     }
 
+    /// A device that was asked to stream and does not has restarted or failed.
+    fn check_silence(&mut self) -> Result<(), TrialEnd> {
+        let (Some(since_s), Some(device)) = (self.streaming_since_s, &self.session.device) else {
+            return Ok(());
+        };
+        let silent_s = self.now_s() - since_s;
+        let most_s = (SILENT_INTERVALS * f64::from(device.stream_ms) / 1e3).max(SILENT_S);
+        if silent_s > most_s {
+            return Err(TrialEnd::Void(format!("no telemetry for {silent_s:.1} s")));
+        }
+        Ok(())
+    }
+
     /// Takes note of a line of telemetry; returns whether its tick follows that of the one before.
     fn received(&mut self, line: &ReceivedTelemetry) -> bool {
         self.people.inform(&Update::Telemetry(*line));
         let finger = usize::from(line.finger.unwrap_or(0));
         self.fingers.received(finger, &line.telemetry);
         let at_ns = line.at.as_nanos() as i64 + self.clock_offset_ns;
+        self.streaming_since_s = Some(seconds(at_ns));
         self.trial.received(line, at_ns)
     }
 
@@ -113,32 +131,22 @@ impl<L: Link> Executor<'_, L> {
         }
     }
 
-    /// Asks the operator, and waits for a decision.
+    /// Asks the operator, and waits for a decision. Trips and restarts meanwhile are found when the device is used next.
     pub(super) fn operator(&mut self, question: OperatorQuestion) -> Result<Decision, SessionEnd> {
         self.decision = None;
+        self.operator_is_asked = true;
         self.inform(Update::Decide(question));
-        self.outside_of_trials(|executor| {
-            loop {
-                if let Some(decision) = executor.decision.take() {
-                    return Ok(decision);
-                }
-                executor.step()?;
+        let decided = loop {
+            if let Some(decision) = self.decision.take() {
+                break Ok(decision);
             }
-        })
-    }
-
-    /// Does something during which trips and restarts of the device do not matter, and a decision for a void trial neither.
-    pub(super) fn outside_of_trials<T>(
-        &mut self,
-        mut work: impl FnMut(&mut Self) -> Result<T, TrialEnd>,
-    ) -> Result<T, SessionEnd> {
-        loop {
-            match work(self) {
-                Ok(done) => return Ok(done),
-                Err(TrialEnd::Session(end)) => return Err(end),
-                Err(TrialEnd::Void(_) | TrialEnd::Tripped(_)) => {}
+            match self.step(KEY_POLL_INTERVAL) {
+                Err(TrialEnd::Session(end)) => break Err(end),
+                Ok(()) | Err(TrialEnd::Void(_) | TrialEnd::Tripped(_)) => {}
             }
-        }
+        };
+        self.operator_is_asked = false;
+        decided
     }
 
     /// Sends a command to one finger, or to all for `None`.
@@ -148,22 +156,29 @@ impl<L: Link> Executor<'_, L> {
         command: &PlainCommand,
     ) -> Result<(), TrialEnd> {
         let address = finger.and_then(|finger| self.fingers.address(finger));
-        (self.client.ask_finger(address, command)).map_err(unanswered)
+        (self.client.ask_finger(address, command)).map_err(trial_end_of)
     }
 
-    /// Switches the bridge off and telemetry too, if there is a device.
+    /// Switches the bridge off, and then telemetry: only a confirmed `abort` means that the bridge is off, and a device that
+    /// streams to nobody switches it off by itself.
     pub(super) fn switch_off(&mut self) -> Result<(), SessionEnd> {
         if self.fingers.count() == 0 {
             return Ok(());
         }
-        let off = [PlainCommand::Abort, PlainCommand::stream(0)];
-        match off
-            .iter()
-            .try_for_each(|command| self.command(None, command))
-        {
-            Err(TrialEnd::Session(end)) => Err(end),
-            // A device that refuses has its bridge off.
-            _ => Ok(()),
+        let mut off = self.client.ask(&PlainCommand::Abort);
+        for _ in 1..OFF_ATTEMPTS {
+            if off.is_ok() {
+                break;
+            }
+            off = self.client.ask(&PlainCommand::Abort);
         }
+        off.map_err(|error| match error {
+            ClientError::Link(LinkError::Gone(why)) => SessionEnd::Gone(why),
+            error => SessionEnd::NotOff(error.to_string()),
+        })?;
+        // The bridge is off; that telemetry goes on for a while harms nobody.
+        let _ignored = self.client.ask(&PlainCommand::stream(0));
+        self.streaming_since_s = None;
+        Ok(())
     }
 }
