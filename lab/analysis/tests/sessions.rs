@@ -93,7 +93,7 @@ fn recorded(session: &Session, person: u32) -> RecordedSession {
             program_version: String::new(),
             session_sha256: String::new(),
             plan_sha256: String::new(),
-            device: None,
+            devices: Vec::new(),
         },
         records: records.collect(),
         session: session.clone(),

@@ -46,7 +46,7 @@ pub struct ObserverParams {
 
 impl ObserverParams {
     /// Touching materials. Noise, factor of three fingers and lapses are fitted to Tables 3-3 and 3-5 of the thesis together
-    /// (35 cells; [`crate::predictions::fit`]); the factor of identification is fitted to the 55 % of section 4.2.
+    /// (35 cells; [`crate::predictions::fit`]); the factor of identification is fitted to both percentages of section 4.2.
     pub const TOUCH: Self = Self {
         s0_k: 0.59,
         w: 0.163,

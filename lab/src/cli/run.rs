@@ -113,9 +113,10 @@ fn refused(error: RecordingError) -> Failure {
         RecordingError::Exists(_)
         | RecordingError::Missing(_)
         | RecordingError::OtherSession { .. } => Failure::input(error),
-        RecordingError::File { .. } | RecordingError::InUse(_) | RecordingError::Content { .. } => {
-            Failure::run(error)
-        }
+        RecordingError::File { .. }
+        | RecordingError::Unreadable { .. }
+        | RecordingError::InUse(_)
+        | RecordingError::Content { .. } => Failure::run(error),
     }
 }
 
@@ -186,9 +187,10 @@ impl Run<'_> {
         eprintln!("thermal-lab: data set: {}", folder.root().display());
         ended.map_err(|end| match end {
             SessionEnd::Unsuitable(_) => Failure::input(anyhow!(end)),
-            SessionEnd::Stopped | SessionEnd::Gone(_) | SessionEnd::Recording(_) => {
-                Failure::run(anyhow!(end))
-            }
+            SessionEnd::NotOff(_)
+            | SessionEnd::Stopped
+            | SessionEnd::Gone(_)
+            | SessionEnd::Recording(_) => Failure::run(anyhow!(end)),
         })
     }
 }

@@ -76,6 +76,8 @@ pub fn monitor<L: Link>(
         // Whoever closes the window interrupts the wait, too.
         Ok(()) | Err(ClientError::Link(LinkError::Interrupted)) => {
             off?;
+            // Only after a confirmed `abort`: a device that streams to nobody switches its bridge off by itself.
+            client.ask(&PlainCommand::Abort)?;
             client.ask(&PlainCommand::stream(0))
         }
         failed => failed,

@@ -100,7 +100,7 @@ pub fn run_window<T: Send, E: Display + Send>(
                 views::apply(&context.egui_ctx, state.dark);
                 running.store(true, Ordering::SeqCst);
                 let spawned = scope.spawn(move || {
-                    let _ended = Ended(running);
+                    let _ended = Ended(running, end.clone());
                     let result = worker(&mut people);
                     end.end(result.as_ref().err().map(ToString::to_string));
                     result
@@ -147,10 +147,13 @@ impl Drop for WindowGone<'_> {
 }
 
 /// Says that the worker has ended, also by a panic.
-struct Ended<'a>(&'a AtomicBool);
+struct Ended<'a>(&'a AtomicBool, Desk);
 
 impl Drop for Ended<'_> {
     fn drop(&mut self) {
+        if thread::panicking() {
+            self.1.end(Some(WindowError::Worker.to_string()));
+        }
         self.0.store(false, Ordering::SeqCst);
     }
 }

@@ -138,7 +138,7 @@ pub const fn phase(phase: Phase) -> &'static str {
         Phase::Respond => "the participant answers",
         Phase::Return => "the participant lifts the fingers",
         Phase::Break => "a break between two blocks",
-        Phase::End => "all trials have ended",
+        Phase::End => "the session has ended",
     }
 }
 

@@ -10,7 +10,7 @@ use super::{confusion, oddity, pairs};
 use crate::input::Task;
 use crate::report::{Section, Table, cells, numbers, words};
 
-const CITATION: &str = "H.-N. Ho, Material recognition based on thermal cues: mechanisms and applications, PhD thesis, \
+const CITATION: &str = "H.-N. Ho, Development and Evaluation of a Thermal Model for Haptic Interfaces, PhD thesis, \
      Massachusetts Institute of Technology, 2006";
 
 /// The published results of a shipped session; `None` of others.

@@ -1,5 +1,5 @@
-//! Conditions and results of Ho's experiments (H.-N. Ho, *Material Recognition Based on Thermal Cues: Mechanisms and
-//! Applications*, Ph.D. thesis, MIT, 2006) beside those of [`thermal_thesis::published`].
+//! Conditions and results of Ho's experiments (H.-N. Ho, *Development and Evaluation of a Thermal Model for Haptic
+//! Interfaces*, Ph.D. thesis, MIT, 2006) beside those of [`thermal_thesis::published`].
 
 /// Materials of Table 3-3 (section 3.2), the coldest first.
 pub const TABLE_3_3_MATERIALS: [&str; 6] =
