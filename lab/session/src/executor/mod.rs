@@ -27,6 +27,8 @@ use crate::{Decision, OperatorQuestion, People, Phase, Plan, Procedure, Session,
 use fingers::Fingers;
 use trial::RunningTrial;
 
+/// Step in which the session's clock counts, s.
+const CLOCK_STEP_S: f64 = 1e-4;
 /// Void trials in sequence after which the operator is asked.
 const VOIDS_IN_SEQUENCE: usize = 3;
 

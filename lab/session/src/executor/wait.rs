@@ -7,7 +7,7 @@ use thermal_client::link::{Link, LinkError};
 use thermal_device::StateName;
 use thermal_device::events::DeviceEventKind;
 
-use super::{Executor, SessionEnd, TrialEnd, seconds, trial_end_of};
+use super::{CLOCK_STEP_S, Executor, SessionEnd, TrialEnd, seconds, trial_end_of};
 use crate::{Decision, OperatorQuestion, Update};
 
 /// Longest time between two looks at the keys.
@@ -35,7 +35,7 @@ impl<L: Link> Executor<'_, L> {
                 return Ok(true);
             }
             let rest_s = until_s - self.now_s();
-            if rest_s <= 0.0 {
+            if rest_s < CLOCK_STEP_S / 2.0 {
                 return Ok(false);
             }
             let rest = Duration::from_secs_f64(rest_s);
