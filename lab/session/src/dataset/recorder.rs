@@ -156,7 +156,8 @@ impl Recorder {
         let (lines, committed) = read_log(&log_path)?;
         let (records, telemetry_bytes) = records_of(&lines);
         let Some(telemetry_bytes) = telemetry_bytes else {
-            return Err(RecordingError::Missing(log_path));
+            // It was interrupted before its first trial had ended.
+            return Self::create(root, session, plan, (participant, seed), is_simulated);
         };
         let info_path = folder.source(INFO);
         let info = fs::read(&info_path).map_err(unreadable(&info_path))?;

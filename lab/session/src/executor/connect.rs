@@ -45,8 +45,22 @@ impl<L: Link> Executor<'_, L> {
         self.clear_trips()
     }
 
+    /// Meets the device at the begin of a trial, whatever has happened to it since the one before.
+    pub(super) fn meet_device(&mut self) -> Result<(), SessionEnd> {
+        if self.fingers.count() == 0 {
+            return Ok(());
+        }
+        // First of all, because a device that has restarted has forgotten it, and its other answers would count as damaged.
+        match self.client.ask(&PlainCommand::Checksum(true)) {
+            Err(ClientError::Link(error)) => return Err(error.into()),
+            // The next question shows whether it answers.
+            Ok(()) | Err(_) => {}
+        }
+        self.clear_trips()
+    }
+
     /// Lets the operator clear the faults by which fingers of the device have tripped.
-    pub(super) fn clear_trips(&mut self) -> Result<(), SessionEnd> {
+    fn clear_trips(&mut self) -> Result<(), SessionEnd> {
         for finger in 0..self.fingers.count() as u8 {
             while let Some(fault) = self.fault_of(finger)? {
                 let explanation = self.cause_of_trip(finger)?;

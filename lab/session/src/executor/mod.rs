@@ -199,7 +199,7 @@ impl<'a, L: Link> Executor<'a, L> {
             of,
         });
         self.ask_about_voids()?;
-        self.clear_trips()?;
+        self.meet_device()?;
         let void = match self.conduct(next) {
             Ok(()) => self.trial.void.take(),
             Err(TrialEnd::Void(why)) => Some(why),

@@ -34,7 +34,6 @@ impl<L: Link> Executor<'_, L> {
             && !displays.is_empty()
         {
             let common = [
-                PlainCommand::Checksum(true),
                 PlainCommand::Events(true),
                 PlainCommand::Law(device.law),
                 PlainCommand::Mode(device.mode),
