@@ -277,6 +277,7 @@ impl People for TerminalPeople<'_> {
             }
             Update::Feedback { is_correct } => self.tell(texts::feedback(*is_correct)),
             Update::Decide(question) => self.decide(question),
+            Update::Decided(_) => self.to_decide = None,
             Update::TargetForce(Some(target_n)) => self.tell(&format!("press with {target_n} N")),
             Update::TargetForce(None) => {}
             Update::Telemetry(received) => self.telemetry(received),

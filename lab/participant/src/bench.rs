@@ -71,6 +71,9 @@ pub struct BenchOptions {
     pub edge_share: Option<f64>,
     /// Seed of the device's parts.
     pub device_seed: u64,
+    /// Whether the device stays as it is from trial to trial, as a real one does, instead of being powered up for each: then what
+    /// is measured in a trial depends on those before it.
+    pub keeps_device: bool,
     /// What happens on purpose.
     pub events: Vec<SimulatedEvent>,
 }
@@ -84,6 +87,7 @@ impl Default for BenchOptions {
             finger: None,
             room_c: 24.0,
             edge_share: None,
+            keeps_device: false,
             device_seed: 1,
             events: Vec::new(),
         }
@@ -358,7 +362,9 @@ impl State {
         self.decisions.clear();
         let running = RunningTrial::new(trial, attempt, of, self.ms, &self.setting)?;
         let purpose = format!("trial {} attempt {attempt}", trial.number);
-        self.power_up(running.skin_c(), &purpose)?;
+        if !self.setting.options.keeps_device {
+            self.power_up(running.skin_c(), &purpose)?;
+        }
         self.trial = Some(running);
         Ok(())
     }

@@ -45,6 +45,8 @@ pub enum Update {
     Answered(Option<Response>),
     /// The operator is to decide.
     Decide(OperatorQuestion),
+    /// The operator's question is over: this was decided.
+    Decided(Decision),
     /// The force that the participant is to follow, N; `None` from the end of the contact on.
     TargetForce(Option<f64>),
     /// Whether the answer was correct, for the participant.

@@ -149,6 +149,7 @@ impl Model {
                 self.participant.instruction = Some(texts::feedback(*is_correct).into());
             }
             Update::Decide(question) => self.set_question(Some(question.clone())),
+            Update::Decided(_) => self.set_question(None),
             Update::TargetForce(target_n) => {
                 let follow = target_n.filter(|target_n| *target_n > 0.0);
                 self.participant.follow = follow.map(|target_n| Follow::new(target_n, at));

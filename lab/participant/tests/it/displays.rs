@@ -79,6 +79,59 @@ fn trips_and_operators_void_trials_which_are_repeated() {
     assert_eq!(ran.records.len(), 10);
 }
 
+/// A device that stays as it is from trial to trial, with a skin that is the same in all of them.
+fn kept_device(events: Vec<SimulatedEvent>) -> BenchOptions {
+    BenchOptions {
+        keeps_device: true,
+        events,
+        ..noise_free()
+    }
+}
+
+#[test]
+fn a_device_that_trips_stays_tripped_until_the_operator_clears_it_and_the_session_goes_on() {
+    let event = SimulatedEvent {
+        trial: 2,
+        attempt: Some(1),
+        what: Happening::FaultAfterLanding {
+            fault: ActiveFault::from(FaultKind::ThermistorOpen),
+            from_s: 1.0,
+            for_s: 0.5,
+        },
+    };
+    let session = session("p5-real-and-simulated.toml", &[]);
+    let ran = run("p5-kept", &session, kept_device(vec![event]), 20);
+    let voids: Vec<_> = (ran.records.iter())
+        .filter_map(|record| Some((record.trial, record.void.clone()?)))
+        .collect();
+    assert_eq!(voids.len(), 1, "{voids:?}");
+    assert!(
+        voids[0].0 == 2 && voids[0].1.contains("tripped"),
+        "{voids:?}"
+    );
+    assert_eq!(ran.records.len(), 21);
+}
+
+#[test]
+fn a_finger_that_stays_on_the_display_is_not_disturbed_between_two_trials() {
+    let session = session("p9-change-threshold.toml", &[]);
+    let ran = run("p9-kept", &session, kept_device(Vec::new()), 12);
+    let voids: Vec<_> = ran
+        .records
+        .iter()
+        .filter_map(|record| record.void.clone())
+        .collect();
+    assert!(voids.is_empty(), "{voids:?}");
+    // Without a new self-test and a new rest, a trial takes its intervals and little more.
+    let length_s = |index: usize| ran.records[index].end_s - ran.records[index].begin_s;
+    assert!(length_s(0) > 20.0, "{} s", length_s(0));
+    assert!(
+        (1..12).all(|index| length_s(index) < 16.0),
+        "{} s",
+        length_s(1)
+    );
+}
+
 #[test]
 fn thresholds_come_down_to_the_noise_of_the_observer() {
     let ran = run(

@@ -51,10 +51,10 @@ impl<L: Link> Executor<'_, L> {
             return Ok(());
         }
         // First of all, because a device that has restarted has forgotten it, and its other answers would count as damaged.
-        match self.client.ask(&PlainCommand::Checksum(true)) {
-            Err(ClientError::Link(error)) => return Err(error.into()),
-            // The next question shows whether it answers.
-            Ok(()) | Err(_) => {}
+        // Whether it answers at all, the next question shows.
+        let checksums = self.client.ask(&PlainCommand::Checksum(true));
+        if let Err(ClientError::Link(error)) = checksums {
+            return Err(error.into());
         }
         self.clear_trips()
     }

@@ -146,6 +146,9 @@ impl<L: Link> Executor<'_, L> {
             }
         };
         self.operator_is_asked = false;
+        if let Ok(decision) = &decided {
+            self.inform(Update::Decided(*decision));
+        }
         decided
     }
 
