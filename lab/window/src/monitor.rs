@@ -8,6 +8,8 @@ use thermal_session::{People, Update};
 
 /// Longest wait for telemetry, after which orders are looked at.
 const LOOK: Duration = Duration::from_millis(20);
+/// What is said when the device has confirmed that.
+const BRIDGE_OFF: &str = "bridge off";
 /// Times that the bridge is ordered off until the device answers.
 const OFF_ATTEMPTS: u32 = 3;
 
@@ -75,10 +77,11 @@ pub fn monitor<L: Link>(
     match watched {
         // Whoever closes the window interrupts the wait, too.
         Ok(()) | Err(ClientError::Link(LinkError::Interrupted)) => {
-            off?;
             // Only after a confirmed `abort`: a device that streams to nobody switches its bridge off by itself.
-            client.ask(&PlainCommand::Abort)?;
-            client.ask(&PlainCommand::stream(0))
+            if off? == BRIDGE_OFF {
+                client.ask(&PlainCommand::stream(0))?;
+            }
+            Ok(())
         }
         failed => failed,
     }
@@ -147,7 +150,7 @@ fn carry_out<L: Link>(client: &mut Client<L>, order: Order) -> Result<String, Cl
         answer = client.ask(&command);
     }
     match answer {
-        Ok(()) if order == Order::Off => Ok("bridge off".into()),
+        Ok(()) if order == Order::Off => Ok(BRIDGE_OFF.into()),
         Ok(()) => Ok(format!("`{}`: ok", order.word())),
         Err(ClientError::Link(error @ LinkError::Gone(_))) => Err(error.into()),
         Err(error) if order == Order::Off => Ok(format!(
