@@ -126,7 +126,7 @@ fn a_finger_that_stays_on_the_display_is_not_disturbed_between_two_trials() {
     let length_s = |index: usize| ran.records[index].end_s - ran.records[index].begin_s;
     assert!(length_s(0) > 20.0, "{} s", length_s(0));
     assert!(
-        (1..12).all(|index| length_s(index) < 16.0),
+        (1..12).all(|index| length_s(index) < 20.0),
         "{} s",
         length_s(1)
     );
