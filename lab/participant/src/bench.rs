@@ -204,12 +204,12 @@ impl Bench {
                 known_material(session, material)?;
             }
         }
-        let device = match stations().filter_map(device_finger).max() {
+        let device = match stations().filter_map(Presented::device_finger).max() {
             Some(last) => Some(PreparedDevice::new(
                 &params,
                 options.room_c,
                 options.device_seed,
-                last + 1,
+                usize::from(last) + 1,
             )?),
             None => None,
         };
@@ -417,16 +417,6 @@ impl State {
                 self.failure = Some(error);
             }
         }
-    }
-}
-
-/// Finger of the device whose display a station is.
-fn device_finger(presented: &Presented) -> Option<usize> {
-    match presented {
-        Presented::Nothing | Presented::Sample { .. } => None,
-        Presented::Material { device_finger, .. }
-        | Presented::Hold { device_finger, .. }
-        | Presented::Pulses { device_finger, .. } => Some(usize::from(*device_finger)),
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 use thermal_client::client::{ReceivedEvent, ReceivedTelemetry, Telemetry};
 use thermal_device::events::DeviceEventKind;
 use thermal_session::{
-    OperatorQuestion, Phase, PlannedTrial, Rest, Session, Station, TrialRules, Update,
+    OperatorQuestion, Phase, PlannedTrial, Presented, Rest, Session, Station, TrialRules, Update,
 };
 
 use crate::gate::{Gate, SkinGate, Waiting};
@@ -218,14 +218,8 @@ impl Model {
 
     /// The finger whose force the participant sees: the first display of the trial.
     fn followed_finger(&self) -> u8 {
-        use thermal_session::Presented::{Hold, Material, Nothing, Pulses, Sample};
         let presented = self.trial.iter().flat_map(|view| &view.trial.presented);
-        let mut fingers = presented.filter_map(|presented| match presented {
-            Material { device_finger, .. }
-            | Hold { device_finger, .. }
-            | Pulses { device_finger, .. } => Some(*device_finger),
-            Nothing | Sample { .. } => None,
-        });
+        let mut fingers = presented.filter_map(Presented::device_finger);
         fingers.next().unwrap_or(0)
     }
 

@@ -6,7 +6,7 @@ use thermal_session::{
 };
 use thermal_sim::scene::ActiveFault;
 
-use super::{BenchError, Observation, Setting, device_finger, known_material};
+use super::{BenchError, Observation, Setting, known_material};
 use crate::device::RunningDevice;
 use crate::falls::{both, sample_touch};
 use crate::hand::{ForceCourse, Touches};
@@ -126,7 +126,7 @@ impl RunningTrial {
                     meter.push(both(touch.receptors_c())?);
                     Stimulus::Sample(Box::new(touch))
                 }
-                display => Stimulus::Display(device_finger(display).unwrap_or(0)),
+                display => Stimulus::Display(display.device_finger().map_or(0, usize::from)),
             };
             let target_n = trial.target_force_n;
             let force = |purpose, touches, target_n| {

@@ -78,7 +78,7 @@ impl RunningTrial {
         follows
     }
 
-    /// Takes note of a landing or a lift.
+    /// Takes note of a landing.
     pub fn landed(&mut self, finger: u8, tick: u32) {
         if let Some(contacts) = self.contacts.get_mut(usize::from(finger)) {
             contacts.push((tick, None));
