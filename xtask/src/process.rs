@@ -27,8 +27,8 @@ pub fn workspace() -> &'static Path {
 /// that are not Unicode are replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Invocation {
-    program: String,
-    shown: String,
+    program: OsString,
+    shown: Vec<String>,
     args: Vec<OsString>,
     set: Vec<(String, String)>,
     unset: Vec<&'static str>,
@@ -39,7 +39,7 @@ impl Invocation {
     pub fn new<A: Into<OsString>>(program: &str, args: impl IntoIterator<Item = A>) -> Self {
         Self {
             program: program.into(),
-            shown: program.into(),
+            shown: vec![program.into()],
             args: args.into_iter().map(Into::into).collect(),
             set: Vec::new(),
             unset: Vec::new(),
@@ -48,10 +48,21 @@ impl Invocation {
 
     /// The cargo that runs this program, printed as `cargo`.
     pub fn cargo<A: Into<OsString>>(args: impl IntoIterator<Item = A>) -> Self {
-        let program = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+        let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         Self {
             program,
             ..Self::new("cargo", args)
+        }
+    }
+
+    /// This program, printed as `cargo xtask`. Started by cargo, it would wait for cargo's lock of the target folder, which the
+    /// compilation of another lane may hold for minutes.
+    pub fn xtask<A: Into<OsString>>(args: impl IntoIterator<Item = A>) -> Self {
+        let program = std::env::current_exe().unwrap_or_else(|_| "xtask".into());
+        Self {
+            program: program.into(),
+            shown: vec!["cargo".into(), "xtask".into()],
+            ..Self::new("", args)
         }
     }
 
@@ -237,7 +248,8 @@ impl fmt::Display for Invocation {
         for (name, value) in &self.set {
             write!(f, "{name}={} ", quoted(value))?;
         }
-        f.write_str(&quoted(&self.shown))?;
+        let shown: Vec<_> = self.shown.iter().map(|word| quoted(word)).collect();
+        f.write_str(&shown.join(" "))?;
         for arg in &self.args {
             write!(f, " {}", quoted(&arg.to_string_lossy()))?;
         }

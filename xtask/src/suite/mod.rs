@@ -30,6 +30,9 @@ fn check<const N: usize>(title: &'static str, lines: [&str; N]) -> Check {
 /// A command line of cargo. Where it runs tests and the set-up has found or installed mpmath, the generators of golden
 /// data must run as well.
 fn cargo(line: &str) -> Invocation {
+    if let Some(line) = line.strip_prefix("xtask ") {
+        return Invocation::xtask(line.split(' '));
+    }
     let cargo = Invocation::cargo(line.split(' '));
     if line.starts_with("test ") && python_with_mpmath().is_some() {
         cargo.env(GENERATORS_REQUIRED, "1")

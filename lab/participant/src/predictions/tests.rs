@@ -1,4 +1,10 @@
+use thermal_thesis::published::{PublishedPair, discrimination, localisation};
+
+use super::condition::{DEVICE_SEED, material};
 use super::*;
+use crate::ObserverParams;
+use crate::device::PreparedDevice;
+use crate::falls::Exploration;
 
 /// The observer's parameters are those that the fit finds, and both tables are reproduced within their tolerances.
 #[test]
