@@ -27,7 +27,7 @@ const TELEMETRY_TIMEOUT: Duration = Duration::from_millis(500);
 /// when this program or its computer stops.
 pub const WATCHED_STREAM_MS: u32 = 500;
 /// Time between two looks at the device while the person types.
-const LOOK: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// What the person enters to end a procedure.
 const ABORT: &str = "abort";
@@ -85,10 +85,12 @@ impl<'a> Person<'a> {
     ) -> Result<String, SurroundingsError> {
         self.tell(question);
         loop {
-            match self.lines.recv_timeout(LOOK) {
+            match self.lines.recv_timeout(POLL_INTERVAL) {
                 Ok(line) => return entered(line),
                 Err(RecvTimeoutError::Disconnected) => return Err(no_more_lines()),
-                Err(RecvTimeoutError::Timeout) => client.wait(LOOK / 100).map_err(ended)?,
+                Err(RecvTimeoutError::Timeout) => {
+                    client.wait(POLL_INTERVAL / 100).map_err(ended)?
+                }
             }
         }
     }

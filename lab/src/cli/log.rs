@@ -14,7 +14,7 @@ use super::target::AnyClient;
 use super::{Failure, Target};
 
 /// Interval at which telemetry that does not come is looked for.
-const LOOK: Duration = Duration::from_millis(200);
+const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
 #[derive(Args)]
 pub struct Arguments {
@@ -101,7 +101,7 @@ fn log(
     out: &mut csv::Writer<Box<dyn Write>>,
 ) -> Result<(), Failure> {
     while end.is_none_or(|end| client.link().now() < end) {
-        let line = match client.next_telemetry(LOOK) {
+        let line = match client.next_telemetry(POLL_INTERVAL) {
             Ok(line) => line,
             Err(LinkError::Interrupted) => break,
             Err(error) => return Err(Failure::run(error)),

@@ -10,13 +10,13 @@ use clap::Args;
 use thermal_lab::watched::Progress;
 use thermal_session::People;
 use thermal_session::dataset::{RecordedSession, recorded_sessions};
-use thermal_window::{Outline, StopFlag};
+use thermal_window::{SessionView, StopFlag};
 
 use super::target::stop_on_signals;
 use super::{Failure, window};
 
 /// Longest time for which nothing is looked at, so that a stop is seen.
-const LOOK: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 #[derive(Args)]
 pub struct Arguments {
@@ -57,9 +57,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             &mut Progress::new(&mut screen, &stop),
         );
     }
-    let outline = Outline::from(&session.session);
+    let session_view = SessionView::from(&session.session);
     let title = format!("{} (recorded)", session.info.title);
-    window::show(&title, Some(outline), &stop, |people| {
+    window::show(&title, Some(session_view), &stop, |people| {
         show(&session, arguments, &stop, people)
     })
 }
@@ -120,7 +120,7 @@ fn show(
             if stop.is_pressed() {
                 return Ok(());
             }
-            sleep(rest.min(LOOK));
+            sleep(rest.min(POLL_INTERVAL));
         }
         people.inform(&update);
     }

@@ -14,7 +14,7 @@ use thermal_lab::watched::{Progress, Watched};
 use thermal_participant::{Bench, BenchOptions};
 use thermal_session::dataset::{Recorder, RecordingError};
 use thermal_session::{Executor, People, Plan, Schedule, Session, SessionEnd};
-use thermal_window::{Outline, StopFlag, Tones};
+use thermal_window::{SessionView, StopFlag, Tones};
 
 use super::target::stop_on_signals;
 use super::{Failure, Target, print_text, window};
@@ -100,8 +100,8 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             all.run(target, &mut recorder, &stop, &mut people)
         }
     } else {
-        let outline = Outline::from(&session);
-        window::show(&session.title, Some(outline), &stop, |people| {
+        let session_view = SessionView::from(&session);
+        window::show(&session.title, Some(session_view), &stop, |people| {
             all.run(target, &mut recorder, &stop, people)
         })
     }

@@ -14,7 +14,7 @@ use super::target::AnyClient;
 use super::{Failure, Target, print};
 
 /// Time between two looks at the device while standard input is silent.
-const LOOK: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 #[derive(Args)]
 pub struct Arguments {
@@ -35,7 +35,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             }
             let entered = lines(BufReader::new(stdin()));
             loop {
-                match entered.recv_timeout(LOOK) {
+                match entered.recv_timeout(POLL_INTERVAL) {
                     Ok(line) => {
                         let line = line.context("standard input").map_err(Failure::run)?;
                         if !line.trim().is_empty() {
@@ -43,7 +43,9 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
                         }
                     }
                     Err(RecvTimeoutError::Disconnected) => break,
-                    Err(RecvTimeoutError::Timeout) => client.wait(LOOK).map_err(Failure::run)?,
+                    Err(RecvTimeoutError::Timeout) => {
+                        client.wait(POLL_INTERVAL).map_err(Failure::run)?
+                    }
                 }
             }
         }

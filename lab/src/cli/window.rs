@@ -1,6 +1,6 @@
 //! Windows, in a build that has them.
 
-use thermal_window::{Outline, StopFlag, WindowPeople};
+use thermal_window::{SessionView, StopFlag, WindowPeople};
 
 use super::Failure;
 
@@ -8,7 +8,7 @@ use super::Failure;
 #[cfg(feature = "window")]
 pub fn show(
     title: &str,
-    outline: Option<Outline>,
+    session_view: Option<SessionView>,
     stop: &StopFlag,
     worker: impl FnOnce(&mut WindowPeople) -> Result<(), Failure> + Send,
 ) -> Result<(), Failure> {
@@ -16,8 +16,8 @@ pub fn show(
 
     let options = WindowOptions {
         title: format!("{title} - thermal-lab"),
-        tones: outline.is_some().then(Tones::start),
-        outline,
+        tones: session_view.is_some().then(Tones::start),
+        session_view,
         stop: stop.clone(),
     };
     let shown = run_window(options, worker).map_err(Failure::input)?;
@@ -37,7 +37,7 @@ pub fn show(
 #[cfg(not(feature = "window"))]
 pub fn show(
     _title: &str,
-    _outline: Option<Outline>,
+    _session_view: Option<SessionView>,
     _stop: &StopFlag,
     _worker: impl FnOnce(&mut WindowPeople) -> Result<(), Failure> + Send,
 ) -> Result<(), Failure> {

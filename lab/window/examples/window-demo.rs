@@ -15,7 +15,7 @@ use thermal_session::{
     Presented, Procedure, Question, Rest, RestPlace, Station, TrialRules, Update,
 };
 use thermal_window::{
-    MonitorPeople, Order, Outline, StopFlag, Tones, WindowOptions, WindowPeople, run_window,
+    MonitorPeople, Order, SessionView, StopFlag, Tones, WindowOptions, WindowPeople, run_window,
 };
 
 const SCREENS: [&str; 11] = [
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let is_monitor = ["monitor", "tripped"].contains(&screen.as_str());
     let options = WindowOptions {
         title: "thermal-lab: demonstration".into(),
-        outline: (!is_monitor).then(outline),
+        session_view: (!is_monitor).then(session_view),
         stop: StopFlag::default(),
         tones: Some(Tones::start()),
     };
@@ -61,12 +61,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn outline() -> Outline {
+fn session_view() -> SessionView {
     let station = |name: &str| Station {
         name: name.into(),
         finger: format!("{name} index finger"),
     };
-    Outline {
+    SessionView {
         title: "P5: real against simulated materials".into(),
         stations: ["left", "right"].map(station).into(),
         rest: Some(Rest {

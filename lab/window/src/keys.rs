@@ -96,7 +96,7 @@ fn letter_action(letter: char, window: WindowKind, model: &Model) -> Option<Acti
     match letter {
         'f' if is_operator => Some(Action::NextFinger),
         'l' if is_operator => Some(Action::Theme),
-        _ if is_operator && model.outline().is_none() => {
+        _ if is_operator && model.session().is_none() => {
             let mut orders = Order::ALL.into_iter();
             let order = orders.find(|order| order.key() == letter)?;
             Some(Action::Order(order))

@@ -22,12 +22,12 @@ pub use entry::NumberEntry;
 pub use gate::Gate;
 pub use keys::{Action, Key, WindowKind, action};
 pub use link_quality::{LinkQuality, ScreenLatency};
-pub use model::{End, FingerView, Model, Notice, Outline, TrialView};
+pub use model::{End, FingerView, Model, Notice, SessionView, TrialView};
 pub use monitor::{MonitorPeople, Order, monitor};
 #[cfg(feature = "native")]
 pub use native::{Shown, WindowError, WindowOptions, run_window};
 pub use participant::{Follow, ParticipantView, ShownCue};
-pub use people::{Desk, WindowPeople};
+pub use people::{WindowPeople, WindowSide};
 pub use stop::StopFlag;
 pub use tone::{Tones, wav};
 pub use trace::{Sample, Trace};

@@ -22,7 +22,7 @@ const FINGERS_MAX: u8 = 8;
 
 /// What of a session is shown.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outline {
+pub struct SessionView {
     /// Its title.
     pub title: String,
     /// Where the fingers go.
@@ -35,7 +35,7 @@ pub struct Outline {
     pub break_s: f64,
 }
 
-impl From<&Session> for Outline {
+impl From<&Session> for SessionView {
     fn from(session: &Session) -> Self {
         Self {
             title: session.title.clone(),
@@ -88,7 +88,7 @@ pub enum End {
 /// All that windows show. Its memory is bounded, whatever it is told.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
-    outline: Option<Outline>,
+    session: Option<SessionView>,
     fingers: BTreeMap<u8, FingerView>,
     phase: Option<(Phase, Duration)>,
     landed_at: Option<Duration>,
@@ -105,14 +105,14 @@ pub struct Model {
 impl Model {
     /// Nothing is known yet; `None` without a session.
     #[must_use]
-    pub fn new(outline: Option<Outline>) -> Self {
-        let stations = outline.iter().flat_map(|outline| &outline.stations);
+    pub fn new(session: Option<SessionView>) -> Self {
+        let stations = session.iter().flat_map(|session| &session.stations);
         Self {
             participant: ParticipantView {
                 stations: stations.map(|station| station.name.clone()).collect(),
                 ..ParticipantView::default()
             },
-            outline,
+            session,
             ..Self::default()
         }
     }
@@ -202,9 +202,9 @@ impl Model {
         view.last = *telemetry;
         view.trace.push(telemetry);
         if let Some(rest) = self
-            .outline
+            .session
             .as_ref()
-            .and_then(|outline| outline.rest.as_ref())
+            .and_then(|session| session.rest.as_ref())
         {
             let means = self.fingers.values().map(|view| view.trace.skin_c());
             self.skin.observe(rest, means, at);
@@ -268,8 +268,8 @@ impl Model {
 
     /// The session; `None` while a device is monitored.
     #[must_use]
-    pub const fn outline(&self) -> Option<&Outline> {
-        self.outline.as_ref()
+    pub const fn session(&self) -> Option<&SessionView> {
+        self.session.as_ref()
     }
 
     /// The fingers of the device.
@@ -293,9 +293,9 @@ impl Model {
     /// What is to be placed where.
     #[must_use]
     pub fn placement(&self) -> Vec<String> {
-        let both = self.outline.as_ref().zip(self.trial.as_ref());
-        both.map_or_else(Vec::new, |(outline, view)| {
-            texts::placement(&outline.stations, &view.trial)
+        let both = self.session.as_ref().zip(self.trial.as_ref());
+        both.map_or_else(Vec::new, |(session, view)| {
+            texts::placement(&session.stations, &view.trial)
         })
     }
 
@@ -303,13 +303,13 @@ impl Model {
     #[must_use]
     pub fn gate(&self, now: Duration) -> Option<Gate> {
         let (phase, since) = self.phase.filter(|_| self.end.is_none())?;
-        let outline = self.outline.as_ref()?;
+        let session = self.session.as_ref()?;
         let waiting = Waiting {
             phase,
             since,
-            rest: outline.rest.as_ref(),
-            rules: &outline.rules,
-            break_s: outline.break_s,
+            rest: session.rest.as_ref(),
+            rules: &session.rules,
+            break_s: session.break_s,
             skin: &self.skin,
             landed_at: self.landed_at,
         };

@@ -7,7 +7,7 @@ use thermal_client::link::{Link, LinkError};
 use thermal_session::{People, Update};
 
 /// Longest wait for telemetry, after which orders are looked at.
-const LOOK: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// What is said when the device has confirmed that.
 const BRIDGE_OFF: &str = "bridge off";
 /// Times that the bridge is ordered off until the device answers.
@@ -105,7 +105,7 @@ fn watch<L: Link>(
     }
     client.ask(&PlainCommand::stream(interval_ms))?;
     while !people.is_closing() {
-        match client.next_telemetry(LOOK) {
+        match client.next_telemetry(POLL_INTERVAL) {
             Ok(Some(line)) => people.inform(&Update::Telemetry(line)),
             // Whoever interrupts the wait has an order.
             Ok(None) | Err(LinkError::Interrupted) => {}

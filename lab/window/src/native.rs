@@ -12,8 +12,8 @@ use thermal_session::{AnswerKind, Question};
 use crate::entry::NumberEntry;
 use crate::keys::{Action, WindowKind, action};
 use crate::link_quality::ScreenLatency;
-use crate::model::{Model, Outline};
-use crate::people::{Desk, WindowPeople};
+use crate::model::{Model, SessionView};
+use crate::people::{WindowPeople, WindowSide};
 use crate::stop::StopFlag;
 use crate::tone::Tones;
 use crate::views;
@@ -27,7 +27,7 @@ pub struct WindowOptions {
     /// Title of the operator's window.
     pub title: String,
     /// The session; `None` for a monitored device, which has no participant.
-    pub outline: Option<Outline>,
+    pub session_view: Option<SessionView>,
     /// The stop, which a handler of signals may press, too.
     pub stop: StopFlag,
     /// Tones for the participant.
@@ -67,12 +67,12 @@ pub fn run_window<T: Send, E: Display + Send>(
 ) -> Result<Shown<T, E>, WindowError> {
     let WindowOptions {
         title,
-        outline,
+        session_view,
         stop,
         tones,
     } = options;
-    let with_participant = outline.is_some();
-    let (mut people, desk) = WindowPeople::new(outline, stop.clone(), tones);
+    let with_participant = session_view.is_some();
+    let (mut people, window_side) = WindowPeople::new(session_view, stop.clone(), tones);
     let running = AtomicBool::new(false);
     let latency = Mutex::new(ScreenLatency::default());
     thread::scope(|scope| {
@@ -88,7 +88,8 @@ pub fn run_window<T: Send, E: Display + Send>(
         // Two windows that wait for the monitor one after the other would have half its rate.
         native.glow_options.vsync = false;
         let gone = WindowGone(&stop);
-        let (desk, running, latency, end) = (&desk, &running, &latency, desk.clone());
+        let (window_side, running, latency, end) =
+            (&window_side, &running, &latency, window_side.clone());
         let shown = eframe::run_native(
             &title,
             native,
@@ -107,7 +108,7 @@ pub fn run_window<T: Send, E: Display + Send>(
                 });
                 *lock(&handle) = Some(spawned);
                 Ok(Box::new(App {
-                    desk,
+                    window_side,
                     running,
                     latency,
                     state,
@@ -147,7 +148,7 @@ impl Drop for WindowGone<'_> {
 }
 
 /// Says that the worker has ended, also by a panic.
-struct Ended<'a>(&'a AtomicBool, Desk);
+struct Ended<'a>(&'a AtomicBool, WindowSide);
 
 impl Drop for Ended<'_> {
     fn drop(&mut self) {
@@ -159,7 +160,7 @@ impl Drop for Ended<'_> {
 }
 
 struct App<'a> {
-    desk: &'a Desk,
+    window_side: &'a WindowSide,
     running: &'a AtomicBool,
     latency: &'a Mutex<ScreenLatency>,
     state: views::OperatorState,
@@ -173,7 +174,7 @@ impl eframe::App for App<'_> {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         ctx.request_repaint_after(FRAME);
-        let (model, waited) = self.desk.snapshot();
+        let (model, waited) = self.window_side.snapshot();
         if let Some(waited) = waited {
             self.state.latency.add(waited);
             *lock(self.latency) = self.state.latency.clone();
@@ -184,7 +185,7 @@ impl eframe::App for App<'_> {
             ui,
             &model,
             &mut self.state,
-            self.desk.now(),
+            self.window_side.now(),
         ));
         if self.with_participant {
             actions.extend(self.participant(&ctx, &model));
@@ -224,7 +225,7 @@ impl App<'_> {
             .with_title("Participant")
             .with_inner_size([1024.0, 768.0])
             .with_fullscreen(self.full_screen);
-        let now = self.desk.now();
+        let now = self.window_side.now();
         let entry = &mut self.entry;
         ctx.show_viewport_immediate(ViewportId::from_hash_of("participant"), builder, |ui, _| {
             let mut actions = keys(ui.ctx(), WindowKind::Participant, model);
@@ -243,14 +244,14 @@ impl App<'_> {
 
     fn act(&mut self, one: Action, model: &Model, ctx: &egui::Context) {
         match one {
-            Action::Stop => self.desk.press_stop(),
-            Action::Decide(decision) => self.desk.decide(decision),
-            Action::Order(order) => self.desk.order(order),
-            Action::Respond(response) => self.desk.respond(response),
+            Action::Stop => self.window_side.press_stop(),
+            Action::Decide(decision) => self.window_side.decide(decision),
+            Action::Order(order) => self.window_side.order(order),
+            Action::Respond(response) => self.window_side.respond(response),
             Action::Enter(key) => {
                 let entry = self.entry.as_mut();
                 if let Some(response) = entry.and_then(|(_, entry)| entry.press(key)) {
-                    self.desk.respond(response);
+                    self.window_side.respond(response);
                 }
             }
             Action::FullScreen => self.full_screen = !self.full_screen,
@@ -267,9 +268,9 @@ impl App<'_> {
         let is_running = self.running.load(Ordering::SeqCst);
         if ctx.input(|input| input.viewport().close_requested()) && is_running {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.desk.close();
+            self.window_side.close();
         }
-        if self.desk.stop().is_closing() && !is_running {
+        if self.window_side.stop().is_closing() && !is_running {
             ctx.send_viewport_cmd(ViewportCommand::Close);
         }
     }

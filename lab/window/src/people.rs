@@ -1,11 +1,11 @@
-//! The two persons at the windows, as the executor sees them, and the desk at which the windows sit.
+//! The two persons at the windows: the side of the executor, and the side of the windows.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use thermal_session::{Decision, People, Response, Update};
 
-use crate::model::{Model, Outline};
+use crate::model::{Model, SessionView};
 use crate::monitor::{MonitorPeople, Order};
 use crate::stop::StopFlag;
 use crate::tone::Tones;
@@ -26,7 +26,7 @@ struct Shared {
 
 /// The windows' end: gives copies of the model, and takes what is pressed.
 #[derive(Clone, Debug)]
-pub struct Desk {
+pub struct WindowSide {
     shared: Arc<Mutex<Shared>>,
     stop: StopFlag,
     zero: Instant,
@@ -35,39 +35,43 @@ pub struct Desk {
 /// The worker's end: participant and operator at the windows. Nothing waits here.
 #[derive(Debug)]
 pub struct WindowPeople {
-    desk: Desk,
+    window_side: WindowSide,
     tones: Option<Tones>,
 }
 
 impl WindowPeople {
     /// Persons at the windows of a session, or of a monitored device; and the windows' end.
     #[must_use]
-    pub fn new(outline: Option<Outline>, stop: StopFlag, tones: Option<Tones>) -> (Self, Desk) {
+    pub fn new(
+        session: Option<SessionView>,
+        stop: StopFlag,
+        tones: Option<Tones>,
+    ) -> (Self, WindowSide) {
         let shared = Shared {
-            model: Model::new(outline),
+            model: Model::new(session),
             response: None,
             decision: None,
             order: None,
             undrawn_since: None,
         };
-        let desk = Desk {
+        let window_side = WindowSide {
             shared: Arc::new(Mutex::new(shared)),
             stop,
             zero: Instant::now(),
         };
         (
             Self {
-                desk: desk.clone(),
+                window_side: window_side.clone(),
                 tones,
             },
-            desk,
+            window_side,
         )
     }
 
     /// The operator's stop.
     #[must_use]
     pub const fn stop(&self) -> &StopFlag {
-        &self.desk.stop
+        &self.window_side.stop
     }
 }
 
@@ -76,8 +80,8 @@ impl People for WindowPeople {
         if let (Update::Cue(cue), Some(tones)) = (update, &self.tones) {
             tones.play(*cue);
         }
-        let at = self.desk.now();
-        let mut shared = self.desk.shared();
+        let at = self.window_side.now();
+        let mut shared = self.window_side.shared();
         match update {
             // What was pressed before the question is no answer to it.
             Update::Ask(_) | Update::Answered(_) => shared.response = None,
@@ -89,21 +93,21 @@ impl People for WindowPeople {
     }
 
     fn response(&mut self) -> Option<Response> {
-        self.desk.shared().response.take()
+        self.window_side.shared().response.take()
     }
 
     fn decision(&mut self) -> Option<Decision> {
-        if self.desk.stop.is_pressed() {
+        if self.window_side.stop.is_pressed() {
             return Some(Decision::Stop);
         }
-        self.desk.shared().decision.take()
+        self.window_side.shared().decision.take()
     }
 }
 
 impl MonitorPeople for WindowPeople {
     fn order(&mut self) -> Option<Order> {
-        let mut shared = self.desk.shared();
-        if self.desk.stop.take() {
+        let mut shared = self.window_side.shared();
+        if self.window_side.stop.take() {
             // Orders from before the stop do not come after it.
             shared.order = None;
             shared.model.set_stopped(false);
@@ -113,11 +117,11 @@ impl MonitorPeople for WindowPeople {
     }
 
     fn is_closing(&self) -> bool {
-        self.desk.stop.is_closing()
+        self.window_side.stop.is_closing()
     }
 }
 
-impl Desk {
+impl WindowSide {
     fn shared(&self) -> MutexGuard<'_, Shared> {
         // A panic elsewhere leaves a model that can be shown, and a stop that must work.
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)

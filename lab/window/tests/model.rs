@@ -1,11 +1,11 @@
-//! Model, keys and desk, without a toolkit.
+//! Model, keys and what the windows do with it, without a toolkit.
 
 mod common;
 
 use std::thread;
 use std::time::{Duration, Instant};
 
-use common::{choice, numbers, operator_questions, outline, telemetry, trial};
+use common::{choice, numbers, operator_questions, session_view, telemetry, trial};
 use thermal_client::client::ReceivedEvent;
 use thermal_device::StateName;
 use thermal_device::events::{DeviceEvent, DeviceEventKind};
@@ -23,7 +23,7 @@ fn s(seconds: f64) -> Duration {
 
 /// A model of a session in a trial, after these updates.
 fn after(updates: &[Update]) -> Model {
-    let mut model = Model::new(Some(outline()));
+    let mut model = Model::new(Some(session_view()));
     model.fold(&trial(), s(0.0));
     for update in updates {
         model.fold(update, s(1.0));
@@ -44,7 +44,7 @@ fn all_situations() -> Vec<Model> {
         Phase::Break,
         Phase::End,
     ];
-    let mut all = vec![Model::new(None), Model::new(Some(outline()))];
+    let mut all = vec![Model::new(None), Model::new(Some(session_view()))];
     all.extend(phases.map(|phase| after(&[Update::Phase(phase)])));
     all.extend(operator_questions().map(|question| after(&[Update::Decide(question)])));
     all.push(after(&[choice()]));
@@ -139,7 +139,7 @@ fn orders_are_given_to_a_monitored_device_only() {
     );
     for model in all_situations()
         .iter()
-        .filter(|model| model.outline().is_some())
+        .filter(|model| model.session().is_some())
     {
         assert_eq!(action(key, WindowKind::Operator, model), None);
     }
@@ -251,7 +251,8 @@ fn the_trace_is_twenty_seconds_and_begins_anew_when_the_device_restarts() {
 
 #[test]
 fn a_flood_of_updates_neither_waits_nor_grows() {
-    let (mut people, desk) = WindowPeople::new(Some(outline()), StopFlag::default(), None);
+    let (mut people, window_side) =
+        WindowPeople::new(Some(session_view()), StopFlag::default(), None);
     people.inform(&trial());
     people.inform(&Update::TargetForce(Some(1.0)));
     let reader = thread::spawn(move || {
@@ -259,9 +260,9 @@ fn a_flood_of_updates_neither_waits_nor_grows() {
         while Instant::now() < end {
             // As a window that draws.
             thread::sleep(Duration::from_millis(5));
-            let _copy = desk.snapshot();
+            let _copy = window_side.snapshot();
         }
-        desk
+        window_side
     });
     let mut longest = Duration::ZERO;
     for tick in 0..100_000 {
@@ -270,8 +271,8 @@ fn a_flood_of_updates_neither_waits_nor_grows() {
         people.inform(&Update::Notice(format!("notice {tick}")));
         longest = longest.max(begin.elapsed());
     }
-    let desk = reader.join().unwrap();
-    let (model, _) = desk.snapshot();
+    let window_side = reader.join().unwrap();
+    let (model, _) = window_side.snapshot();
     assert_eq!(model.notices().len(), 200);
     assert!(model.fingers()[&0].trace.samples().count() <= 4001);
     assert!(model.participant().follow.as_ref().unwrap().forces.len() <= 2000);
@@ -293,35 +294,37 @@ fn without_a_window_that_looks_nothing_waits() {
 
 #[test]
 fn the_first_answer_counts_and_none_from_before_the_question() {
-    let (mut people, desk) = WindowPeople::new(Some(outline()), StopFlag::default(), None);
-    desk.respond(Response::Choice(0));
+    let (mut people, window_side) =
+        WindowPeople::new(Some(session_view()), StopFlag::default(), None);
+    window_side.respond(Response::Choice(0));
     people.inform(&choice());
     assert_eq!(people.response(), None);
-    desk.respond(Response::Choice(1));
-    desk.respond(Response::Choice(0));
+    window_side.respond(Response::Choice(1));
+    window_side.respond(Response::Choice(0));
     assert_eq!(people.response(), Some(Response::Choice(1)));
     assert_eq!(people.response(), None);
 }
 
 #[test]
 fn a_decision_is_for_the_question_that_was_shown() {
-    let (mut people, desk) = WindowPeople::new(Some(outline()), StopFlag::default(), None);
+    let (mut people, window_side) =
+        WindowPeople::new(Some(session_view()), StopFlag::default(), None);
     let [ready, skin, ..] = operator_questions();
     people.inform(&Update::Decide(ready));
-    desk.decide(Decision::Continue);
+    window_side.decide(Decision::Continue);
     people.inform(&Update::Decide(skin));
     assert_eq!(people.decision(), None);
-    desk.decide(Decision::Wait);
+    window_side.decide(Decision::Wait);
     assert_eq!(people.decision(), Some(Decision::Wait));
-    desk.decide(Decision::Continue);
+    window_side.decide(Decision::Continue);
     assert_eq!(people.decision(), None);
 }
 
 #[test]
 fn the_stop_ends_a_session_and_interrupts_the_link() {
     let stop = StopFlag::default();
-    let (mut people, desk) = WindowPeople::new(Some(outline()), stop.clone(), None);
-    desk.press_stop();
+    let (mut people, window_side) = WindowPeople::new(Some(session_view()), stop.clone(), None);
+    window_side.press_stop();
     assert_eq!(people.decision(), Some(Decision::Stop));
     assert_eq!(people.decision(), Some(Decision::Stop));
     assert!(
@@ -332,14 +335,14 @@ fn the_stop_ends_a_session_and_interrupts_the_link() {
 
 #[test]
 fn the_stop_of_a_monitor_comes_before_other_orders_and_the_monitor_goes_on() {
-    let (mut people, desk) = WindowPeople::new(None, StopFlag::default(), None);
-    desk.order(Order::Arm);
-    desk.press_stop();
+    let (mut people, window_side) = WindowPeople::new(None, StopFlag::default(), None);
+    window_side.order(Order::Arm);
+    window_side.press_stop();
     assert_eq!(people.order(), Some(Order::Off));
     assert_eq!(people.order(), None);
     assert!(!people.is_closing());
-    desk.order(Order::Arm);
+    window_side.order(Order::Arm);
     assert_eq!(people.order(), Some(Order::Arm));
-    desk.close();
+    window_side.close();
     assert!(people.is_closing());
 }

@@ -4,7 +4,7 @@ mod common;
 
 use std::time::Duration;
 
-use common::{choice, numbers, operator_questions, outline, telemetry, trial};
+use common::{choice, numbers, operator_questions, session_view, telemetry, trial};
 use egui::{Context, Event, Modifiers, PointerButton, Pos2, RawInput, Rect, Shape, pos2, vec2};
 use thermal_client::fault_words;
 use thermal_device::StateName;
@@ -87,7 +87,7 @@ impl Screen {
 }
 
 fn after(updates: &[Update]) -> Model {
-    let mut model = Model::new(Some(outline()));
+    let mut model = Model::new(Some(session_view()));
     model.fold(&trial(), Duration::ZERO);
     for update in updates {
         model.fold(update, Duration::from_secs(1));

@@ -36,29 +36,37 @@ fn deck(neighbour_ohm: f64, more: &str) -> String {
     )
 }
 
-/// Error of finger 0's reading, mK, `after_us` after its multiplexer has been switched.
-fn error_mk(netlists: &Netlists, neighbour_ohm: f64, after_us: f64) -> Result<f64> {
+/// Errors of finger 0's reading, mK, each a time in us after its multiplexer has been switched.
+fn errors_mk<const N: usize>(
+    netlists: &Netlists,
+    neighbour_ohm: f64,
+    after_us: [f64; N],
+) -> Result<[f64; N]> {
     // Switched at 5.2 ms; by then the filters' capacitors have been switched five times.
-    let at_us = 5200.0 + after_us;
-    let lines = deck(
-        neighbour_ohm,
-        &format!(
-            ".tran 0.2u 5.4m 0 2u\n.meas tran follower find v(adcpin) at={at_us}u\n\
-             .meas tran alone find v(pin0) at=0\n"
-        ),
-    );
-    let measured = ngspice::run("multiplexer", netlists, &lines)?;
-    Ok(1e3 * (measured.get("alone")? - measured.get("follower")?).abs() / SLOPE_V_K)
+    let mut more = ".tran 0.2u 5.4m 0 2u\n.meas tran alone find v(pin0) at=0\n".to_owned();
+    for (number, after_us) in after_us.iter().enumerate() {
+        let at_us = 5200.0 + after_us;
+        more += &format!(".meas tran follower{number} find v(adcpin) at={at_us}u\n");
+    }
+    let measured = ngspice::run("multiplexer", netlists, &deck(neighbour_ohm, &more))?;
+    let alone = measured.get("alone")?;
+    let mut errors_mk = [0.0; N];
+    for (number, error_mk) in errors_mk.iter_mut().enumerate() {
+        let follower = measured.get(&format!("follower{number}"))?;
+        *error_mk = 1e3 * (alone - follower).abs() / SLOPE_V_K;
+    }
+    Ok(errors_mk)
 }
 
 fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let mut all = Vec::new();
     // A shorted and an open thermistor of the neighbour: 0 and 3.3 V, the full difference.
     for (neighbour, ohm) in [("shorted (0 V)", 1.0), ("open (3.3 V)", 1e9)] {
-        for (scans, after_us) in [("one scan", SCAN_US), ("two scans", 2.0 * SCAN_US)] {
+        let errors_mk = errors_mk(netlists, ohm, [SCAN_US, 2.0 * SCAN_US])?;
+        for (scans, error_mk) in ["one scan", "two scans"].into_iter().zip(errors_mk) {
             all.push(Quantity::at_most(
                 format!("neighbour's thermistor {neighbour}: error {scans} after switching"),
-                error_mk(netlists, ohm, after_us)?,
+                error_mk,
                 "mK",
                 ALLOWED_MK,
             ));
@@ -79,9 +87,10 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
         "X1 y0 y1 y2 y3 y4 0 0 0 z s0 s1 s2 v3 mux8",
         "X1 y0 y1 y2 y3 y4 0 0 0 z s0 s1 s2 v3 mux8 r_on=1k",
     )?;
+    let [error_mk] = errors_mk(&slowest, 1.0, [SCAN_US])?;
     all.push(Quantity::at_least(
         "shorted, with 1 kohm: why not a 74HC4051, which is not specified on 3.3 V",
-        error_mk(&slowest, 1.0, SCAN_US)?,
+        error_mk,
         "mK",
         ALLOWED_MK,
     ));

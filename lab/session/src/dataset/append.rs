@@ -4,7 +4,7 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::{RecordingError, at};
+use super::{RecordingError, error_at};
 
 /// A file to which whole pieces are appended, and which no other program appends to meanwhile.
 #[derive(Debug)]
@@ -26,15 +26,15 @@ impl AppendFile {
             .truncate(false)
             .write(true)
             .clone();
-        let mut file = options.open(path).map_err(at(path))?;
+        let mut file = options.open(path).map_err(error_at(path))?;
         if alone {
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Err(RecordingError::InUse(path.into())),
-                Err(TryLockError::Error(error)) => return Err(at(path)(error)),
+                Err(TryLockError::Error(error)) => return Err(error_at(path)(error)),
             }
         }
-        let length = file.metadata().map_err(at(path))?.len();
+        let length = file.metadata().map_err(error_at(path))?.len();
         if length < bytes {
             return Err(RecordingError::Content {
                 path: path.into(),
@@ -42,8 +42,8 @@ impl AppendFile {
                 problem: format!("it has {length} bytes; the log says that {bytes} were recorded"),
             });
         }
-        file.set_len(bytes).map_err(at(path))?;
-        file.seek(SeekFrom::End(0)).map_err(at(path))?;
+        file.set_len(bytes).map_err(error_at(path))?;
+        file.seek(SeekFrom::End(0)).map_err(error_at(path))?;
         Ok(Self {
             path: path.into(),
             file,
@@ -60,7 +60,7 @@ impl AppendFile {
             .file
             .write_all(contents)
             .and_then(|()| self.file.sync_data());
-        written.map_err(at(&self.path))?;
+        written.map_err(error_at(&self.path))?;
         self.bytes += contents.len() as u64;
         Ok(())
     }

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::folder::write_whole;
 use super::recorder::{TELEMETRY, pretty};
-use super::{Folder, RecordingError, at, events, physio};
+use super::{Folder, RecordingError, error_at, events, physio};
 use crate::record::TrialRecord;
 use crate::{Plan, Presented, Session};
 
@@ -84,7 +84,7 @@ pub(super) fn write(
 /// Adds the participant to the list.
 fn add_participant(folder: &Folder) -> Result<(), RecordingError> {
     let path = folder.root().join("participants.tsv");
-    let mut list = fs::read_to_string(&path).map_err(at(&path))?;
+    let mut list = fs::read_to_string(&path).map_err(error_at(&path))?;
     let code = format!("sub-{}", folder.participant());
     if list
         .lines()

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{RecordingError, at};
+use super::{RecordingError, error_at};
 
 /// The folder of a data set, and in it the files of one participant and task.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl Folder {
 /// Writes a file as a whole: whoever reads it, at whatever time, finds the old contents or the new ones.
 pub(super) fn write_whole(path: &Path, contents: &[u8]) -> Result<(), RecordingError> {
     if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(at(folder))?;
+        fs::create_dir_all(folder).map_err(error_at(folder))?;
     }
     let mut name = path.as_os_str().to_owned();
     name.push(".part");
@@ -85,6 +85,6 @@ pub(super) fn write_whole(path: &Path, contents: &[u8]) -> Result<(), RecordingE
         .map_err(|error| {
             // The error that counts is the first one.
             let _ignored = fs::remove_file(&part);
-            at(path)(error)
+            error_at(path)(error)
         })
 }

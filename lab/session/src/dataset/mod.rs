@@ -89,7 +89,7 @@ pub enum RecordingError {
 }
 
 /// Names the file of an error of the operating system.
-fn at(path: &std::path::Path) -> impl Fn(io::Error) -> RecordingError + '_ {
+fn error_at(path: &std::path::Path) -> impl Fn(io::Error) -> RecordingError + '_ {
     move |error| RecordingError::File {
         path: path.into(),
         error,

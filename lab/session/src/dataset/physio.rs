@@ -9,7 +9,7 @@ use thermal_client::client::Telemetry;
 use thermal_device::StateName;
 
 use super::events::UNKNOWN;
-use super::{RecordingError, at, telemetry};
+use super::{RecordingError, error_at, telemetry};
 
 /// A column: name, unit, description, and the value of a line.
 type Column = (
@@ -101,16 +101,17 @@ pub(super) fn compressed(
             continue;
         }
         for _ in next_row..row {
-            gzip.write_all(nothing.as_bytes()).map_err(at(telemetry))?;
+            gzip.write_all(nothing.as_bytes())
+                .map_err(error_at(telemetry))?;
         }
         let cells = COLUMNS.map(|(.., value)| {
             value(&received.telemetry).map_or(UNKNOWN.into(), |value| value.to_string())
         });
         gzip.write_all((cells.join("\t") + "\n").as_bytes())
-            .map_err(at(telemetry))?;
+            .map_err(error_at(telemetry))?;
         next_row = row + 1;
     }
-    gzip.finish().map_err(at(telemetry))
+    gzip.finish().map_err(error_at(telemetry))
 }
 
 /// What the columns are.

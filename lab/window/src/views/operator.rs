@@ -121,8 +121,8 @@ fn header(
             stop(ui, model, actions);
             ui.with_layout(Layout::top_down(Align::Min), |ui| {
                 let title = model
-                    .outline()
-                    .map_or("Monitor", |outline| outline.title.as_str());
+                    .session()
+                    .map_or("Monitor", |session| session.title.as_str());
                 ui.label(RichText::new(title).heading());
                 device(ui, model, state, now);
                 ui.label(RichText::new(texts::EMERGENCY_STOP).small());
@@ -269,7 +269,7 @@ fn log(
             if ui.small_button("light, dark [L]").clicked() {
                 actions.push(Action::Theme);
             }
-            if model.outline().is_some()
+            if model.session().is_some()
                 && ui.small_button("participant full screen [F11]").clicked()
             {
                 actions.push(Action::FullScreen);

@@ -13,7 +13,7 @@ use crate::texts;
 
 /// Draws the panel of a session or of a monitored device.
 pub(super) fn panel(ui: &mut Ui, model: &Model, now: Duration, actions: &mut Vec<Action>) {
-    if model.outline().is_some() {
+    if model.session().is_some() {
         session(ui, model, now);
     } else {
         orders(ui, actions);

@@ -8,14 +8,14 @@ use thermal_session::{
     AnswerKind, ContactRule, OperatorQuestion, PlannedTrial, Presented, Procedure, Question, Rest,
     RestPlace, Station, TrialRules, Update,
 };
-use thermal_window::Outline;
+use thermal_window::SessionView;
 
-pub fn outline() -> Outline {
+pub fn session_view() -> SessionView {
     let station = |name: &str| Station {
         name: name.into(),
         finger: format!("{name} index finger"),
     };
-    Outline {
+    SessionView {
         title: "real against simulated".into(),
         stations: ["left", "right"].map(station).into(),
         rest: Some(Rest {
