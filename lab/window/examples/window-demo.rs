@@ -65,6 +65,7 @@ fn outline() -> Outline {
     let station = |name: &str| Station {
         name: name.into(),
         finger: format!("{name} index finger"),
+        skin_sensor: None,
     };
     Outline {
         title: "P5: real against simulated materials".into(),

@@ -14,6 +14,7 @@ pub fn outline() -> Outline {
     let station = |name: &str| Station {
         name: name.into(),
         finger: format!("{name} index finger"),
+        skin_sensor: None,
     };
     Outline {
         title: "real against simulated".into(),
