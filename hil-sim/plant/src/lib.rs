@@ -67,6 +67,8 @@ pub struct Plant {
     heat: ThermalModel,
     receptors: [Option<DepthProbe>; RECEPTORS_M.len()],
     sensors: Sensors,
+    /// Surface temperature of the skin beside the skin thermistor, deg C, if it is not that on the display.
+    skin_elsewhere_c: Option<f64>,
     /// Number of steps made.
     steps: u64,
     force_n: f64,
@@ -155,6 +157,7 @@ impl Plant {
             heat,
             receptors: RECEPTORS_M.map(|depth_m| DepthProbe::at(&finger, depth_m)),
             sensors,
+            skin_elsewhere_c: None,
             steps: 0,
             force_n: 0.0,
             contact_state: None,
@@ -167,6 +170,12 @@ impl Plant {
     /// Sets the force of the finger, N, from the next step on; zero and negative forces lift it.
     pub fn set_force(&mut self, force_n: f64) {
         self.force_n = force_n.max(0.0);
+    }
+
+    /// Sets the surface temperature of the skin that the skin thermistor lies beside, deg C, from the next step on: that of a
+    /// finger which touches something else than this display. `None`: the finger is at this display.
+    pub fn set_skin_elsewhere(&mut self, skin_c: Option<f64>) {
+        self.skin_elsewhere_c = skin_c;
     }
 
     /// Sets the hardware defects from the next step on.
@@ -281,7 +290,7 @@ impl Plant {
             display_c: self.display_c(),
             sink_c: self.sink_c(),
             skin_before_c: self.skin_before_c,
-            skin_c: self.skin_c(),
+            skin_c: self.skin_elsewhere_c.unwrap_or_else(|| self.skin_c()),
             room_c: self.room_c,
             force_n: self.force_n,
             mirror_a: current.mean_a.abs(),

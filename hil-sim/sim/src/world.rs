@@ -126,6 +126,11 @@ impl World {
         self.plant.set_defects(&self.defects.plant);
     }
 
+    /// Sets the surface temperature of the skin that the skin thermistor lies beside, deg C; `None` for that on the display.
+    pub fn set_skin_elsewhere(&mut self, skin_c: Option<f64>) {
+        self.plant.set_skin_elsewhere(skin_c);
+    }
+
     /// Sets force and faults to those of a scene at a time, s.
     pub fn apply_scene(&mut self, scene: &Scene, t_s: f64) {
         let faults = scene.faults.iter().filter_map(|fault| fault.at(t_s));

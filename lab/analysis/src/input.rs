@@ -51,6 +51,8 @@ pub struct Trial {
     pub levels: Vec<(String, String)>,
     pub staircase: Option<usize>,
     pub presented: Vec<Presented>,
+    /// The finger of the device whose skin thermistor was at each station.
+    pub skin_sensors: Vec<Option<u8>>,
 }
 
 /// A material at a station.
@@ -125,13 +127,18 @@ fn participant(recorded: &RecordedSession) -> Participant {
     let trial = |record: &TrialRecord| {
         let plan = planned.get(&record.trial);
         let levels = recorded.plan.factors.iter().zip(&record.levels);
+        let presented = plan.map_or(Vec::new(), |plan| plan.presented.clone());
+        let stations = presented.iter().enumerate();
         Trial {
             levels: levels
                 .filter(|(_, level)| !level.is_empty())
                 .map(|(factor, level)| (factor.clone(), level.clone()))
                 .collect(),
             staircase: plan.and_then(|plan| plan.staircase),
-            presented: plan.map_or(Vec::new(), |plan| plan.presented.clone()),
+            skin_sensors: stations
+                .map(|(station, presented)| recorded.session.skin_sensor(station, presented))
+                .collect(),
+            presented,
             record: record.clone(),
         }
     };

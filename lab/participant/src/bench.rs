@@ -19,7 +19,7 @@ use thermal_session::{
     Procedure, Response, Session, Update,
 };
 
-use crate::device::{PreparedDevice, RunningDevice};
+use crate::device::{FingerInput, PreparedDevice, RunningDevice};
 use crate::falls::{TouchSetup, mean_fall_k};
 use crate::observer::Task;
 use crate::operator::{Happening, Operator, SimulatedEvent};
@@ -63,11 +63,13 @@ pub struct BenchOptions {
     pub hand: HandParams,
     /// Skin temperatures.
     pub skin: SkinParams,
-    /// The finger at every station; `None` for the one that the session's device is told to assume, or the thesis's without one.
+    /// The finger at every station; `None` for the one that the session's displays are told to assume, or the thesis's without
+    /// displays.
     pub finger: Option<FingerParams>,
     /// Room temperature, °C; also that of samples.
     pub room_c: f64,
-    /// Weight of the skin under the contact in the temperature at the skin thermistor, 0 to 1; `None` for that of the plant.
+    /// Weight of the skin under the contact in the temperature at the skin thermistor, 0 to 1; `None` for that of the plant,
+    /// whose thermistor lies 2 to 3 mm beside the contact.
     pub edge_share: Option<f64>,
     /// Seed of the device's parts.
     pub device_seed: u64,
@@ -95,9 +97,26 @@ impl Default for BenchOptions {
 }
 
 impl BenchOptions {
+    /// Share of the fall under the contact that a thermistor at its edge sees: section 4.4 of the thesis has measured 0.26 to
+    /// 0.32 of it.
+    pub const EDGE_SHARE: f64 = 0.28;
+
+    /// Those of a session: where falls of the skin are what is measured, the thermistor lies at the edge of the contact, as in
+    /// section 4.4 of the thesis.
+    #[must_use]
+    pub fn of_session(session: &Session) -> Self {
+        let measures_falls = session.score.analyses.iter().any(|word| word == "falls");
+        Self {
+            edge_share: measures_falls.then_some(Self::EDGE_SHARE),
+            ..Self::default()
+        }
+    }
+
     /// Parameters of plants with the finger of a session.
     fn params(&self, session: &Session) -> Params {
-        let assumed = session.device.as_ref().map(|device| device.assumed_finger);
+        let has_displays = !session.device_fingers().is_empty();
+        let device = session.device.as_ref().filter(|_| has_displays);
+        let assumed = device.map(|device| device.assumed_finger);
         let mut params = Params::nominal();
         params.finger = self.finger.clone().unwrap_or_else(|| match assumed {
             None | Some(AssumedFinger::Thesis) => FingerParams::homogeneous(),
@@ -142,7 +161,8 @@ pub struct Observation {
 #[derive(Clone, Debug)]
 pub struct Bench(Rc<RefCell<State>>);
 
-/// The line to the device of a bench. A bench without displays has a line on which nothing answers, and only time passes.
+/// The line to the device of a bench. A bench of a session that needs no device has a line on which nothing answers, and only
+/// time passes.
 #[derive(Clone, Debug)]
 pub struct BenchLink(Rc<RefCell<State>>);
 
@@ -180,8 +200,8 @@ struct State {
 }
 
 impl Bench {
-    /// The bench of a session for the participant with a code, drawn from a seed. A device is commissioned if a trial of the
-    /// plan presents one.
+    /// The bench of a session for the participant with a code, drawn from a seed. A device is commissioned if one of its fingers
+    /// presents something or measures the skin in a trial of the plan.
     ///
     /// # Errors
     /// The session has something that cannot be simulated.
@@ -204,7 +224,8 @@ impl Bench {
                 known_material(session, material)?;
             }
         }
-        let device = match stations().filter_map(Presented::device_finger).max() {
+        let reporting = (plan.trials.iter()).flat_map(|trial| session.reporting_fingers(trial));
+        let device = match reporting.max() {
             Some(last) => Some(PreparedDevice::new(
                 &params,
                 options.room_c,
@@ -393,15 +414,15 @@ impl State {
     }
 
     fn step_1_ms(&mut self) {
-        let mut forces_n = [0.0; thermal_sim::five_fingers::FINGERS];
+        let mut inputs = [FingerInput::default(); thermal_sim::five_fingers::FINGERS];
         let mut faults = Vec::new();
         if let Some(trial) = &mut self.trial {
-            trial.step_1_ms(self.ms, &mut forces_n);
+            trial.step_1_ms(self.ms, self.device.as_mut(), &mut inputs);
             trial.faults(self.ms, &mut faults);
         }
         if let Some(device) = &mut self.device {
             let bytes = std::mem::take(&mut self.to_send);
-            device.run_1_ms(&bytes, &forces_n, &faults);
+            device.run_1_ms(&bytes, &inputs, &faults);
         }
         self.ms += 1;
         if let Some(device) = &mut self.device {

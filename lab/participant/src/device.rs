@@ -42,6 +42,15 @@ enum Stored {
     Five(Box<[StoredSettings; FINGERS]>),
 }
 
+/// What a finger of a device meets in a millisecond.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FingerInput {
+    /// Force on the display, N.
+    pub force_n: f64,
+    /// Surface temperature of the skin beside the skin thermistor, °C, if the finger is not at this display.
+    pub skin_elsewhere_c: Option<f64>,
+}
+
 /// A device that runs.
 #[derive(Debug)]
 pub enum RunningDevice {
@@ -166,16 +175,18 @@ impl RunningDevice {
         Ok(Self::Five(Box::new(NativeFiveFingers::new(worlds))))
     }
 
-    /// Runs it for a millisecond, in which `bytes` are sent to it, with a force on each finger, N, and with faults of the
-    /// first finger's plant.
-    pub fn run_1_ms(&mut self, bytes: &[u8], forces_n: &[f64], faults: &[ActiveFault]) {
-        let force_n = |finger: usize| forces_n.get(finger).copied().unwrap_or(0.0);
-        let faults_of = |finger| faults.iter().copied().filter(move |_| finger == 0);
+    /// Runs it for a millisecond, in which `bytes` are sent to it, with what each finger meets, and with faults of the first
+    /// finger's plant.
+    pub fn run_1_ms(&mut self, bytes: &[u8], inputs: &[FingerInput], faults: &[ActiveFault]) {
+        let set = |world: &mut World, finger: usize| {
+            let input = inputs.get(finger).copied().unwrap_or_default();
+            let faults = faults.iter().copied().filter(|_| finger == 0);
+            world.set_force_and_faults(input.force_n, faults);
+            world.set_skin_elsewhere(input.skin_elsewhere_c);
+        };
         match self {
             Self::One(engine) => {
-                engine
-                    .world()
-                    .set_force_and_faults(force_n(0), faults_of(0));
+                set(engine.world(), 0);
                 let Ok(()) = run_1_ms(&mut **engine, bytes);
             }
             Self::Five(engine) => {
@@ -187,7 +198,7 @@ impl RunningDevice {
                     }
                     let legs = engine.legs(finger);
                     let world = engine.world(finger);
-                    world.set_force_and_faults(force_n(finger), faults_of(finger));
+                    set(world, finger);
                     world.step(legs);
                 }
             }
@@ -256,7 +267,11 @@ impl Link for DeviceLink {
         let end = self.now() + timeout;
         while self.received.is_empty() && self.now() < end {
             let bytes = std::mem::take(&mut self.to_send);
-            self.device.run_1_ms(&bytes, &[self.force_n], &[]);
+            let input = FingerInput {
+                force_n: self.force_n,
+                skin_elsewhere_c: None,
+            };
+            self.device.run_1_ms(&bytes, &[input], &[]);
             self.ms += 1;
             self.device.receive(self.splitter.received());
             let at = self.now();

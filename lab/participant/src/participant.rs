@@ -76,8 +76,8 @@ impl Participant {
         let mean_c = skin.mean_c.unwrap_or(rest_c);
         let limits_k = (-skin.within_k, skin.within_k);
         let natural_off_k = mean_c - rest_c + random.normal_within(0.0, skin.sd_k, limits_k);
-        let off_max_k = match (&session.rest, &session.device) {
-            (Some(rest), Some(_)) => GATE_SHARE * rest.within_k,
+        let off_max_k = match &session.rest {
+            Some(rest) if session.measures_skin() => GATE_SHARE * rest.within_k,
             _ => f64::INFINITY,
         };
         Self {

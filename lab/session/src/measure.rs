@@ -1,14 +1,12 @@
-//! Measures of a contact from the telemetry of one finger.
+//! Measures of a contact from telemetry: of the display that was touched, and of the skin thermistor on the finger.
 
 use crate::record::StationRecord;
 
-/// A line of telemetry at a time of the session.
+/// A line of telemetry of a display at a time of the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Time of its tick by the session's clock, s.
     pub t_s: f64,
-    /// Skin thermistor, °C.
-    pub skin_c: Option<f64>,
     /// Set-point, °C.
     pub setpoint_c: Option<f64>,
     /// Display thermistor, °C.
@@ -26,7 +24,23 @@ const FORCE_S: f64 = 2.0;
 /// Relative distance from the target within which a force has settled.
 const SETTLED: f64 = 0.1;
 
-/// What `samples` in the order of their times say of a contact from `land_s` to `lift_s`.
+/// Mean of a skin thermistor just before `land_s`, °C, and its fall until just before `lift_s`, K. `samples` are times, s, and
+/// temperatures, °C.
+#[must_use]
+pub fn skin_fall(samples: &[(f64, f64)], land_s: f64, lift_s: f64) -> (Option<f64>, Option<f64>) {
+    let mean_before = |end_s: f64| {
+        let inside = samples
+            .iter()
+            .filter(|(t_s, _)| (end_s - MEAN_S..end_s).contains(t_s));
+        mean(inside.map(|(_, skin_c)| *skin_c))
+    };
+    let before_c = mean_before(land_s);
+    let after_c = mean_before(lift_s);
+    let fall_k = before_c.zip(after_c).map(|(before, after)| before - after);
+    (before_c, fall_k)
+}
+
+/// What `samples` of a display in the order of their times say of a contact from `land_s` to `lift_s`: everything but the skin.
 #[must_use]
 pub fn measure(
     samples: &[Sample],
@@ -46,8 +60,6 @@ pub fn measure(
         samples.iter().filter(inside)
     };
     let contact = || within(land_s, lift_s);
-    let skin_before_c = mean(within(land_s - MEAN_S, land_s).filter_map(|sample| sample.skin_c));
-    let skin_after_c = mean(within(lift_s - MEAN_S, lift_s).filter_map(|sample| sample.skin_c));
     let force = mean_and_sd(contact().filter_map(|sample| sample.force_n));
     let force_end = mean_and_sd(
         within((lift_s - FORCE_S).max(land_s), lift_s).filter_map(|sample| sample.force_n),
@@ -74,10 +86,8 @@ pub fn measure(
     StationRecord {
         presented,
         land_s: Some(land_s),
-        skin_before_c,
-        skin_fall_k: skin_before_c
-            .zip(skin_after_c)
-            .map(|(before, after)| before - after),
+        skin_before_c: None,
+        skin_fall_k: None,
         setpoint_c: at_landing.and_then(|sample| sample.setpoint_c),
         display_c: at_landing.and_then(|sample| sample.display_c),
         force_mean_n: force.map(|(mean, _)| mean),
@@ -115,14 +125,13 @@ fn mean_and_sd(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
 
-    /// A finger that lands at 1 s, whose force rises by 1 N/s to 2 N, and whose skin falls by 0.5 K/s.
+    /// A finger that lands at 1 s, and whose force rises by 1 N/s to 2 N.
     fn samples() -> Vec<Sample> {
         let sample = |ms: u32| {
             let t_s = f64::from(ms) / 1e3;
             let since_s = (t_s - 1.0).max(0.0);
             Sample {
                 t_s,
-                skin_c: Some(34.0 - 0.5 * since_s),
                 setpoint_c: Some(28.0),
                 display_c: Some(28.1),
                 force_n: Some(since_s.min(2.0)),
@@ -144,9 +153,6 @@ mod tests {
     #[test]
     fn means_are_those_of_the_course() {
         let record = measure(&samples(), "copper".into(), Some(1.0), 11.0, Some(2.0));
-        near(record.skin_before_c, 34.0);
-        // Mean of the last half second, 9.75 s after the landing.
-        near(record.skin_fall_k, 0.5 * 9.75);
         near(record.force_mean_n, (2.0 + 2.0 * 8.0) / 10.0);
         near(record.force_end_mean_n, 2.0);
         near(record.force_end_sd_n, 0.0);
@@ -155,6 +161,20 @@ mod tests {
         near(record.force_settled_s, 1.8);
         assert_eq!(record.setpoint_c, Some(28.0));
         assert_eq!(record.is_limited, Some(true));
+    }
+
+    #[test]
+    fn the_fall_of_the_skin_is_that_of_half_second_means() {
+        // From 1 s on the skin falls by 0.5 K/s.
+        let samples: Vec<(f64, f64)> = samples()
+            .iter()
+            .map(|sample| (sample.t_s, 34.0 - 0.5 * (sample.t_s - 1.0).max(0.0)))
+            .collect();
+        let (before_c, fall_k) = skin_fall(&samples, 1.0, 11.0);
+        near(before_c, 34.0);
+        // The mean of the last half second is that of 9.75 s after the landing.
+        near(fall_k, 0.5 * 9.75);
+        assert_eq!(skin_fall(&samples[100..], 1.0, 11.0), (None, None));
     }
 
     #[test]

@@ -52,12 +52,12 @@ pub struct TrialRecord {
     pub stations: Vec<StationRecord>,
 }
 
-/// What a display has measured of the finger at its station; all is `None` for a station without one.
+/// What display and skin thermistor have measured of the finger at a station; all is `None` for a station without them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StationRecord {
     /// What was presented, in words.
     pub presented: String,
-    /// First landing.
+    /// First landing; the tone to touch on a sample, where nothing tells.
     pub land_s: Option<f64>,
     /// Skin thermistor, mean of the last 0.5 s before the landing, °C.
     pub skin_before_c: Option<f64>,

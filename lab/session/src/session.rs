@@ -9,7 +9,7 @@ use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 
-use crate::{Design, Present, SessionError, Stimulus, file};
+use crate::{Design, PlannedTrial, Present, Presented, SessionError, Stimulus, file};
 
 /// A session, as its file describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +22,8 @@ pub struct Session {
     pub cite: String,
     /// What the participant reads before the first trial.
     pub instruction: String,
-    /// How displays are set up; `None`: no station presents a display, and the device only measures.
+    /// How displays are set up, and at which interval the device reports; `None`: no station presents a display or has a skin
+    /// thermistor, and the session needs no device.
     pub device: Option<DeviceSetup>,
     /// Materials that this session describes, by name; [`Session::material`] finds them and the named ones.
     pub materials: Vec<(String, Material)>,
@@ -86,11 +87,49 @@ impl Session {
     #[must_use]
     pub fn device_fingers(&self) -> Vec<u8> {
         let stimuli = self.present.cases.iter().flat_map(|case| &case.stations);
-        let mut fingers: Vec<u8> = stimuli.filter_map(Stimulus::device_finger).collect();
-        fingers.sort_unstable();
-        fingers.dedup();
-        fingers
+        ascending(stimuli.filter_map(Stimulus::device_finger))
     }
+
+    /// The finger of the device whose skin thermistor measures at a station, by its index, that presents something: that of the
+    /// key `skin_sensor`, otherwise that of the display.
+    #[must_use]
+    pub fn skin_sensor(&self, station: usize, presented: &Presented) -> Option<u8> {
+        if *presented == Presented::Nothing {
+            return None;
+        }
+        let of_station = self.stations.get(station)?.skin_sensor;
+        of_station.or_else(|| presented.device_finger())
+    }
+
+    /// The fingers of the device whose skin thermistors measure in a trial, in ascending order.
+    #[must_use]
+    pub fn skin_sensors(&self, trial: &PlannedTrial) -> Vec<u8> {
+        let stations = trial.presented.iter().enumerate();
+        ascending(stations.filter_map(|(station, presented)| self.skin_sensor(station, presented)))
+    }
+
+    /// The fingers of the device that report in a trial, in ascending order: those that present something, and those whose skin
+    /// thermistors measure.
+    #[must_use]
+    pub fn reporting_fingers(&self, trial: &PlannedTrial) -> Vec<u8> {
+        let displays = trial.presented.iter().filter_map(Presented::device_finger);
+        ascending(displays.chain(self.skin_sensors(trial)))
+    }
+
+    /// Whether a skin thermistor measures at a station in any trial.
+    #[must_use]
+    pub fn measures_skin(&self) -> bool {
+        let is_named = |station: &Station| station.skin_sensor.is_some();
+        self.stations.iter().any(is_named) || !self.device_fingers().is_empty()
+    }
+}
+
+/// Each number once, in ascending order.
+fn ascending(numbers: impl Iterator<Item = u8>) -> Vec<u8> {
+    let mut numbers: Vec<u8> = numbers.collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers
 }
 
 /// How the device is set up.
@@ -117,6 +156,8 @@ pub struct Station {
     pub name: String,
     /// The participant's finger that goes there, in words.
     pub finger: String,
+    /// The finger of the device whose skin thermistor is on that finger; `None` for that of the display.
+    pub skin_sensor: Option<u8>,
 }
 
 /// Where the fingers rest before a trial.

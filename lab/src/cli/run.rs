@@ -28,9 +28,6 @@ layout of BIDS, and grows by a whole trial at a time: after a crash, a power cut
   thermal-lab run lab/sessions/p5-real-and-simulated.toml --participant 01 --port /dev/ttyACM0 --out data
   thermal-lab run lab/sessions/p5-real-and-simulated.toml --participant 01 --simulated --headless --out data";
 
-/// Share of the contact in what a thermistor at its edge sees: section 4.4 of the thesis has measured 0.26 to 0.32 of the fall.
-const EDGE_SHARE: f64 = 0.28;
-
 #[derive(Args)]
 #[command(after_help = USAGE)]
 pub struct Arguments {
@@ -138,18 +135,7 @@ impl Run<'_> {
     ) -> Result<(), Failure> {
         if target.simulated {
             let who = (self.arguments.participant.as_str(), self.arguments.seed);
-            // Where the fall of the skin is what is measured, the thermistor lies at the edge of the contact, as in section 4.4
-            // of the thesis, and not beside it.
-            let measures_falls = self
-                .session
-                .score
-                .analyses
-                .iter()
-                .any(|word| word == "falls");
-            let options = BenchOptions {
-                edge_share: measures_falls.then_some(EDGE_SHARE),
-                ..BenchOptions::default()
-            };
+            let options = BenchOptions::of_session(self.session);
             let bench = Bench::new(self.session, self.plan, who.0, who.1, options)
                 .map_err(Failure::input)?;
             let mut watched = Watched::new(bench.people(), people);
@@ -162,7 +148,7 @@ impl Run<'_> {
             return self.execute(client, &mut watched, recorder);
         }
         if self.session.device.is_none() {
-            let link = LazyLink::new(|| Err("this session has no display".into()));
+            let link = LazyLink::new(|| Err("this session needs no device".into()));
             let client = Client::new(Interruptible::new(link, stop.interrupts_link()));
             return self.execute(client, people, recorder);
         }

@@ -9,18 +9,34 @@ const CLOCK: &str = "clock.json";
 
 /// A new folder with this name, and in it a short session: section 4.3 with two materials, two trials a pair.
 pub fn with_session(name: &str) -> (PathBuf, PathBuf) {
+    let materials = r#"["copper", "stainless-steel", "granite", "abs"]"#;
+    let short = [
+        (materials, r#"["copper", "abs"]"#),
+        ("repeat = 4", "repeat = 2"),
+    ];
+    with_ready(name, "p5-real-and-simulated", &short)
+}
+
+/// A new folder with this name, and in it a short session: the skin on samples of three materials, section 3.2.
+pub fn with_skin_sensors(name: &str) -> (PathBuf, PathBuf) {
+    let materials = r#"["copper", "bronze", "stainless-steel", "g10", "abs", "foam"]"#;
+    let short = [(materials, r#"["copper", "abs", "foam"]"#)];
+    with_ready(name, "p2-skin-temperature-fall", &short)
+}
+
+/// A new folder with this name, and in it a ready session with texts replaced.
+fn with_ready(name: &str, ready: &str, replaced: &[(&str, &str)]) -> (PathBuf, PathBuf) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ignored = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("sessions/p5-real-and-simulated.toml");
-    let materials = r#"["copper", "stainless-steel", "granite", "abs"]"#;
-    let text = fs::read_to_string(path).unwrap();
-    assert!(text.contains(materials) && text.contains("repeat = 4"));
-    let short = text
-        .replace(materials, r#"["copper", "abs"]"#)
-        .replace("repeat = 4", "repeat = 2");
+    let sessions = Path::new(env!("CARGO_MANIFEST_DIR")).join("sessions");
+    let mut text = fs::read_to_string(sessions.join(format!("{ready}.toml"))).unwrap();
+    for (from, to) in replaced {
+        assert!(text.contains(from), "{ready} has no {from}");
+        text = text.replace(from, to);
+    }
     let session = folder.join("short.toml");
-    fs::write(&session, short).unwrap();
+    fs::write(&session, text).unwrap();
     (folder, session)
 }
 

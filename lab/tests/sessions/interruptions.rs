@@ -10,7 +10,7 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use thermal_session::dataset::{Folder, recorded_sessions};
 
-use crate::folder::{assert_equal, with_session};
+use crate::folder::{assert_equal, with_session, with_skin_sensors};
 use crate::program::{line, run, thermal_lab};
 
 /// Number of moments at which the program is killed: as this variable says, or few enough for a suite of tests.
@@ -20,9 +20,19 @@ const KILLS: u32 = 3;
 #[test]
 fn a_session_that_was_killed_at_any_moment_is_resumed_to_the_same_data() {
     let (folder, session) = with_session("killed");
+    kill_and_resume(&folder, &session, "p5");
+}
+
+#[test]
+fn a_session_that_only_measures_the_skin_was_killed_and_is_resumed_to_the_same_data() {
+    let (folder, session) = with_skin_sensors("killed-skin");
+    kill_and_resume(&folder, &session, "p2");
+}
+
+fn kill_and_resume(folder: &Path, session: &Path, task: &str) {
     let [whole, killed] = ["whole", "killed"].map(|name| folder.join(name));
     let began = Instant::now();
-    assert!(run(&line(&session, &whole)).status.success());
+    assert!(run(&line(session, &whole)).status.success());
     let took = began.elapsed();
     let kills = std::env::var(KILLS_VARIABLE)
         .ok()
@@ -32,7 +42,7 @@ fn a_session_that_was_killed_at_any_moment_is_resumed_to_the_same_data() {
     for _ in 0..kills.unwrap_or(KILLS) {
         let _ignored = fs::remove_dir_all(&killed);
         let after = took.mul_f64(random.random_range(0.05..1.0));
-        let mut child = thermal_lab(&line(&session, &killed))
+        let mut child = thermal_lab(&line(session, &killed))
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
@@ -40,10 +50,10 @@ fn a_session_that_was_killed_at_any_moment_is_resumed_to_the_same_data() {
         in_the_middle += u32::from(child.try_wait().unwrap().is_none());
         child.kill().unwrap();
         child.wait().unwrap();
-        if log(&killed).exists() {
+        if log(&killed, task).exists() {
             trials_kept +=
                 recorded_sessions(&killed).map_or(0, |sessions| sessions[0].records.len());
-            let resumed = run(&(line(&session, &killed) + " --resume"));
+            let resumed = run(&(line(session, &killed) + " --resume"));
             assert!(
                 resumed.status.success(),
                 "{}",
@@ -51,7 +61,7 @@ fn a_session_that_was_killed_at_any_moment_is_resumed_to_the_same_data() {
             );
         } else {
             // Killed before it had begun: nothing is there that could be resumed.
-            assert!(run(&line(&session, &killed)).status.success());
+            assert!(run(&line(session, &killed)).status.success());
         }
         assert_equal(&whole, &killed);
     }
@@ -61,8 +71,8 @@ fn a_session_that_was_killed_at_any_moment_is_resumed_to_the_same_data() {
     assert!(in_the_middle > 0);
 }
 
-fn log(root: &Path) -> std::path::PathBuf {
-    Folder::new(root, "01", "p5").source("log.jsonl")
+fn log(root: &Path, task: &str) -> std::path::PathBuf {
+    Folder::new(root, "01", task).source("log.jsonl")
 }
 
 #[test]
@@ -107,7 +117,7 @@ fn two_programs_do_not_record_into_the_same_session() {
         .spawn()
         .unwrap();
     let began = Instant::now();
-    while !log(&out).exists() && began.elapsed() < Duration::from_secs(60) {
+    while !log(&out, "p5").exists() && began.elapsed() < Duration::from_secs(60) {
         sleep(Duration::from_millis(20));
     }
     let second = run(&(line(&session, &out) + " --resume"));

@@ -9,7 +9,7 @@ use thermal_participant::{Bench, BenchOptions};
 use thermal_session::dataset::{Recorder, recorded_sessions};
 use thermal_session::{Executor, Plan, Schedule, Session, SessionEnd};
 
-use crate::folder::{assert_equal, with_session};
+use crate::folder::{assert_equal, with_session, with_skin_sensors};
 
 const WHO: (&str, u64) = ("01", 1);
 
@@ -89,14 +89,19 @@ fn run(session: &Path, out: &Path, resumes: bool, defect: Defect) -> Result<(), 
 
 #[test]
 fn a_pulled_cable_ends_the_session_and_loses_the_running_trial_only() {
-    let (folder, session) = with_session("pulled");
+    for (folder, session) in [with_session("pulled"), with_skin_sensors("pulled-skin")] {
+        pull_and_resume(&folder, &session);
+    }
+}
+
+fn pull_and_resume(folder: &Path, session: &Path) {
     let [whole, pulled] = ["whole", "pulled"].map(|name| folder.join(name));
-    run(&session, &whole, false, Defect::None).unwrap();
+    run(session, &whole, false, Defect::None).unwrap();
     let end = run(
-        &session,
+        session,
         &pulled,
         false,
-        Defect::Pulled(Duration::from_secs(60)),
+        Defect::Pulled(Duration::from_secs(30)),
     )
     .unwrap_err();
     let words = end.to_string();
@@ -105,7 +110,7 @@ fn a_pulled_cable_ends_the_session_and_loses_the_running_trial_only() {
         words.contains("Check cable and power") && words.contains("--resume"),
         "{words}"
     );
-    run(&session, &pulled, true, Defect::None).unwrap();
+    run(session, &pulled, true, Defect::None).unwrap();
     assert_equal(&whole, &pulled);
 }
 

@@ -65,6 +65,7 @@ fn session_view() -> SessionView {
     let station = |name: &str| Station {
         name: name.into(),
         finger: format!("{name} index finger"),
+        skin_sensor: None,
     };
     SessionView {
         title: "P5: real against simulated materials".into(),

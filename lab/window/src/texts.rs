@@ -204,7 +204,15 @@ pub fn placement(stations: &[Station], trial: &PlannedTrial) -> Vec<String> {
             }
         };
         match stations.get(index) {
-            Some(Station { name, finger }) => format!("{name}: {what}, under the {finger}"),
+            Some(Station {
+                name,
+                finger,
+                skin_sensor,
+            }) => {
+                let sensor = skin_sensor.map(|sensor| format!(" with skin thermistor {sensor}"));
+                let sensor = sensor.unwrap_or_default();
+                format!("{name}: {what}, under the {finger}{sensor}")
+            }
             None => what,
         }
     };

@@ -32,12 +32,13 @@ pub struct Course {
     pub points: Vec<(f64, f64)>,
 }
 
-/// Mean courses of a column of the telemetry over the contacts that `name` names, in the order of `names`.
+/// Mean courses of a column of the telemetry over the contacts of stations that `name` names, each with the finger of the device
+/// that has measured it, in the order of `names`.
 pub fn mean_courses(
     task: &Task,
     column: &str,
     names: &[String],
-    name: impl Fn(&Trial, usize) -> Option<String>,
+    name: impl Fn(&Trial, usize) -> Option<(String, u8)>,
 ) -> (Vec<Course>, Vec<String>) {
     let mut sums = vec![Sums::default(); names.len()];
     let mut unread = Vec::new();
@@ -61,21 +62,21 @@ pub fn mean_courses(
     )
 }
 
-/// The contacts with displays by the time of their landing.
+/// The contacts by the time of their landing.
 fn contacts(
     trials: &[Trial],
     names: &[String],
-    name: impl Fn(&Trial, usize) -> Option<String>,
+    name: impl Fn(&Trial, usize) -> Option<(String, u8)>,
 ) -> Vec<Contact> {
     let mut contacts = Vec::new();
     for trial in trials {
-        for (index, presented) in trial.presented.iter().enumerate() {
+        for index in 0..trial.presented.len() {
             let land_s = trial.station(index).and_then(|station| station.land_s);
             let contact = || {
-                let name = name(trial, index)?;
+                let (name, finger) = name(trial, index)?;
                 let (land_s, lift_s) = (finite(land_s?)?, finite(trial.record.lift_s?)?);
                 Some(Contact {
-                    finger: presented.device_finger()?,
+                    finger,
                     land_s,
                     lift_s: lift_s.min(land_s + LONGEST_S),
                     course: names.iter().position(|known| *known == name)?,
@@ -208,7 +209,8 @@ pub fn table(name: &str, caption: &str, unit: &'static str, courses: &[Course]) 
 pub fn exponential_fit(task: &Task) -> Section {
     let mut section = Section::new("exponential-fit", "Course of the skin's temperature").note(
         "Mean courses of the skin thermistor in contact, in steps of 0.1 s, over all contacts of part and material, and the \
-         least-squares fit T = c + a exp(−t/τ). The contact of two half-spaces is no exponential: its best fits over 10 s have \
+         least-squares fit T = c + a exp(−t/τ). On a sample the time counts from the tone to touch, and the finger comes later. The \
+         contact of two half-spaces is no exponential: its best fits over 10 s have \
          R² of 0.84 to 0.91.",
     );
     let both = parts_with_both_modes(task);
@@ -236,15 +238,15 @@ pub fn exponential_fit(task: &Task) -> Section {
         }
     }
     let names = distinct(names);
-    let (courses, unread) = mean_courses(task, "skin_c", &names, name);
+    let (courses, unread) = mean_courses(task, "skin_c", &names, |trial, station| {
+        let sensor = trial.skin_sensors.get(station).copied().flatten()?;
+        Some((name(trial, station)?, sensor))
+    });
     for why in unread {
         section.lacks("Courses", why);
     }
     if courses.is_empty() {
-        section.lacks(
-            "Fits",
-            "there is no telemetry of a skin in contact with a display",
-        );
+        section.lacks("Fits", "there is no telemetry of a skin in contact");
         return section;
     }
     let mut table = Table::new(

@@ -103,13 +103,13 @@ pub fn levels(task: &Task, falls: &[Fall]) -> (Vec<String>, Vec<String>) {
     (parts, materials.into_iter().map(str::to_owned).collect())
 }
 
-const NO_FALLS: &str = "no contact that counts has a skin thermistor before and at the end (a display measures it, a sample does not)";
+const NO_FALLS: &str = "no contact that counts has a skin thermistor before and at the end (that of a display, or the key skin_sensor of a station)";
 
 /// Falls by part and material.
 pub fn falls(task: &Task) -> Section {
     let mut section = Section::new("falls", "Falls of the skin's temperature").note(
         "The fall is the mean of the skin thermistor over the last 0.5 s before the landing less that over the last 0.5 s of the \
-         contact. n counts contacts; SD is that of the contacts, SEM that of the participants' means.",
+         contact; on a sample, before the tone to touch in place of the landing. n counts contacts; SD is that of the contacts, SEM that of the participants' means.",
     );
     let falls = all(task);
     if falls.is_empty() {

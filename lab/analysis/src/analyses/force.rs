@@ -116,7 +116,10 @@ pub fn force_matching(task: &Task) -> Section {
         }
     }
     let names: Vec<String> = targets(&contacts).into_iter().map(target_name).collect();
-    let name = |trial: &Trial, _: usize| trial.record.target_force_n.map(target_name);
+    let name = |trial: &Trial, station: usize| {
+        let name = trial.record.target_force_n.map(target_name)?;
+        Some((name, trial.presented.get(station)?.device_finger()?))
+    };
     let (courses, unread) = mean_courses(task, "force_n", &names, name);
     for why in unread {
         section.lacks("Courses", why);

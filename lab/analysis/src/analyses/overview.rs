@@ -175,7 +175,7 @@ const OF_STATIONS: [OfStation; 6] = [
 pub fn measures(task: &Task) -> Section {
     let mut section = Section::new("measures", "Trials and measures").note(
         "The response time counts from the first landing, so where a finger rests on the display it contains both intervals. \
-         n counts trials that count, or contacts with a display; SD is that over them, participants mixed. Limited: contacts in \
+         n counts trials that count, or contacts with a display or a skin thermistor; SD is that over them, participants mixed. Limited: contacts in \
          which the set-point was limited or not followed at some time.",
     );
     let mut table = Table::new(
@@ -314,6 +314,7 @@ fn trials(task: &Task) -> Table {
                 levels: Vec::new(),
                 staircase: None,
                 presented: Vec::new(),
+                skin_sensors: Vec::new(),
             };
             row.extend(OF_TRIALS.map(|(.., value)| Cell::from(value(&trial))));
             for index in 0..task.stations.len() {

@@ -99,6 +99,7 @@ pub fn trial(
         },
         levels: Vec::new(),
         staircase: None,
+        skin_sensors: presented.iter().map(Presented::device_finger).collect(),
         presented,
     }
 }
@@ -348,7 +349,13 @@ pub fn falls(participants: usize, folder: &Path) -> Task {
                 for (material, fall_k) in FIVE.into_iter().zip([2.6, 2.4, 2.1, 1.2, 0.4]) {
                     let fall_k = fall_k * own * (1.0 + 0.15 * random.normal());
                     let number = trials.len() as u32 + 1;
-                    let mut trial = trial(number, part, vec![display(0, material)], "", None);
+                    let presented = if part == "real" {
+                        sample(material)
+                    } else {
+                        display(0, material)
+                    };
+                    let mut trial = trial(number, part, vec![presented], "", None);
+                    trial.skin_sensors = vec![Some(0)];
                     trial.record.answer = None;
                     let land_s = trial.record.land_s.unwrap_or(0.0);
                     trial.record.stations[0] = StationRecord {

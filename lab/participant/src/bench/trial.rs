@@ -7,7 +7,7 @@ use thermal_session::{
 use thermal_sim::scene::ActiveFault;
 
 use super::{BenchError, Observation, Setting, known_material};
-use crate::device::RunningDevice;
+use crate::device::{FingerInput, RunningDevice};
 use crate::falls::{both, sample_touch};
 use crate::hand::{ForceCourse, Touches};
 use crate::observer::{FallMeter, Judgement};
@@ -60,6 +60,8 @@ struct Judged {
 struct Station {
     presented: Presented,
     stimulus: Stimulus,
+    /// The finger of the device whose skin thermistor is on the finger here, unless that is the display's own.
+    skin_sensor: Option<usize>,
     course: ForceCourse,
     /// Force of a finger that rests on the display.
     resting: ForceCourse,
@@ -133,9 +135,13 @@ impl RunningTrial {
                 let mut random = stream(&format!("{purpose} {index}"));
                 ForceCourse::new(hand, touches, target_n, &mut random)
             };
+            let skin_sensor = session.skin_sensor(index, presented);
+            let skin_sensor =
+                skin_sensor.filter(|sensor| presented.device_finger() != Some(*sensor));
             Ok(Station {
                 presented: presented.clone(),
                 stimulus,
+                skin_sensor: skin_sensor.map(usize::from),
                 course: force("force", &touches, target_n),
                 resting: force("rest", &at_rest, None),
                 meter,
@@ -240,8 +246,13 @@ impl RunningTrial {
         }
     }
 
-    /// Moves the hand, and advances the samples by a millisecond.
-    pub fn step_1_ms(&mut self, ms: u64, forces_n: &mut [f64]) {
+    /// Moves the hand, and advances the samples by a millisecond, which gives what the fingers of the device meet.
+    pub fn step_1_ms(
+        &mut self,
+        ms: u64,
+        mut device: Option<&mut RunningDevice>,
+        inputs: &mut [FingerInput],
+    ) {
         let resting_s = self.rest_ms.filter(|(from_ms, _)| *from_ms <= ms);
         let resting_s = resting_s.map(|(from_ms, until_ms)| {
             (
@@ -268,20 +279,30 @@ impl RunningTrial {
             if touched_n > 0.0 && !station.meter.has_begun() {
                 station.meter.begin();
             }
-            match &mut station.stimulus {
-                Stimulus::Nothing => {}
+            let skin_c = match &mut station.stimulus {
+                Stimulus::Nothing => None,
                 Stimulus::Display(finger) => {
-                    if let Some(force_n) = forces_n.get_mut(*finger) {
-                        *force_n = station.force_n;
+                    if let Some(input) = inputs.get_mut(*finger) {
+                        input.force_n = station.force_n;
                     }
+                    let device = device.as_mut();
+                    device.map(|device| device.plant(*finger).skin_c())
                 }
-                // Nobody looks at a sample that was not touched yet, or after the decision.
+                // A sample that was not touched yet is at rest; after the decision only a thermistor looks at it.
                 Stimulus::Sample(touch) => {
-                    if station.meter.has_begun() && !is_over {
+                    let is_measured = !is_over || station.skin_sensor.is_some();
+                    if station.meter.has_begun() && is_measured {
                         touch.set_force(station.force_n);
                         touch.step();
                     }
+                    Some(touch.skin_c())
                 }
+            };
+            if let Some(input) = station
+                .skin_sensor
+                .and_then(|finger| inputs.get_mut(finger))
+            {
+                input.skin_elsewhere_c = skin_c;
             }
         }
     }

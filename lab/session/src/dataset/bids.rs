@@ -1,5 +1,6 @@
 //! The files that BIDS describes, written from the records.
 
+use std::collections::BTreeSet;
 use std::fs;
 
 use serde_json::json;
@@ -8,7 +9,7 @@ use super::folder::write_whole;
 use super::recorder::{TELEMETRY, pretty};
 use super::{Folder, RecordingError, error_at, events, physio};
 use crate::record::TrialRecord;
-use crate::{Plan, Presented, Session};
+use crate::{Plan, Session};
 
 const BIDS_VERSION: &str = "1.10.0";
 
@@ -66,10 +67,10 @@ pub(super) fn write(
     let sidecar = pretty(&events::sidecar(session, plan));
     write_whole(&folder.behaviour("events.json"), &sidecar)?;
     if let Some(device) = &session.device {
-        let presented = plan.trials.iter().flat_map(|trial| &trial.presented);
-        let mut fingers: Vec<u8> = presented.filter_map(Presented::device_finger).collect();
-        fingers.sort_unstable();
-        fingers.dedup();
+        let trials = plan.trials.iter();
+        let fingers: BTreeSet<u8> = trials
+            .flat_map(|trial| session.reporting_fingers(trial))
+            .collect();
         for finger in fingers {
             let name =
                 |end: &str| folder.behaviour(&format!("recording-finger{finger}_physio.{end}"));

@@ -216,7 +216,7 @@ fn station_columns(index: usize, station: &str) -> Vec<Column> {
         measured(
             "skin_before",
             "degC",
-            "Skin thermistor before the landing, mean of 0.5 s",
+            "Skin thermistor before the landing (on a sample: before the tone to touch), mean of 0.5 s",
             |s| s.skin_before_c,
         ),
         measured(

@@ -23,12 +23,22 @@ impl<L: Link> Executor<'_, L> {
             )));
         }
         let stations = plan.trials.iter().flat_map(|trial| &trial.presented);
-        let needed = stations.filter_map(Presented::device_finger).max();
-        if let Some(last) = needed.filter(|last| *last >= identity.fingers) {
-            return Err(SessionEnd::Unsuitable(format!(
-                "it presents something on finger {last} of the device, which has {}, counted from 0",
-                identity.fingers
-            )));
+        let displays = stations.filter_map(Presented::device_finger).max();
+        let sensors = plan
+            .trials
+            .iter()
+            .map(|trial| self.session.skin_sensors(trial));
+        let needed = [
+            ("it presents something on", displays),
+            ("it measures the skin by", sensors.flatten().max()),
+        ];
+        for (what, last) in needed {
+            if let Some(last) = last.filter(|last| *last >= identity.fingers) {
+                return Err(SessionEnd::Unsuitable(format!(
+                    "{what} finger {last} of the device, which has {}, counted from 0",
+                    identity.fingers
+                )));
+            }
         }
         self.fingers = Fingers::new(identity.fingers);
         let mut all_settings = Vec::new();
@@ -42,7 +52,24 @@ impl<L: Link> Executor<'_, L> {
         })?;
         // Another program may have left it driven.
         self.switch_off()?;
-        self.clear_trips()
+        self.clear_trips()?;
+        self.place_skin_sensors()
+    }
+
+    /// Tells the operator which skin thermistors the session file has put where.
+    fn place_skin_sensors(&mut self) -> Result<(), SessionEnd> {
+        let stations = self.session.stations.iter();
+        let places: Vec<_> = stations
+            .filter_map(|station| {
+                let sensor = station.skin_sensor?;
+                Some(format!("{sensor} on the {}", station.finger))
+            })
+            .collect();
+        if !places.is_empty() {
+            let ready = format!("skin thermistors of the device: {}", places.join(", "));
+            self.operator(OperatorQuestion::Ready(ready))?;
+        }
+        Ok(())
     }
 
     /// Meets the device at the begin of a trial, whatever has happened to it since the one before.

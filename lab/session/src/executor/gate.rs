@@ -13,8 +13,9 @@ const POLL_S: f64 = 0.01;
 const SLOPE_MAX_K_S: f64 = 0.02;
 
 impl<L: Link> Executor<'_, L> {
-    /// Waits until the skin of all these displays' fingers is as the session wants it. Without a display only the time counts.
-    pub(super) fn wait_for_skin(&mut self, displays: &[u8]) -> Result<(), TrialEnd> {
+    /// Waits until the skin that all these fingers of the device measure is as the session wants it. Without any only the time
+    /// counts.
+    pub(super) fn wait_for_skin(&mut self, skin_sensors: &[u8]) -> Result<(), TrialEnd> {
         let Some(rest) = self.session.rest else {
             return Ok(());
         };
@@ -27,7 +28,7 @@ impl<L: Link> Executor<'_, L> {
         let mut until_s = self.now_s() + rest.timeout_s;
         loop {
             let now_s = self.now_s();
-            let all = displays.iter().all(|finger| self.is_rested(*finger, &rest));
+            let all = (skin_sensors.iter()).all(|finger| self.is_rested(*finger, &rest));
             let since_s = *holds_since_s.get_or_insert(now_s);
             if !all {
                 holds_since_s = None;
@@ -35,7 +36,7 @@ impl<L: Link> Executor<'_, L> {
                 return Ok(());
             }
             if now_s >= until_s {
-                let skin_c = (displays.iter())
+                let skin_c = (skin_sensors.iter())
                     .find(|finger| !self.is_rested(**finger, &rest))
                     .and_then(|finger| self.skin(*finger));
                 let decision = self.operator(OperatorQuestion::SkinNotReady {

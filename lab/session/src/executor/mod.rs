@@ -116,7 +116,7 @@ pub struct Executor<'a, L> {
 
 impl<'a, L: Link> Executor<'a, L> {
     /// A session on the device of a client, recorded by a recorder, which knows the trials of an earlier run. A session without
-    /// displays sends nothing, and only the clock of the client's link counts.
+    /// displays and skin thermistors sends nothing, and only the clock of the client's link counts.
     pub fn new(
         session: &'a Session,
         client: Client<L>,

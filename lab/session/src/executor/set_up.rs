@@ -5,7 +5,7 @@ use thermal_client::link::Link;
 use thermal_device::StateName;
 
 use super::{Executor, TrialEnd, trial_end_of};
-use crate::{OperatorQuestion, Phase, PlannedTrial, Presented, Procedure, RestPlace};
+use crate::{DeviceSetup, OperatorQuestion, Phase, PlannedTrial, Presented, Procedure, RestPlace};
 
 /// Longest time from `arm` until the device is armed, s; a self-test under a finger takes 1.8 s.
 const ARM_S: f64 = 5.0;
@@ -20,31 +20,29 @@ const ARRIVED_K: f64 = 0.01;
 const SKIN_FILTER_SETTLE_S: f64 = 2.6;
 
 impl<L: Link> Executor<'_, L> {
-    /// Sets the device up for a trial, and arms it; then tells the operator what goes where, and waits for the skin.
+    /// Sets the device up for a trial, and arms its displays; then tells the operator what goes where, and waits for the skin.
     pub(super) fn set_up_device(&mut self, trial: &PlannedTrial) -> Result<(), TrialEnd> {
         let session = self.session;
         let displays: Vec<u8> = device_fingers(trial).collect();
+        let skin_sensors = session.skin_sensors(trial);
+        // A finger that only measures the skin is not armed: it reports with its bridge off.
+        let reporting = session.reporting_fingers(trial);
         for finger in 0..self.fingers.count() as u8 {
             if !displays.contains(&finger) {
                 self.command(Some(finger), &PlainCommand::Abort)?;
+            }
+            if !reporting.contains(&finger) {
                 self.command(Some(finger), &PlainCommand::stream(0))?;
             }
         }
         if let Some(device) = &session.device
-            && !displays.is_empty()
+            && !reporting.is_empty()
         {
-            let common = [
-                PlainCommand::Events(true),
-                PlainCommand::Law(device.law),
-                PlainCommand::Mode(device.mode),
-                PlainCommand::AssumedFinger(device.assumed_finger),
-                PlainCommand::Skin(device.assumed_skin_c),
-                PlainCommand::ObjectTemperature(device.object_c),
-            ];
-            for command in &common {
-                self.command(None, command)?;
+            self.command(None, &PlainCommand::Events(true))?;
+            if !displays.is_empty() {
+                self.choose_rendering(device)?;
             }
-            for finger in &displays {
+            for finger in &reporting {
                 self.command(Some(*finger), &PlainCommand::stream(device.stream_ms))?;
             }
             let now_s = self.now_s();
@@ -59,7 +57,7 @@ impl<L: Link> Executor<'_, L> {
             self.hold_rest_temperature(&displays)?;
             self.phase(Phase::Rest);
             self.place_samples(trial)?;
-            self.wait_for_skin(&displays)?;
+            self.wait_for_skin(&skin_sensors)?;
         }
         self.phase(Phase::Prepare);
         self.present(trial, &displays)
@@ -97,6 +95,20 @@ impl<L: Link> Executor<'_, L> {
             self.command(Some(*finger), &PlainCommand::Hold(rest.skin_c, None))?;
         }
         self.wait_for_setpoints(displays, |_| Some(rest.skin_c))
+    }
+
+    /// How all displays render.
+    fn choose_rendering(&mut self, device: &DeviceSetup) -> Result<(), TrialEnd> {
+        for command in [
+            PlainCommand::Law(device.law),
+            PlainCommand::Mode(device.mode),
+            PlainCommand::AssumedFinger(device.assumed_finger),
+            PlainCommand::Skin(device.assumed_skin_c),
+            PlainCommand::ObjectTemperature(device.object_c),
+        ] {
+            self.command(None, &command)?;
+        }
+        Ok(())
     }
 
     fn choose_materials(&mut self, trial: &PlannedTrial) -> Result<(), TrialEnd> {

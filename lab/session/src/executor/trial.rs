@@ -3,7 +3,7 @@
 use thermal_client::client::{ReceivedTelemetry, Telemetry};
 
 use super::seconds;
-use crate::measure::{Sample, measure};
+use crate::measure::{Sample, measure, skin_fall};
 use crate::record::{StationRecord, TrialRecord};
 use crate::schedule::Next;
 use crate::{AnswerKind, PlannedTrial, Response, Session};
@@ -23,7 +23,7 @@ pub struct RunningTrial {
     pub response: Option<(Response, f64)>,
     /// Whether the participant is being asked.
     pub is_asked: bool,
-    /// End of the contact, for stations without a display.
+    /// End of the contact by the tone, or by the answer.
     pub contact_end_s: Option<f64>,
     /// Why its data do not count, although it goes on.
     pub void: Option<String>,
@@ -128,10 +128,7 @@ impl RunningTrial {
 
     /// The lines of a finger since a time before its last one, ms.
     pub fn last_lines(&self, finger: u8, ms: u32) -> &[Telemetry] {
-        let lines = self
-            .telemetry
-            .get(usize::from(finger))
-            .map_or(&[][..], Vec::as_slice);
+        let lines = self.lines(finger);
         let Some(last) = lines.last() else {
             return &[];
         };
@@ -197,7 +194,8 @@ impl RunningTrial {
             .map(|finger| self.contact_s(finger))
             .reduce(f64::max);
         let room_c = land_s.and_then(|land_s| {
-            let lines = self.telemetry.first()?;
+            let mut fingers = self.telemetry.iter();
+            let lines = fingers.find(|lines| !lines.is_empty())?;
             lines
                 .iter()
                 .find(|line| self.time_s(line.tick) >= land_s)?
@@ -228,8 +226,12 @@ impl RunningTrial {
             expected: planned.correct.clone(),
             is_correct: self.is_correct(session, planned),
             room_c,
-            stations: (planned.presented.iter())
-                .map(|presented| self.station(presented, planned.target_force_n, end_s))
+            stations: (planned.presented.iter().enumerate())
+                .map(|(station, presented)| {
+                    let skin_sensor = session.skin_sensor(station, presented);
+                    let target_force_n = planned.target_force_n;
+                    self.station(presented, skin_sensor, target_force_n, end_s)
+                })
                 .collect(),
         }
     }
@@ -237,21 +239,55 @@ impl RunningTrial {
     fn station(
         &self,
         presented: &crate::Presented,
+        skin_sensor: Option<u8>,
         target_force_n: Option<f64>,
         end_s: f64,
     ) -> StationRecord {
-        let text = presented.to_string();
-        let Some(finger) = presented.device_finger() else {
-            return measure(&[], text, None, end_s, target_force_n);
+        let (record, lift_s) = match presented.device_finger() {
+            Some(finger) => self.on_display(finger, presented, target_force_n, end_s),
+            // Nothing tells when the finger lands on a sample; the tone to touch comes before, and the skin is at rest until then.
+            None => {
+                let record = StationRecord {
+                    presented: presented.to_string(),
+                    land_s: skin_sensor.and(self.touch_cue_s),
+                    ..StationRecord::default()
+                };
+                (record, self.contact_end_s.unwrap_or(end_s))
+            }
         };
-        let lines = self
-            .telemetry
-            .get(usize::from(finger))
-            .map_or(&[][..], Vec::as_slice);
-        let samples: Vec<Sample> = (lines.iter())
+        let Some((sensor, land_s)) = skin_sensor.zip(record.land_s) else {
+            return record;
+        };
+        let skins = self.lines(sensor).iter();
+        let skins: Vec<(f64, f64)> = skins
+            .filter_map(|line| Some((self.time_s(line.tick), line.skin_c?)))
+            .collect();
+        let (skin_before_c, skin_fall_k) = skin_fall(&skins, land_s, lift_s);
+        StationRecord {
+            skin_before_c,
+            skin_fall_k,
+            ..record
+        }
+    }
+
+    /// The lines of a finger.
+    fn lines(&self, finger: u8) -> &[Telemetry] {
+        let lines = self.telemetry.get(usize::from(finger));
+        lines.map_or(&[][..], Vec::as_slice)
+    }
+
+    /// What a display has measured of the finger on it, and the end of that contact, s.
+    fn on_display(
+        &self,
+        finger: u8,
+        presented: &crate::Presented,
+        target_force_n: Option<f64>,
+        end_s: f64,
+    ) -> (StationRecord, f64) {
+        let text = presented.to_string();
+        let samples: Vec<Sample> = (self.lines(finger).iter())
             .map(|line| Sample {
                 t_s: self.time_s(line.tick),
-                skin_c: line.skin_c,
                 setpoint_c: line.setpoint_c,
                 display_c: line.display_c,
                 force_n: line.force_n,
@@ -264,7 +300,9 @@ impl RunningTrial {
             .map_or(end_s, |tick| self.time_s(tick));
         // The tone ends the contact; what the finger does on its way up is no part of it.
         let lift_s = lift_s.min(self.contact_end_s.unwrap_or(lift_s));
-        measure(&samples, text, self.land_s(finger), lift_s, target_force_n)
+        let land_s = self.land_s(finger);
+        let record = measure(&samples, text, land_s, lift_s, target_force_n);
+        (record, lift_s)
     }
 }
 

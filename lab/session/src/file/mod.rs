@@ -80,23 +80,24 @@ pub(crate) fn parse(text: &str, path: &Path) -> Result<Session, SessionError> {
     format.whole(&FORMAT).map_err(|_| format.wrong("1"))?;
     let text_of = |key: &str, most| file.need(key, "a text")?.text(most);
     let materials = materials::materials(file.get("materials"))?;
-    let stations = setup::stations(file.need("stations", "a table for each station")?)?;
-    let design = design::design(&file, &stations)?;
+    let read = setup::stations(file.need("stations", "a table for each station")?)?;
+    let stations = &read.stations;
+    let design = design::design(&file, stations)?;
     let present = present::present(
         file.need("present", "what the stations present")?,
-        &stations,
+        stations,
         &design,
         &materials,
     )?;
-    let device = setup::device(file.get("device"), &present)?;
+    let device = setup::device(file.get("device"), &read, &present)?;
     let rest = setup::rest(file.get("rest"), &present)?;
     let trial = trial::trial(file.need("trial", "a table")?, &present, &design)?;
-    let voids = trial::voids(file.get("void"), &file, &trial, &stations, &design)?;
+    let voids = trial::voids(file.get("void"), &file, &trial, stations, &design)?;
     let score = score::score(
         file.get("score"),
         &file,
         &score::Facts {
-            stations: &stations,
+            stations,
             present: &present.present,
             trial: &trial,
             design: &design,
@@ -115,7 +116,7 @@ pub(crate) fn parse(text: &str, path: &Path) -> Result<Session, SessionError> {
         instruction: text_of("instruction", TEXT_MAX)?,
         device,
         materials,
-        stations,
+        stations: read.stations,
         present: present.present,
         rest,
         trial: trial.rules,

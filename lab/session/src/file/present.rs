@@ -162,7 +162,9 @@ impl<'a> Reader<'a, '_> {
             return Err(value.error(problem));
         }
         let mut stimuli: Vec<Stimulus> = Vec::new();
-        for name in names {
+        let mut skin_sensors: Vec<u8> = Vec::new();
+        for station in self.stations {
+            let name = &*station.name;
             let value = table.need(name, STIMULUS)?;
             let stimulus = self.stimulus(value, parts)?;
             let finger = stimulus.device_finger();
@@ -173,6 +175,21 @@ impl<'a> Reader<'a, '_> {
                     finger.unwrap_or_default()
                 );
                 return Err(value.error(problem));
+            }
+            let skin_sensor = match stimulus {
+                Stimulus::Nothing => None,
+                _ => station.skin_sensor.or(finger),
+            };
+            if let Some(sensor) = skin_sensor {
+                if skin_sensors.contains(&sensor) {
+                    let problem = format!(
+                        "{}: the skin thermistor of finger {sensor} of the device again; allowed is another one for each \
+                         station, by stations.{name}.skin_sensor or device_finger",
+                        value.key
+                    );
+                    return Err(value.error(problem));
+                }
+                skin_sensors.push(sensor);
             }
             self.stimuli.push((stimulus.clone(), value.clone()));
             stimuli.push(stimulus);

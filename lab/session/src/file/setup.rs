@@ -24,7 +24,8 @@ pub(super) const DEVICE_SKIN_C: Number = Number::new("skin_c", 15.0, 42.0, None)
 /// Five fingers each send a line; 5 ms is the device's shortest interval for that.
 pub(super) const STREAM_MS: Whole = Whole::new("stream_ms", 5, 1000, Some(10));
 
-pub(super) const STATION_KEYS: [&str; 1] = ["finger"];
+pub(super) const STATION_KEYS: [&str; 2] = ["finger", "skin_sensor"];
+pub(super) const SKIN_SENSOR: Whole = Whole::new("skin_sensor", 0, 4, None);
 
 pub(super) const REST_KEYS: [&str; 5] = ["place", "skin_c", "within_k", "for_s", "timeout_s"];
 pub(super) const REST_SKIN_C: Number = Number::new("skin_c", 20.0, 40.0, None);
@@ -38,21 +39,24 @@ pub(super) fn setpoints_c() -> (f64, f64) {
     (least, most)
 }
 
-/// The device; it must be described if a station presents a display.
+/// The device; it must be described if a station presents a display or has a skin thermistor.
 pub(super) fn device(
     file: Option<&Value<'_>>,
+    stations: &Stations<'_>,
     present: &Presentation<'_>,
 ) -> Result<Option<DeviceSetup>, SessionError> {
     let Some(file) = file else {
-        return match &present.display {
-            None => Ok(None),
-            Some(display) => {
-                let problem = format!(
-                    "{} is a display; it is allowed beside a table [device]",
-                    display.key
-                );
-                Err(display.error(problem))
-            }
+        let needs = |value: &Value<'_>, what: &str| {
+            let problem = format!(
+                "{} is {what}; it is allowed beside a table [device]",
+                value.key
+            );
+            Err(value.error(problem))
+        };
+        return match (&present.display, stations.skin_sensors.first()) {
+            (Some(display), _) => needs(display, "a display"),
+            (None, Some((_, sensor))) => needs(sensor, "a thermistor of the device"),
+            (None, None) => Ok(None),
         };
     };
     let table = file.table(&DEVICE_KEYS)?;
@@ -79,15 +83,23 @@ pub(super) fn device(
     }))
 }
 
-/// The stations in the order of the file.
-pub(super) fn stations(file: &Value<'_>) -> Result<Vec<Station>, SessionError> {
+/// The stations, with what other tables point to in their errors.
+pub(super) struct Stations<'a> {
+    /// In the order of the file.
+    pub stations: Vec<Station>,
+    /// Skin thermistors, each with its place.
+    pub skin_sensors: Vec<(u8, Value<'a>)>,
+}
+
+pub(super) fn stations<'a>(file: &Value<'a>) -> Result<Stations<'a>, SessionError> {
     const MOST: usize = 5;
     let tables = file.any_table("a table for each station")?;
     if !(1..=MOST).contains(&tables.values.len()) {
         let problem = format!("{} stations; allowed is 1 to {MOST}", tables.values.len());
         return Err(file.error(problem));
     }
-    let read = tables.values.iter().map(|(name, value)| {
+    let (mut stations, mut skin_sensors) = (Vec::new(), Vec::new());
+    for (name, value) in &tables.values {
         if RESERVED.contains(name) || !super::value::is_name(name) {
             let problem = format!(
                 "{}: allowed as a name is {}, and none of {}",
@@ -98,14 +110,32 @@ pub(super) fn stations(file: &Value<'_>) -> Result<Vec<Station>, SessionError> {
             return Err(value.error(problem));
         }
         let table = value.table(&STATION_KEYS)?;
-        Ok(Station {
+        let finger = table.need("finger", "the participant's finger in words")?;
+        let sensor = table.get(SKIN_SENSOR.key);
+        let skin_sensor = sensor
+            .map(|sensor| sensor.whole(&SKIN_SENSOR))
+            .transpose()?;
+        let skin_sensor = skin_sensor.map(|finger| finger as u8);
+        stations.push(Station {
             name: (*name).into(),
-            finger: table
-                .need("finger", "the participant's finger in words")?
-                .text(40)?,
-        })
-    });
-    read.collect()
+            finger: finger.text(40)?,
+            skin_sensor,
+        });
+        if let Some((of, sensor)) = skin_sensor.zip(sensor) {
+            if skin_sensors.iter().any(|(known, _)| *known == of) {
+                let problem = format!(
+                    "{} = {of} again; allowed is another finger of the device for each station",
+                    sensor.key
+                );
+                return Err(sensor.error(problem));
+            }
+            skin_sensors.push((of, sensor.clone()));
+        }
+    }
+    Ok(Stations {
+        stations,
+        skin_sensors,
+    })
 }
 
 /// Columns of recorded tables, and keys, which no factor and no station may be named after.

@@ -702,6 +702,56 @@ fn wrong_forces_blocks_parts_and_pairs_are_answered() {
 }
 
 #[test]
+fn a_skin_thermistor_is_one_of_the_device_and_at_one_station() {
+    assert_errors_at(
+        &ready("p2-skin-temperature-fall"),
+        &[
+            (
+                "skin_sensor = 0 ",
+                "skin_sensor = 5 ",
+                "skin_sensor = 5",
+                "stations.left.skin_sensor = 5; allowed is a whole number from 0 to 4",
+            ),
+            (
+                "skin_sensor = 0 ",
+                "skin_sensor = \"index\" ",
+                "skin_sensor = \"index\"",
+                "stations.left.skin_sensor = \"index\"; allowed is a whole number from 0 to 4",
+            ),
+            (
+                "skin_sensor = 1",
+                "skin_sensors = 1",
+                "skin_sensors",
+                "stations.right.skin_sensors is no key; allowed are finger, skin_sensor",
+            ),
+            (
+                "skin_sensor = 1",
+                "skin_sensor = 0x0",
+                "skin_sensor = 0x0",
+                "stations.right.skin_sensor = 0 again; allowed is another finger of the device for each station",
+            ),
+            (
+                "[device]\nstream_ms = 50 ",
+                "",
+                "skin_sensor = 0 ",
+                "stations.left.skin_sensor is a thermistor of the device; it is allowed beside a table [device]",
+            ),
+        ],
+    );
+    // The display of the other station has the same thermistor.
+    assert_errors_at(
+        &ready("p5-real-and-simulated"),
+        &[(
+            "finger = \"left index\"",
+            "finger = \"left index\"\nskin_sensor = 0",
+            "right = { display = \"simulated\" }",
+            "present.real-left.right: the skin thermistor of finger 0 of the device again; allowed is another one for each \
+             station, by stations.right.skin_sensor or device_finger",
+        )],
+    );
+}
+
+#[test]
 fn a_file_that_cannot_be_read_is_named() {
     let error = Session::read(Path::new("missing.toml")).expect_err("no file");
     assert!(
@@ -729,6 +779,7 @@ fn no_change_of_a_file_makes_the_reader_panic() {
     ];
     let names = [
         "p4-identification",
+        "p6-skin-temperature",
         "p8-force-matching",
         "p9-change-threshold",
         "p14-same-or-different",
@@ -832,7 +883,7 @@ fn the_documentation_has_each_number_with_range_and_default() {
         design::BREAK_S.range,
         design::BREAK_S.default,
     );
-    let wholes: [(&str, &[Whole]); 4] = [
+    let wholes: [(&str, &[Whole]); 5] = [
         ("`[device]`", &[setup::STREAM_MS]),
         ("## Design", &[design::REPEAT, design::BREAK_AFTER]),
         (
@@ -845,6 +896,7 @@ fn the_documentation_has_each_number_with_range_and_default() {
             ],
         ),
         ("## Void", &[trial::ATTEMPTS_MAX]),
+        ("`[stations.NAME]`", &[setup::SKIN_SENSOR]),
     ];
     for (after, wholes) in wholes {
         for whole in wholes {
@@ -857,10 +909,11 @@ fn the_documentation_has_each_number_with_range_and_default() {
 
 #[test]
 fn the_documentation_has_all_keys_and_words() {
-    let tables: [(&str, &[&str]); 9] = [
+    let tables: [(&str, &[&str]); 10] = [
         ("## Keys", &KEYS),
         ("`[device]`", &setup::DEVICE_KEYS),
         ("`[rest]`", &setup::REST_KEYS),
+        ("`[stations.NAME]`", &setup::STATION_KEYS),
         ("Keys of `pulses`", &present::PULSES_KEYS),
         ("`[trial]`", &trial::TRIAL_KEYS),
         ("## Design", &design::PART_KEYS),

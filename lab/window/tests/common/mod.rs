@@ -14,6 +14,7 @@ pub fn session_view() -> SessionView {
     let station = |name: &str| Station {
         name: name.into(),
         finger: format!("{name} index finger"),
+        skin_sensor: None,
     };
     SessionView {
         title: "real against simulated".into(),
