@@ -4,3 +4,4 @@ mod displays;
 mod reproducibility;
 mod run;
 mod samples;
+mod thresholds;
