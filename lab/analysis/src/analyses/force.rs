@@ -198,6 +198,9 @@ pub fn designs(task: &Task) -> Vec<Design> {
                 Some((contact.participant, cell, finite(value(contact)?)?))
             })
             .collect();
+        // No contact with a force below the tremor may have settled.
+        let has_values = |force: &&String| observations.iter().any(|(_, (_, at), _)| at == *force);
+        let forces: Vec<String> = forces.iter().filter(has_values).cloned().collect();
         if materials.len() > 1 {
             Design::two(
                 name,
