@@ -20,17 +20,24 @@ const LENGTH_3_1_M: f64 = 12.71e-3;
 const THICKNESS_M: f64 = 38e-3;
 /// Length that the numbers of Table 3-4 require instead of the stated thickness, m: 149.2 to 153.8 mm.
 const LENGTH_3_4_M: f64 = 151.4e-3;
-/// Young's moduli of the solids of Table 3-2, GPa; that of granite is from Table 4-1.
-const SOLIDS_GPA: [f64; 6] = [110.0, 93.0, 193.0, 2.3, 17.0, GRANITE_GPA];
-/// Young's modulus of granite, GPa (Table 4-1).
+/// Young's moduli of Table 3-2, GPa; that of granite is from Table 4-1.
+pub(super) const MODULI_GPA: [(&str, f64); 7] = [
+    ("copper", 110.0),
+    ("bronze", 93.0),
+    ("stainless-steel", 193.0),
+    ("abs", 2.3),
+    ("g10", 17.0),
+    ("granite", GRANITE_GPA),
+    ("foam", FOAM_GPA),
+];
 const GRANITE_GPA: f64 = 53.0;
-/// Young's modulus of foam, GPa (Table 3-2).
 const FOAM_GPA: f64 = 1.5e-3;
 
 pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
     let (skin_c, object_c) = BEFORE_C;
     let fourier = |length_m, t_s| fourier_number(&statement.material(), length_m, t_s);
-    let strains = || SOLIDS_GPA.map(strain).into_iter();
+    let solids = MODULI_GPA.iter().filter(|(name, _)| *name != "foam");
+    let strains = || solids.clone().map(|(_, modulus_gpa)| strain(*modulus_gpa));
     let ratio = |effusivity| ratio(&statement.of, effusivity);
     Some(match quantity {
         "interface" => interface_temperature(&SKIN, skin_c, &statement.material(), object_c),

@@ -3,7 +3,7 @@
 
 use serde::Deserialize;
 
-use super::chapter3::{HIGH_LOW, LOW_HIGH, table_3_3, table_3_5};
+use super::chapter3::{HIGH_LOW, LOW_HIGH, MODULI_GPA, table_3_3, table_3_5};
 use super::statement::read;
 
 /// Share of correct answers for two materials.
@@ -55,6 +55,15 @@ pub fn localisation() -> Vec<PublishedPair> {
             ..row
         });
     high.chain(low).collect()
+}
+
+/// Young's modulus of a material, GPa (Tables 3-2 and 4-1); `None` of one that the thesis does not have.
+#[must_use]
+pub fn youngs_modulus_gpa(material: &str) -> Option<f64> {
+    let mut moduli = MODULI_GPA.iter();
+    moduli
+        .find(|(name, _)| *name == material)
+        .map(|(_, gpa)| *gpa)
 }
 
 /// A result that the thesis states in words, because it is in a picture only.

@@ -9,10 +9,14 @@ use thermal_session::dataset::RecordedSession;
 use thermal_session::record::{StationRecord, TrialRecord};
 use thermal_session::{AnswerKind, Departure, Presented, Session};
 
-/// All sessions of one task.
+/// The sessions of one task that have the same session file.
 #[derive(Clone, Debug)]
 pub struct Task {
     pub name: String,
+    /// The name; with a number where session files of the task differ.
+    pub label: String,
+    /// That session files of the task differ, and who has which.
+    pub differs: Option<String>,
     pub title: String,
     pub cite: String,
     pub question: Option<String>,
@@ -64,28 +68,52 @@ pub struct Stimulus<'a> {
     pub is_simulated: bool,
 }
 
-/// The tasks of a data set, by name.
+/// The tasks of a data set, by name. Where session files of a task differ, each makes a task of its own; comments do not count.
 pub fn tasks(sessions: &[RecordedSession]) -> Vec<Task> {
-    let mut tasks: BTreeMap<&str, Task> = BTreeMap::new();
+    let mut tasks: Vec<(Session, Task)> = Vec::new();
     for recorded in sessions {
-        let name = recorded.session.task.as_str();
-        let task = tasks.entry(name).or_insert_with(|| task(&recorded.session));
-        for factor in &recorded.plan.factors {
-            if !task.factors.contains(factor) {
-                task.factors.push(factor.clone());
-            }
+        let read = Session {
+            text: String::new(),
+            ..recorded.session.clone()
+        };
+        let known = tasks.iter().position(|(session, _)| *session == read);
+        let at = known.unwrap_or_else(|| {
+            let new = task(&read);
+            tasks.push((read, new));
+            tasks.len() - 1
+        });
+        if let Some((_, task)) = tasks.get_mut(at) {
+            task.add(recorded);
         }
-        let participant = participant(recorded);
-        for name in participant.trials.iter().flat_map(Trial::materials) {
-            // A material that the session describes itself is not among the named ones.
-            let known = material::find(name).copied();
-            if let Some(found) = known.or_else(|| recorded.session.material(name)) {
-                task.materials.insert(name.into(), found);
-            }
-        }
-        task.participants.push(participant);
     }
-    tasks.into_values().collect()
+    let mut tasks: Vec<Task> = tasks.into_iter().map(|(_, task)| task).collect();
+    tasks.sort_by(|one, other| one.name.cmp(&other.name));
+    for same in tasks.chunk_by_mut(|one, other| one.name == other.name) {
+        tell_apart(same);
+    }
+    tasks
+}
+
+/// Labels the tasks of one name, and says why there are several.
+fn tell_apart(same: &mut [Task]) {
+    if same.len() < 2 {
+        return;
+    }
+    for (number, task) in (1..).zip(&mut *same) {
+        task.label = format!("{}-{number}", task.name);
+    }
+    let of_each = same.iter().map(|task| {
+        let codes: Vec<_> = task.participants.iter().map(|one| &*one.code).collect();
+        format!("{} has {}", task.label, codes.join(", "))
+    });
+    let of_each: Vec<_> = of_each.collect();
+    let sentence = format!(
+        "Session files of this task differ, so its sessions are analysed apart: {}.",
+        of_each.join("; ")
+    );
+    for task in same {
+        task.differs = Some(sentence.clone());
+    }
 }
 
 fn task(session: &Session) -> Task {
@@ -96,6 +124,8 @@ fn task(session: &Session) -> Task {
     let staircases = session.staircases.iter();
     Task {
         name: session.task.clone(),
+        label: session.task.clone(),
+        differs: None,
         title: session.title.clone(),
         cite: session.cite.clone(),
         question: session.answer.as_ref().map(|answer| answer.ask.clone()),
@@ -153,6 +183,23 @@ fn participant(recorded: &RecordedSession) -> Participant {
 }
 
 impl Task {
+    fn add(&mut self, recorded: &RecordedSession) {
+        for factor in &recorded.plan.factors {
+            if !self.factors.contains(factor) {
+                self.factors.push(factor.clone());
+            }
+        }
+        let participant = participant(recorded);
+        for name in participant.trials.iter().flat_map(Trial::materials) {
+            // A material that the session describes itself is not among the named ones.
+            let known = material::find(name).copied();
+            if let Some(found) = known.or_else(|| recorded.session.material(name)) {
+                self.materials.insert(name.into(), found);
+            }
+        }
+        self.participants.push(participant);
+    }
+
     /// All trials that count, with the number of their participant.
     pub fn trials(&self) -> impl Iterator<Item = (usize, &Trial)> {
         let numbered = self.participants.iter().enumerate();

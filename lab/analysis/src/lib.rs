@@ -12,9 +12,11 @@ mod tests;
 
 use thermal_session::dataset::RecordedSession;
 
+use report::rounded;
 pub use report::{Analysis, Cell, Column, Picture, Section, Table, TaskAnalysis};
 
-/// Analyses the sessions of a data set, each task over all its participants. Void trials do not count. Whatever the records
+/// Analyses the sessions of a data set, each task over all its participants; sessions of a task whose files
+/// differ are analysed apart. Void trials do not count. Whatever the records
 /// are, every number is finite; what cannot be computed is a sentence in [`Section::not_possible`].
 #[must_use]
 pub fn analyse(sessions: &[RecordedSession]) -> Analysis {
@@ -40,8 +42,8 @@ impl Analysis {
         page::page(&self.tasks)
     }
 
-    /// The tables: names of files, of task and table, and their contents as CSV. Numbers have full precision; what has no
-    /// value is empty.
+    /// The tables: names of files, of task and table, and their contents as CSV. Numbers have seven significant
+    /// digits; what has no value is empty.
     #[must_use]
     pub fn csv(&self) -> Vec<(String, String)> {
         let tables = self.tasks.iter().flat_map(|task| {
@@ -66,10 +68,19 @@ impl Table {
                 Cell::Nothing => String::new(),
                 Cell::Text(text) => text.clone(),
                 Cell::Count(count) => count.to_string(),
-                Cell::Number(number) => number.to_string(),
+                Cell::Number(number) => decimal_or_scientific(rounded(*number)),
             }));
         }
         let bytes = writer.into_inner().unwrap_or_default();
         String::from_utf8_lossy(&bytes).into_owned()
+    }
+}
+
+/// A number as text, small ones with an exponent.
+fn decimal_or_scientific(number: f64) -> String {
+    if number != 0.0 && number.abs() < 1e-4 {
+        format!("{number:e}")
+    } else {
+        number.to_string()
     }
 }

@@ -12,7 +12,7 @@ pub struct Analysis {
 /// The analysis of one task over all its participants.
 #[derive(Clone, Debug, Serialize)]
 pub struct TaskAnalysis {
-    /// Name of the task.
+    /// Name of the task; where its session files differ, with a number for each of them.
     pub task: String,
     /// Title of the session.
     pub title: String,
@@ -206,13 +206,19 @@ pub enum Cell {
     Number(f64),
 }
 
+/// A number with seven significant digits and without a negative zero, as files have it: a millisecond of a session of two hours, and more than any
+/// measurement or probability here is good for.
+pub(crate) fn rounded(number: f64) -> f64 {
+    format!("{number:.6e}").parse().unwrap_or(number) + 0.0
+}
+
 impl Serialize for Cell {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Nothing => serializer.serialize_none(),
             Self::Text(text) => serializer.serialize_str(text),
             Self::Count(count) => serializer.serialize_u64(*count),
-            Self::Number(number) => serializer.serialize_f64(*number),
+            Self::Number(number) => serializer.serialize_f64(rounded(*number)),
         }
     }
 }

@@ -172,3 +172,43 @@ fn sessions_of_several_tasks_are_analysed_apart() {
     let names: BTreeSet<_> = analysis.csv().into_iter().map(|(name, _)| name).collect();
     assert_eq!(names.len(), analysis.csv().len());
 }
+
+/// Comments and order of participants do not matter; another rule of the trials does.
+#[test]
+fn sessions_of_a_task_whose_files_differ_are_analysed_apart() {
+    let file = files()
+        .into_iter()
+        .find(|file| file.ends_with("p1-discrimination.toml"));
+    let path = file.expect("P1");
+    let text = std::fs::read_to_string(&path).expect("a file");
+    let parsed = |text: &str| Session::parse(text, &path).expect("a session");
+    let (one, comment) = (parsed(&text), parsed(&format!("# Day 2\n{text}")));
+    let other = parsed(&text.replace("max_s = 10.0", "max_s = 5.0"));
+    let sessions = [
+        recorded(&one, 1),
+        recorded(&other, 2),
+        recorded(&comment, 3),
+    ];
+    let analysis = analyse(&sessions);
+    let sentence = "Session files of this task differ, so its sessions are analysed apart: p1-1 has P1, P3; p1-2 has P2.";
+    let found: Vec<_> = analysis
+        .tasks
+        .iter()
+        .map(|task| (&*task.task, task.participants.join(" ")))
+        .collect();
+    assert_eq!(found, [("p1-1", "P1 P3".into()), ("p1-2", "P2".into())]);
+    for task in &analysis.tasks {
+        assert!(task.sections[0].notes.contains(&sentence.to_owned()));
+        assert!(
+            task.sections
+                .iter()
+                .any(|section| section.name == "published")
+        );
+    }
+    let names: BTreeSet<_> = analysis.csv().into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names.len(), analysis.csv().len());
+    assert_eq!(
+        of_one(&[recorded(&one, 1), recorded(&comment, 3)]).task,
+        "p1"
+    );
+}

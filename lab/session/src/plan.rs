@@ -417,13 +417,38 @@ impl Planner<'_> {
         let most = constraints.iter().map(|(_, most)| *most as usize).max();
         let tail = before.len().saturating_sub(most.unwrap_or_default());
         let before = before.get(tail..).unwrap_or_default();
+        // Indices are drawn into an order, and levels are looked up once, because there may be many attempts.
+        let drafts = block.to_vec();
+        let levels: Vec<[Vec<Option<&String>>; 2]> = (constraints.iter())
+            .map(|(factor, _)| {
+                [before, &drafts].map(|trials| {
+                    let levels = trials.iter().map(|draft| draft.levels.get(factor));
+                    levels.collect()
+                })
+            })
+            .collect();
+        let mut order: Vec<usize> = (0..drafts.len()).collect();
+        // The constraint that was broken last is looked at first: one that no order fulfils is soon given up.
+        let mut suspect = 0;
         for _ in 0..ATTEMPTS {
-            stream.shuffle(block);
-            let broken = constraints.iter().position(|(factor, most)| {
-                longest_run(before.iter().chain(&*block), factor) > *most
-            });
+            stream.shuffle(&mut order);
+            let is_broken = |index: &usize| {
+                let known = constraints.get(*index).zip(levels.get(*index));
+                known.is_some_and(|((_, most), [before, own])| {
+                    let own = order.iter().filter_map(|index| own.get(*index));
+                    has_run_above(before.iter().chain(own), *most)
+                })
+            };
+            let mut by_suspicion = (suspect..constraints.len()).chain(0..suspect);
+            let broken = by_suspicion.find(is_broken);
+            suspect = broken.unwrap_or_default();
             match broken.and_then(|index| failures.get_mut(index)) {
-                None => return Ok(()),
+                None => {
+                    for (place, index) in block.iter_mut().zip(order) {
+                        place.clone_from(&drafts[index]);
+                    }
+                    return Ok(());
+                }
                 Some(failures) => *failures += 1,
             }
         }
@@ -574,15 +599,21 @@ fn number(quantity: &Quantity, draft: &Draft) -> f64 {
     }
 }
 
-/// The most trials in sequence that have the same level of a factor.
-fn longest_run<'d>(trials: impl Iterator<Item = &'d Draft>, factor: &str) -> u32 {
-    let (mut longest, mut run, mut last) = (0, 0, None);
-    for trial in trials {
-        let level = trial.levels.get(factor);
-        run = if level == last { run + 1 } else { 1 };
-        (longest, last) = (longest.max(run), level);
+/// Whether more levels in sequence than these are the same.
+fn has_run_above<L: PartialEq>(levels: impl Iterator<Item = L>, most: u32) -> bool {
+    let (mut run, mut last) = (0, None);
+    for level in levels {
+        run = if last.as_ref() == Some(&level) {
+            run + 1
+        } else {
+            1
+        };
+        if run > most {
+            return true;
+        }
+        last = Some(level);
     }
-    longest
+    false
 }
 
 /// Why there is no plan.

@@ -298,7 +298,7 @@ pub struct Score {
 }
 
 /// Words for tables and tests of the analysis, each with what it needs of a session.
-pub const ANALYSES: [(&str, &str); 20] = [
+pub const ANALYSES: [(&str, &str); 21] = [
     ("pairs", "correct, and two materials in each trial"),
     (
         "pairs-by-mode",
@@ -329,6 +329,7 @@ pub const ANALYSES: [(&str, &str); 20] = [
         "two parts or more, and a factor with two levels or more",
     ),
     ("tukey", "anova-within or anova-split-plot"),
+    ("ancova", "pairs or confusion"),
     (
         "pearson-between-parts",
         "confusion or falls, and two parts or more",

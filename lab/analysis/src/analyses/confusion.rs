@@ -190,27 +190,9 @@ pub fn designs(task: &Task) -> Vec<Design> {
                 task.answers.iter().map(of).collect::<Vec<_>>()
             })
             .collect();
-        let presented: Vec<String> = words_presented(task, &answers);
-        let percent =
-            |answer: &Answer<'_>| 100.0 * f64::from(u8::from(answer.presented == answer.answered));
-        let correct: Vec<_> = answers
-            .iter()
-            .map(|answer| {
-                (
-                    answer.participant,
-                    answer.presented.to_owned(),
-                    percent(answer),
-                )
-            })
-            .collect();
         let bias = format!("share of all answers (response bias), {part}");
         designs.push(Design::one(bias, "answer", &task.answers, &counts).with(Contrast::First));
-        designs.push(Design::one(
-            format!("correct / %, {part}"),
-            "presented",
-            &presented,
-            &correct,
-        ));
+        designs.push(design_of_materials(task, part, &answers));
         let mut blocks = distinct(answers.iter().map(|answer| answer.trial.record.block));
         blocks.sort_unstable();
         if blocks.len() > 1 {
@@ -235,6 +217,36 @@ pub fn designs(task: &Task) -> Vec<Design> {
     designs
 }
 
+/// Shares correct of a part, by what was presented.
+fn design_of_materials(task: &Task, part: &str, answers: &[Answer<'_>]) -> Design {
+    let correct = answers.iter().map(|answer| {
+        (
+            answer.participant,
+            answer.presented.to_owned(),
+            percent(answer),
+        )
+    });
+    Design::one(
+        format!("correct / %, {part}"),
+        "presented",
+        &words_presented(task, answers),
+        &correct.collect::<Vec<_>>(),
+    )
+}
+
+/// Shares correct of each part, by what was presented.
+pub fn designs_of_materials(task: &Task) -> Vec<Design> {
+    let parts = task.parts().into_iter();
+    parts
+        .map(|part| design_of_materials(task, part, &answers(task, Some(part))))
+        .collect()
+}
+
+/// An answer in per cent correct.
+fn percent(answer: &Answer<'_>) -> f64 {
+    100.0 * f64::from(u8::from(answer.presented == answer.answered))
+}
+
 fn words_presented(task: &Task, answers: &[Answer<'_>]) -> Vec<String> {
     let is_there = |word: &&String| answers.iter().any(|answer| answer.presented == *word);
     task.answers.iter().filter(is_there).cloned().collect()
@@ -250,11 +262,7 @@ pub fn design_of_parts(task: &Task) -> Design {
                 answer.trial.record.part.clone(),
                 answer.presented.to_owned(),
             );
-            (
-                answer.participant,
-                cell,
-                100.0 * f64::from(u8::from(answer.presented == answer.answered)),
-            )
+            (answer.participant, cell, percent(answer))
         })
         .collect();
     let presented = words_presented(task, &answers);

@@ -13,7 +13,20 @@ struct Contact<'a> {
     participant: usize,
     target_n: f64,
     material: &'a str,
+    contact_s: Option<f64>,
     station: &'a StationRecord,
+}
+
+/// The end of a contact in which a force that has settled must not leave its target, s; it is that of the recorded means.
+const END_S: f64 = 2.0;
+
+impl Contact<'_> {
+    /// Time to settle, s. A small force that is near its target only at the very end, between two tremors, has not settled.
+    fn settled_s(&self) -> Option<f64> {
+        let settled_s = self.station.force_settled_s.and_then(finite)?;
+        let last_s = self.contact_s.map_or(f64::INFINITY, |s| s - END_S);
+        (settled_s <= last_s).then_some(settled_s)
+    }
 }
 
 fn contacts(task: &Task) -> Vec<Contact<'_>> {
@@ -30,6 +43,7 @@ fn contacts(task: &Task) -> Vec<Contact<'_>> {
                 participant,
                 target_n,
                 material: stimulus.material,
+                contact_s: trial.record.contact_s,
                 station,
             }));
         }
@@ -52,7 +66,8 @@ fn target_name(target_n: f64) -> String {
 /// Force and its errors by material and target.
 pub fn force_matching(task: &Task) -> Section {
     let mut section = Section::new("force-matching", "Force matching").note(
-        "Settled: time from the landing until the force stays within 10 % of its target; means are of the contacts that settled. \
+        "Settled: time from the landing until the force stays within 10 % of its target, through the last 2 s of the contact at \
+         least; means are of the contacts that settled. \
          Mean and SD of the force are those of the last 2 s of a contact; the RMS error is from 2 s after the landing on. n counts \
          contacts; the SEM is that of the participants' means of the force.",
     );
@@ -103,9 +118,8 @@ pub fn force_matching(task: &Task) -> Section {
                 material,
                 target_n,
                 count,
-                of().filter(|contact| contact.station.force_settled_s.is_some())
-                    .count(),
-                of_station(|station| station.force_settled_s),
+                of().filter(|contact| contact.settled_s().is_some()).count(),
+                mean(of().filter_map(Contact::settled_s)),
                 force_n,
                 sem,
                 force_n.map(|force_n| 100.0 * (force_n / target_n - 1.0)),
@@ -187,6 +201,9 @@ pub fn designs(task: &Task) -> Vec<Design> {
                 Some((contact.participant, cell, finite(value(contact)?)?))
             })
             .collect();
+        // No contact with a force below the tremor may have settled.
+        let has_values = |force: &&String| observations.iter().any(|(_, (_, at), _)| at == *force);
+        let forces: Vec<String> = forces.iter().filter(has_values).cloned().collect();
         if materials.len() > 1 {
             Design::two(
                 name,
@@ -204,9 +221,7 @@ pub fn designs(task: &Task) -> Vec<Design> {
     };
     vec![
         of("fall of skin / K", |contact| contact.station.skin_fall_k),
-        of("time to settle / s", |contact| {
-            contact.station.force_settled_s
-        }),
+        of("time to settle / s", |contact| contact.settled_s()),
         of("RMS error over target", |contact| {
             Some(contact.station.force_error_rms_n? / contact.target_n)
         }),

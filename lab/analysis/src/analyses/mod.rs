@@ -1,6 +1,7 @@
 //! The analyses, by the words of the session file.
 
 mod against;
+mod ancova;
 mod anova;
 mod confusion;
 mod courses;
@@ -28,7 +29,7 @@ use crate::report::{Section, TaskAnalysis};
 type Analyse = fn(&Task) -> Section;
 
 /// The analyses by their words, in the order of the page.
-const ANALYSES: [(&str, Analyse); 20] = [
+const ANALYSES: [(&str, Analyse); 21] = [
     ("pairs", pairs::pairs),
     ("pairs-by-mode", pairs::by_mode),
     ("identical-pairs", identical::identical_pairs),
@@ -47,6 +48,7 @@ const ANALYSES: [(&str, Analyse); 20] = [
     ("anova-within", anova::within),
     ("anova-split-plot", anova::split_plot),
     ("tukey", tukey::tukey),
+    ("ancova", ancova::ancova),
     ("pearson-between-parts", parts::pearson_between_parts),
     ("chi-squared-against", against::chi_squared_against),
 ];
@@ -65,7 +67,7 @@ pub fn of_task(task: &Task) -> TaskAnalysis {
         }
     }
     TaskAnalysis {
-        task: task.name.clone(),
+        task: task.label.clone(),
         title: task.title.clone(),
         cite: task.cite.clone(),
         question: task.question.clone(),

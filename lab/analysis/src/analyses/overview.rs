@@ -13,6 +13,7 @@ pub fn participants(task: &Task) -> Section {
         "Planned: trials of the plan; a staircase may end before its last one. Counted: trials that are not void and are analysed. \
          Void trials are repeated at the end of their block, so attempts may exceed the plan.",
     );
+    section.notes.extend(task.differs.clone());
     let mut table = Table::new(
         "participants",
         "Trials by participant",

@@ -28,9 +28,12 @@ pub struct Answer<'a> {
 /// Names of the modes, real over simulated contact coefficient.
 const MODES: [&str; 2] = ["R/S > 1", "R/S < 1"];
 
+/// Between the names of the materials of a pair.
+pub const BETWEEN: &str = " / ";
+
 impl Answer<'_> {
     fn name(&self) -> String {
-        self.pair.join(" / ")
+        self.pair.join(BETWEEN)
     }
 }
 
@@ -73,7 +76,7 @@ fn names(task: &Task, answers: &[Answer<'_>]) -> Vec<(String, Option<f64>)> {
     pairs.sort_by_key(|(pair, _)| pair.map(place));
     pairs
         .into_iter()
-        .map(|(pair, ratio)| (pair.join(" / "), ratio))
+        .map(|(pair, ratio)| (pair.join(BETWEEN), ratio))
         .collect()
 }
 
@@ -134,28 +137,13 @@ pub fn pairs(task: &Task) -> Section {
         section.lacks("Pairs", NO_ANSWERS);
         return section;
     }
-    let mut table = Table::new(
-        "pairs",
-        "Correct answers by pair; n counts answers",
-        table_columns(false),
+    add_shares(
+        task,
+        &answers,
+        ("pairs", "Correct answers by pair"),
+        &[],
+        &mut section,
     );
-    let mut marks = Vec::new();
-    for (pair, ratio) in names(task, &answers) {
-        let share = share(&answers, &pair, None);
-        let mut row = cells![pair.clone(), ratio];
-        row.extend(share.cells(task.chance));
-        row.extend(cells![
-            verdict(&share, task.threshold),
-            d_prime_of(task, &share)
-        ]);
-        table.row(row);
-        marks.extend(share.mark(pair, 0));
-    }
-    section.draw(
-        "Correct answers by pair",
-        picture(&marks, &[""], task.chance, task.threshold),
-    );
-    section.add(table);
     section
 }
 
@@ -177,16 +165,40 @@ pub fn by_mode(task: &Task) -> Section {
         );
         return section;
     }
-    let mut table = Table::new(
-        "pairs-by-mode",
-        "Correct answers by pair and mode; n counts answers",
-        table_columns(true),
+    add_shares(
+        task,
+        &answers,
+        ("pairs-by-mode", "Correct answers by pair and mode"),
+        &MODES,
+        &mut section,
     );
+    section
+}
+
+/// Adds table and picture of the answers by pair, and by mode if there are modes.
+fn add_shares(
+    task: &Task,
+    answers: &[Answer<'_>],
+    (name, caption): (&str, &str),
+    modes: &[&'static str],
+    section: &mut Section,
+) {
+    let mut table = Table::new(
+        name,
+        &format!("{caption}; n counts answers"),
+        table_columns(!modes.is_empty()),
+    );
+    let of_pair = match modes {
+        [] => vec![None],
+        modes => modes.iter().copied().map(Some).collect(),
+    };
     let mut marks = Vec::new();
-    for (pair, ratio) in names(task, &answers) {
-        for (series, mode) in MODES.into_iter().enumerate() {
-            let share = share(&answers, &pair, Some(mode));
-            let mut row = cells![pair.clone(), mode, ratio];
+    for (pair, ratio) in names(task, answers) {
+        for (series, mode) in of_pair.iter().enumerate() {
+            let share = share(answers, &pair, *mode);
+            let mut row = cells![pair.clone()];
+            row.extend(mode.map(Into::into));
+            row.push(ratio.into());
             row.extend(share.cells(task.chance));
             row.extend(cells![
                 verdict(&share, task.threshold),
@@ -196,17 +208,17 @@ pub fn by_mode(task: &Task) -> Section {
             marks.extend(share.mark(&*pair, series));
         }
     }
+    let series = if modes.is_empty() { &[""][..] } else { modes };
     section.draw(
-        "Correct answers by pair and mode",
-        picture(&marks, &MODES, task.chance, task.threshold),
+        caption,
+        picture(&marks, series, task.chance, task.threshold),
     );
     section.add(table);
-    section
 }
 
 /// The answers to a published pair.
 pub fn share_of(task: &Task, published: &PublishedPair) -> Share {
-    let pair = format!("{} / {}", published.first, published.second);
+    let pair = [&*published.first, &*published.second].join(BETWEEN);
     share(&answers(task), &pair, None)
 }
 

@@ -2,25 +2,35 @@
 
 use experiment_statistics::distribution::normal_quantile;
 
-use super::NO_ANSWERS;
 use super::design::Design;
 use super::share::Share;
+use super::{NO_ANSWERS, pairs};
 use crate::cells::distinct;
 use crate::input::Task;
 use crate::report::{Section, Table, cells, numbers, probabilities, words};
 use experiment_statistics::chi_square::contingency;
 
-struct Answer {
+struct Answer<'a> {
     participant: usize,
-    pair: String,
-    is_equal: bool,
+    /// The materials, that of the larger contact coefficient first.
+    pair: [&'a str; 2],
     says_different: bool,
+}
+
+impl Answer<'_> {
+    fn name(&self) -> String {
+        self.pair.join(pairs::BETWEEN)
+    }
+
+    fn is_equal(&self) -> bool {
+        self.pair[0] == self.pair[1]
+    }
 }
 
 const SAME: &str = "same";
 const DIFFERENT: &str = "different";
 
-fn answers(task: &Task) -> Vec<Answer> {
+fn answers(task: &Task) -> Vec<Answer<'_>> {
     let all = task.trials().filter_map(|(participant, trial)| {
         let says_different = match trial.record.answer.as_deref()? {
             SAME => false,
@@ -28,15 +38,22 @@ fn answers(task: &Task) -> Vec<Answer> {
             _ => return None,
         };
         let materials = task.sorted(trial.stimuli().map(|stimulus| stimulus.material));
-        let (first, last) = (materials.first()?, materials.last()?);
         Some(Answer {
             participant,
-            pair: format!("{first} / {last}"),
-            is_equal: materials.len() == 1,
+            pair: [*materials.first()?, *materials.last()?],
             says_different,
         })
     });
     all.collect()
+}
+
+/// The pairs by the place of their materials.
+fn sorted_pairs<'a>(task: &Task, answers: &[Answer<'a>]) -> Vec<[&'a str; 2]> {
+    let materials = task.sorted(answers.iter().flat_map(|answer| answer.pair));
+    let place = |name: &str| materials.iter().position(|one| *one == name);
+    let mut pairs = distinct(answers.iter().map(|answer| answer.pair));
+    pairs.sort_by_key(|pair| pair.map(place));
+    pairs
 }
 
 /// Answers `different` to different and to equal materials.
@@ -51,11 +68,11 @@ pub fn same_different(task: &Task) -> Section {
         section.lacks("Table", NO_ANSWERS);
         return section;
     }
-    let share = |is_of: &dyn Fn(&&Answer) -> bool| {
+    let share = |is_of: &dyn Fn(&&Answer<'_>) -> bool| {
         let of = answers.iter().filter(is_of);
         Share::new(of.map(|answer| (answer.participant, answer.says_different)))
     };
-    let alarms = share(&|answer| answer.is_equal);
+    let alarms = share(&|answer| answer.is_equal());
     if alarms.total() == 0 {
         section.lacks(
             "z(H) − z(F)",
@@ -79,16 +96,14 @@ pub fn same_different(task: &Task) -> Section {
             probabilities("p"),
         ],
     );
-    for pair in distinct(answers.iter().map(|answer| &answer.pair)) {
-        let own = share(&|answer| answer.pair == *pair);
-        let is_equal = answers
-            .iter()
-            .any(|answer| answer.pair == *pair && answer.is_equal);
+    for pair in sorted_pairs(task, &answers) {
+        let own = share(&|answer| answer.pair == pair);
+        let is_equal = pair[0] == pair[1];
         let (low, high) = own.interval().unzip();
         let hits = (!is_equal && alarms.total() > 0).then_some(&own);
         let test = hits.and_then(|hits| contingency(&[counts(hits), counts(&alarms)]).ok());
         table.row(cells![
-            pair.clone(),
+            pair.join(pairs::BETWEEN),
             own.total(),
             own.correct(),
             own.percent(),
@@ -105,13 +120,16 @@ pub fn same_different(task: &Task) -> Section {
 
 pub fn design(task: &Task) -> Design {
     let answers = answers(task);
-    let levels = distinct(answers.iter().map(|answer| answer.pair.clone()));
+    let levels: Vec<String> = sorted_pairs(task, &answers)
+        .into_iter()
+        .map(|pair| pair.join(pairs::BETWEEN))
+        .collect();
     let observations: Vec<_> = answers
         .iter()
         .map(|answer| {
             (
                 answer.participant,
-                answer.pair.clone(),
+                answer.name(),
                 100.0 * f64::from(u8::from(answer.says_different)),
             )
         })

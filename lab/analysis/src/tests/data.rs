@@ -19,6 +19,8 @@ pub fn task(name: &str, stations: &[&str], answers: &[&str], analyses: &[&str]) 
     let owned = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
     Task {
         name: name.into(),
+        label: name.into(),
+        differs: None,
         title: format!("Experiment {name}"),
         cite: "a test".into(),
         question: Some("Which one?".into()),

@@ -2,6 +2,7 @@
 
 use super::data;
 use crate::analyses::of_task;
+use crate::report::rounded;
 use crate::{Analysis, Cell};
 
 /// Elements without an end.
@@ -142,4 +143,24 @@ fn a_data_set_without_sessions_has_a_page() {
         empty.json().replace(char::is_whitespace, ""),
         "{\"tasks\":[]}"
     );
+}
+
+#[test]
+fn files_have_seven_significant_digits() {
+    assert_eq!(rounded(0.1 + 0.2), 0.3);
+    assert_eq!(rounded(7_234.567_89), 7_234.568);
+    assert_eq!(rounded(-1.234_567_89e-12), -1.234_568e-12);
+    assert!(rounded(-0.0).is_sign_positive());
+    let analysis = analysis();
+    for (name, text) in analysis.csv() {
+        for word in text.split([',', '\n']) {
+            let digits = word.trim_start_matches(['-', '0', '.']);
+            let digits = digits.split('e').next().unwrap_or_default();
+            let digits = digits.bytes().filter(u8::is_ascii_digit).count();
+            assert!(
+                word.parse::<f64>().is_err() || digits <= 7,
+                "{name}: {word}"
+            );
+        }
+    }
 }

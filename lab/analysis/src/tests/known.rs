@@ -403,3 +403,87 @@ fn courses_and_forces_come_from_the_telemetry() {
     );
     assert_eq!(without.table("falls").rows.len(), 1);
 }
+
+/// Five pairs, and the correct answers of four that three participants have: those of `tests/data/ancova.py`.
+const ANSWERS_OF_FOUR: [([&str; 2], [usize; 3]); 5] = [
+    (["copper", "bronze"], [3, 2, 1]),
+    (["copper", "stainless-steel"], [2, 3, 3]),
+    (["copper", "abs"], [4, 3, 4]),
+    (["bronze", "abs"], [4, 4, 3]),
+    (["stainless-steel", "foam"], [4, 4, 4]),
+];
+
+#[test]
+fn ancova_is_that_of_packages() {
+    let mut task = task("pairs", &SIDES, &SIDES, &["pairs", "ancova"]);
+    for person in 0..3 {
+        let trials = ANSWERS_OF_FOUR
+            .iter()
+            .flat_map(|([one, other], correct)| one_pair(one, other, 4, correct[person]));
+        task.participants
+            .push(participant(&format!("P{person}"), trials.collect()));
+    }
+    let analysis = of_task(&task);
+    let table = analysis.table("ancova");
+    // Covariate, then slope, F, p of the covariate, F and p of the participants.
+    let packages = [
+        (
+            "roughness Rq",
+            [5.493_247, 3.474_583, 0.089_208, 0.241_243, 0.789_700],
+        ),
+        (
+            "Young's modulus",
+            [2.480_912, 8.831_487, 0.012_705, 0.330_525, 0.725_442],
+        ),
+    ];
+    let columns = ["slope", "F", "p", "F of participants", "p of participants"];
+    for (covariate, values) in packages {
+        let row = ["correct / %", covariate];
+        for (column, value) in columns.into_iter().zip(values) {
+            assert_near(table.number(&row, column), value, 1e-6);
+        }
+        assert_near(table.number(&row, "n"), 15.0, 0.0);
+        assert_near(table.number(&row, "df error"), 11.0, 0.0);
+        assert_near(table.number(&row, "df"), 1.0, 0.0);
+    }
+}
+
+#[test]
+fn a_covariate_that_is_not_known_of_each_material_is_said() {
+    let mut task = task("pairs", &SIDES, &SIDES, &["pairs", "ancova"]);
+    let trials = [
+        one_pair("copper", "zns", 4, 3),
+        one_pair("copper", "abs", 4, 4),
+    ];
+    task.participants.push(participant("P1", trials.concat()));
+    let analysis = of_task(&task);
+    let sentences = analysis.not_possible();
+    assert!(
+        sentences.contains(&"correct / %, Young's modulus: it is not known of each material"),
+        "{sentences:?}"
+    );
+}
+
+/// Tremor of 7 mN and a target of 0.1 N: within 10 % for the last 40 ms of a contact is no settled force.
+#[test]
+fn a_force_has_settled_if_it_keeps_within_its_band_through_the_last_two_seconds() {
+    let mut task = task("p8", &["index"], &[], &["force-matching"]);
+    let contact = |number: u32, settled_s: f64| {
+        let mut trial = trial(number, "main", vec![display(0, "baf2")], "", None);
+        trial.record.target_force_n = Some(0.1);
+        trial.record.stations[0] = StationRecord {
+            force_mean_n: Some(0.1),
+            force_end_mean_n: Some(0.1),
+            force_settled_s: Some(settled_s),
+            ..StationRecord::default()
+        };
+        trial
+    };
+    let trials = vec![contact(1, 9.96), contact(2, 8.0), contact(3, 1.0)];
+    task.participants.push(participant("P1", trials));
+    let analysis = of_task(&task);
+    let table = analysis.table("force-matching");
+    assert_near(table.number(&["baf2"], "n"), 3.0, 0.0);
+    assert_near(table.number(&["baf2"], "settled"), 2.0, 0.0);
+    assert_near(table.number(&["baf2"], "time to settle"), 4.5, 1e-12);
+}

@@ -1,3 +1,7 @@
+use experiment_statistics::proportion::Proportion;
+use experiment_statistics::psychometric::{Level, Model, Shape};
+use experiment_statistics::staircase::{Staircase, StaircaseRule};
+
 use super::*;
 
 fn streams() -> (Stream, Stream) {
@@ -136,4 +140,124 @@ fn warming_is_a_negative_fall_at_the_warm_receptors() {
     }
     let fall_k = meter.fall_k().expect("a fall");
     assert!((fall_k + 0.7).abs() < 1e-9, "{fall_k}");
+}
+
+/// Falls of P9 per kelvin of the level, as `tests/it/thresholds.rs` finds them: of the change, and of the second interval after
+/// it.
+const FALLS_OF_P9: [[f64; 2]; 2] = [[0.556, -0.118], [-0.321, 0.112]];
+
+/// Probability that the change is the larger one of two felt with independent normal noise, whatever their signs: with sum and
+/// difference, whose noise is independent, it is that of a positive product.
+fn larger(changed_k: f64, other_k: f64, sigma_k: f64) -> f64 {
+    let phi = |z: f64| 0.5 * libm::erfc(-z / std::f64::consts::SQRT_2);
+    let scaled = |k: f64| k / (std::f64::consts::SQRT_2 * sigma_k);
+    let (sum, difference) = (
+        phi(scaled(changed_k + other_k)),
+        phi(scaled(changed_k - other_k)),
+    );
+    sum * difference + (1.0 - sum) * (1.0 - difference)
+}
+
+/// Probability of a correct answer at a level, the change being in either interval equally often.
+fn correct_of_p9([changed, after]: [f64; 2], level_k: f64) -> f64 {
+    let ObserverParams { s0_k, lapse, .. } = ObserverParams::THERMODE_FINGERTIP;
+    let first = larger(changed * level_k, after * level_k, s0_k);
+    let second = larger(changed * level_k, 0.0, s0_k);
+    0.5 * lapse + (1.0 - lapse) * 0.5 * (first + second)
+}
+
+/// The level at which this part of the answers is correct.
+fn level_of_p9(falls: [f64; 2], part: f64) -> f64 {
+    let (mut low, mut high) = (0.01, 4.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if correct_of_p9(falls, middle) < part {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
+
+/// Many staircases of P9, and the function that is fitted to all their answers: both come to what noise and falls imply,
+/// which is not the 0.14 K of the observer, because skin and rebound stand between.
+#[test]
+fn staircase_and_fitted_function_find_the_threshold_that_the_noise_implies() {
+    const STAIRCASES: u32 = 400;
+    let params = &ObserverParams::THERMODE_FINGERTIP;
+    let mut noise = Stream::new(2, "noise");
+    let mut lapses = Stream::new(2, "lapse");
+    let mut sides = Stream::new(2, "side");
+    for falls in FALLS_OF_P9 {
+        let [changed, after] = falls;
+        let mut logarithms = 0.0;
+        let mut counts: Vec<(f64, u32, u32)> = Vec::new();
+        for _ in 0..STAIRCASES {
+            let mut staircase = Staircase::new(StaircaseRule {
+                start: 1.0,
+                least: 1e-3,
+                most: 2.0,
+                correct_to_fall: 2,
+                factor: 1.41,
+                coarse_factor: 1.41,
+                coarse_reversals: 0,
+                // Longer than those of P9, which remember their start.
+                reversals: 24,
+                averaged: 16,
+                trials_max: 400,
+            })
+            .expect("a rule");
+            while !staircase.is_finished() {
+                let level_k = staircase.level();
+                let is_second = sides.index(2) == 1;
+                let felt_k = if is_second {
+                    [0.0, changed * level_k]
+                } else {
+                    [changed * level_k, after * level_k]
+                };
+                let judged =
+                    Task::Interval(None).judge(&felt_k.map(Some), params, &mut noise, &mut lapses);
+                let is_correct = judged == Some(Judgement::Choice(usize::from(is_second)));
+                staircase.answered(is_correct);
+                let known = counts
+                    .iter()
+                    .position(|(known, ..)| (known / level_k - 1.0).abs() < 1e-6);
+                let at = known.unwrap_or_else(|| {
+                    counts.push((level_k, 0, 0));
+                    counts.len() - 1
+                });
+                counts[at].1 += u32::from(is_correct);
+                counts[at].2 += 1;
+            }
+            logarithms += libm::log(staircase.threshold().expect("a threshold"));
+        }
+        let found_k = libm::exp(logarithms / f64::from(STAIRCASES));
+        let expected_k = level_of_p9(falls, std::f64::consts::FRAC_1_SQRT_2);
+        // The mean of reversals lies a quarter of a step, of a factor of 1.41, below the point of convergence.
+        assert!(
+            (found_k / expected_k - 1.0).abs() < 0.12,
+            "staircases {found_k}, expected {expected_k}"
+        );
+
+        let levels: Vec<Level> = counts
+            .iter()
+            .map(|(level, correct, total)| Level {
+                level: *level,
+                answers: Proportion::new(*correct, *total).expect("a proportion"),
+            })
+            .collect();
+        let model = Model {
+            shape: Shape::Weibull,
+            guess: 0.5,
+            lapse: 0.0,
+        };
+        let fit = model.fit_with_lapse(&levels, 0.06).expect("a fit");
+        let found_k = fit.threshold(0.75).expect("a threshold").level;
+        let expected_k = level_of_p9(falls, 0.75);
+        assert!(
+            (found_k / expected_k - 1.0).abs() < 0.04,
+            "function {found_k}, expected {expected_k}"
+        );
+    }
 }

@@ -5,3 +5,4 @@ mod reproducibility;
 mod run;
 mod samples;
 mod skin;
+mod thresholds;

@@ -50,6 +50,10 @@ pub(super) const TRIALS_MAX: Whole = Whole::new("trials_max", 2, 1000, Some(80))
 
 /// Most trials of a session.
 const TRIALS: usize = 10_000;
+/// Most parts of a session.
+const PARTS: usize = 100;
+/// Most factors of a part.
+const FACTORS: usize = 20;
 /// The part of a file without `[[part]]`.
 const ONLY_PART: &str = "main";
 
@@ -132,6 +136,10 @@ pub(super) fn design<'a>(
             table.without(&PART_KEYS, "in a [[part]], if the file has parts")?;
             let keys = [&["name", "instruction"], &PART_KEYS[..]].concat();
             for (index, value) in list.list(LIST)?.iter().enumerate() {
+                if index == PARTS {
+                    let problem = format!("more than {PARTS} parts; allowed is 1 to {PARTS}");
+                    return Err(value.error(problem));
+                }
                 let part = value.table(&keys)?;
                 let name_value = part.need("name", NAME)?;
                 let name = name_value.name()?;
@@ -311,6 +319,15 @@ impl<'a> Reader<'a, '_> {
             .any(|factor| factor.part == part && factor.name == name)
         {
             return Err(error("each factor once in a part".into()));
+        }
+        if self
+            .factors
+            .iter()
+            .filter(|factor| factor.part == part)
+            .count()
+            == FACTORS
+        {
+            return Err(error(format!("0 to {FACTORS} factors in a part")));
         }
         self.factors.push(Levels {
             part,
@@ -521,8 +538,12 @@ const LEVELS: &str = "a list of 2 to 100 different levels: words or numbers";
 
 /// A list of levels.
 fn levels<'a>(list: &Value<'a>) -> Result<Vec<(String, Value<'a>)>, SessionError> {
+    let values = list.list(LEVELS)?;
+    if !(2..=100).contains(&values.len()) {
+        return Err(list.wrong(LEVELS));
+    }
     let mut levels: Vec<(String, Value<'a>)> = Vec::new();
-    for value in list.list(LEVELS)? {
+    for value in values {
         let level = value.level()?;
         let number = level.parse::<f64>().ok();
         let same = |(known, _): &(String, Value<'a>)| {
@@ -533,11 +554,7 @@ fn levels<'a>(list: &Value<'a>) -> Result<Vec<(String, Value<'a>)>, SessionError
         }
         levels.push((level, value));
     }
-    if (2..=100).contains(&levels.len()) {
-        Ok(levels)
-    } else {
-        Err(list.wrong(LEVELS))
-    }
+    Ok(levels)
 }
 
 fn texts(levels: &[(String, Value<'_>)]) -> Vec<String> {

@@ -229,9 +229,10 @@ fn analyses(
         let (word, needs) = value
             .word(&known)
             .map_err(|_| value.wrong(listed(&words)))?;
-        if !analyses.iter().any(|before| before == word) {
-            analyses.push(word.into());
+        if analyses.iter().any(|before| before == word) {
+            continue;
         }
+        analyses.push(word.into());
         let chosen = |word: &str| {
             values
                 .iter()
@@ -314,6 +315,7 @@ fn has_what_it_needs(
         "force-matching" => follows_force(rules),
         "anova-within" => has_factor,
         "anova-split-plot" => has_factor && parts > 1,
+        "ancova" => chosen("pairs") || chosen("confusion"),
         "tukey" => chosen("anova-within") || chosen("anova-split-plot"),
         "pearson-between-parts" => (chosen("confusion") || chosen("falls")) && parts > 1,
         "chi-squared-against" => {

@@ -405,7 +405,12 @@ fn a_wrong_file_is_answered_with_line_mistake_and_what_is_allowed() {
             (
                 "analyses = [\"pairs-by-mode\", \"identical-pairs\"]",
                 "analyses = [\"ancova\"]",
-                "s.toml:72: score.analyses = \"ancova\"; allowed is pairs, pairs-by-mode, identical-pairs, confusion, information, oddity, same-different, falls, exponential-fit, levene, pearson-with-model, force-matching, anova-within, anova-split-plot, tukey, pearson-between-parts, chi-squared-against, staircase, psychometric-fit, magnitudes",
+                "s.toml:72: score.analyses: \"ancova\" needs pairs or confusion",
+            ),
+            (
+                "analyses = [\"pairs-by-mode\", \"identical-pairs\"]",
+                "analyses = [\"anova\"]",
+                "s.toml:72: score.analyses = \"anova\"; allowed is pairs, pairs-by-mode, identical-pairs, confusion, information, oddity, same-different, falls, exponential-fit, levene, pearson-with-model, force-matching, anova-within, anova-split-plot, tukey, ancova, pearson-between-parts, chi-squared-against, staircase, psychometric-fit, magnitudes",
             ),
             (
                 "threshold = 0.72",

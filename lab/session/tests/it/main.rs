@@ -1,5 +1,6 @@
 //! The ready sessions, and plans of trials.
 
+mod any_file;
 mod plans;
 mod ready_sessions;
 
