@@ -162,7 +162,6 @@ impl<'a> Reader<'a, '_> {
             return Err(value.error(problem));
         }
         let mut stimuli: Vec<Stimulus> = Vec::new();
-        let mut skin_sensors: Vec<u8> = Vec::new();
         for station in self.stations {
             let name = &*station.name;
             let value = table.need(name, STIMULUS)?;
@@ -176,20 +175,16 @@ impl<'a> Reader<'a, '_> {
                 );
                 return Err(value.error(problem));
             }
-            let skin_sensor = match stimulus {
-                Stimulus::Nothing => None,
-                _ => station.skin_sensor.or(finger),
-            };
-            if let Some(sensor) = skin_sensor {
-                if skin_sensors.contains(&sensor) {
-                    let problem = format!(
-                        "{}: the skin thermistor of finger {sensor} of the device again; allowed is another one for each \
-                         station, by stations.{name}.skin_sensor or device_finger",
-                        value.key
-                    );
-                    return Err(value.error(problem));
-                }
-                skin_sensors.push(sensor);
+            // For the whole session, because the thermistor stays where it is between trials.
+            let measures_it = |other: &&Station| other.name != name && other.skin_sensor == finger;
+            if let (Some(finger), Some(other)) = (finger, self.stations.iter().find(measures_it)) {
+                let problem = format!(
+                    "{}: a display on finger {finger} of the device, whose skin thermistor is at another station by \
+                     stations.{other}.skin_sensor; allowed is another device_finger, or another skin_sensor there",
+                    value.key,
+                    other = other.name
+                );
+                return Err(value.error(problem));
             }
             self.stimuli.push((stimulus.clone(), value.clone()));
             stimuli.push(stimulus);

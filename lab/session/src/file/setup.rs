@@ -21,8 +21,9 @@ pub(super) const DEVICE_KEYS: [&str; 6] = [
 ];
 pub(super) const OBJECT_C: Number = Number::new("object_c", -20.0, 60.0, None);
 pub(super) const DEVICE_SKIN_C: Number = Number::new("skin_c", 15.0, 42.0, None);
-/// Five fingers each send a line; 5 ms is the device's shortest interval for that.
-pub(super) const STREAM_MS: Whole = Whole::new("stream_ms", 5, 1000, Some(10));
+/// Five fingers each send a line; 5 ms is the device's shortest interval for that. The means of the skin over half a second, by
+/// which the gate and the fall are judged, need two lines or more.
+pub(super) const STREAM_MS: Whole = Whole::new("stream_ms", 5, 250, Some(10));
 
 pub(super) const STATION_KEYS: [&str; 2] = ["finger", "skin_sensor"];
 pub(super) const SKIN_SENSOR: Whole = Whole::new("skin_sensor", 0, 4, None);

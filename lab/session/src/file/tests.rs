@@ -100,12 +100,17 @@ fn a_wrong_file_is_answered_with_line_mistake_and_what_is_allowed() {
             (
                 "stream_ms = 10",
                 "stream_ms = 1",
-                "s.toml:15: device.stream_ms = 1; allowed is a whole number from 5 to 1000",
+                "s.toml:15: device.stream_ms = 1; allowed is a whole number from 5 to 250",
+            ),
+            (
+                "stream_ms = 10",
+                "stream_ms = 251",
+                "s.toml:15: device.stream_ms = 251; allowed is a whole number from 5 to 250",
             ),
             (
                 "stream_ms = 10",
                 "stream_ms = 7.5",
-                "s.toml:15: device.stream_ms = 7.5; allowed is a whole number from 5 to 1000",
+                "s.toml:15: device.stream_ms = 7.5; allowed is a whole number from 5 to 250",
             ),
             (
                 "assumed_finger = \"mean-on-pad\"",
@@ -743,17 +748,53 @@ fn a_skin_thermistor_is_one_of_the_device_and_at_one_station() {
             ),
         ],
     );
-    // The display of the other station has the same thermistor.
+    // A display has the thermistor of the other station: in one trial, in two, and although its station names another one.
+    let problem = |display: &str| {
+        format!(
+            "{display}: a display on finger 0 of the device, whose skin thermistor is at another station by \
+             stations.left.skin_sensor; allowed is another device_finger, or another skin_sensor there"
+        )
+    };
     assert_errors_at(
         &ready("p5-real-and-simulated"),
         &[(
             "finger = \"left index\"",
             "finger = \"left index\"\nskin_sensor = 0",
             "right = { display = \"simulated\" }",
-            "present.real-left.right: the skin thermistor of finger 0 of the device again; allowed is another one for each \
-             station, by stations.right.skin_sensor or device_finger",
+            &problem("present.real-left.right"),
         )],
     );
+    let display = "right = { display = \"copper\", device_finger = 2 }";
+    let in_one = format!("left = {{ sample = \"copper\" }}\n{display}\n");
+    let in_two = format!(
+        "by = \"side\"\n[present.a]\nleft = {{ sample = \"copper\" }}\nright = \"nothing\"\n\
+         [present.b]\nleft = \"nothing\"\n{display}\n"
+    );
+    for (present, factors, key) in [
+        (in_one, "", "present.right"),
+        (
+            in_two,
+            "factors = { side = [\"a\", \"b\"] }",
+            "present.b.right",
+        ),
+    ] {
+        for own in ["", "skin_sensor = 1\n"] {
+            let text = format!(
+                "format = 1\ntitle = \"t\"\ntask = \"t\"\ncite = \"t\"\ninstruction = \"t\"\n[device]\n\
+                 [stations.left]\nfinger = \"left index\"\nskin_sensor = 0\n\
+                 [stations.right]\nfinger = \"right index\"\n{own}[present]\n{present}[trial]\n[design]\n{factors}\n"
+            );
+            assert_errors_at(
+                &text,
+                &[(
+                    "device_finger = 2",
+                    "device_finger = 0",
+                    "right = { display",
+                    &problem(key),
+                )],
+            );
+        }
+    }
 }
 
 #[test]
