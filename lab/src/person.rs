@@ -28,6 +28,8 @@ const TELEMETRY_TIMEOUT: Duration = Duration::from_millis(500);
 pub const WATCHED_STREAM_MS: u32 = 500;
 /// Time between two looks at the device while the person types.
 const POLL_INTERVAL: Duration = Duration::from_millis(100);
+/// Time for which such a look waits for the device: what has arrived is read, and the person hardly waits.
+const LOOK: Duration = Duration::from_millis(1);
 
 /// What the person enters to end a procedure.
 const ABORT: &str = "abort";
@@ -88,9 +90,7 @@ impl<'a> Person<'a> {
             match self.lines.recv_timeout(POLL_INTERVAL) {
                 Ok(line) => return entered(line),
                 Err(RecvTimeoutError::Disconnected) => return Err(no_more_lines()),
-                Err(RecvTimeoutError::Timeout) => {
-                    client.wait(POLL_INTERVAL / 100).map_err(ended)?
-                }
+                Err(RecvTimeoutError::Timeout) => client.wait(LOOK).map_err(ended)?,
             }
         }
     }

@@ -200,8 +200,8 @@ struct State {
 }
 
 impl Bench {
-    /// The bench of a session for the participant with a code, drawn from a seed. A device is commissioned if one of its fingers
-    /// presents something or measures the skin in a trial of the plan.
+    /// The bench of a session for the participant with a code, drawn from a seed. A device is commissioned if the
+    /// session needs one.
     ///
     /// # Errors
     /// The session has something that cannot be simulated.
@@ -225,7 +225,8 @@ impl Bench {
             }
         }
         let reporting = (plan.trials.iter()).flat_map(|trial| session.reporting_fingers(trial));
-        let device = match reporting.max() {
+        let last = session.needs_device().then(|| reporting.max().unwrap_or(0));
+        let device = match last {
             Some(last) => Some(PreparedDevice::new(
                 &params,
                 options.room_c,

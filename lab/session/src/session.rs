@@ -94,11 +94,7 @@ impl Session {
     /// key `skin_sensor`, otherwise that of the display.
     #[must_use]
     pub fn skin_sensor(&self, station: usize, presented: &Presented) -> Option<u8> {
-        if *presented == Presented::Nothing {
-            return None;
-        }
-        let of_station = self.stations.get(station)?.skin_sensor;
-        of_station.or_else(|| presented.device_finger())
+        self.stations.get(station)?.skin_sensor_at(presented)
     }
 
     /// The fingers of the device whose skin thermistors measure in a trial, in ascending order.
@@ -116,11 +112,37 @@ impl Session {
         ascending(displays.chain(self.skin_sensors(trial)))
     }
 
+    /// Whether a display presents something, or a skin thermistor measures at a station that presents something. Otherwise the
+    /// session needs no device, even if its file describes one.
+    #[must_use]
+    pub fn needs_device(&self) -> bool {
+        let at_stations = |case: &crate::PresentCase| {
+            let mut stations = self.stations.iter().zip(&case.stations);
+            stations.any(|(station, stimulus)| {
+                stimulus.device_finger().is_some()
+                    || *stimulus != Stimulus::Nothing && station.skin_sensor.is_some()
+            })
+        };
+        self.device.is_some() && self.present.cases.iter().any(at_stations)
+    }
+
     /// Whether a skin thermistor measures at a station in any trial.
     #[must_use]
     pub fn measures_skin(&self) -> bool {
         let is_named = |station: &Station| station.skin_sensor.is_some();
         self.stations.iter().any(is_named) || !self.device_fingers().is_empty()
+    }
+}
+
+impl Station {
+    /// The finger of the device whose skin thermistor measures what the station presents: that of the key `skin_sensor`, otherwise
+    /// that of the display. `None` where it presents nothing.
+    #[must_use]
+    pub fn skin_sensor_at(&self, presented: &Presented) -> Option<u8> {
+        if *presented == Presented::Nothing {
+            return None;
+        }
+        self.skin_sensor.or_else(|| presented.device_finger())
     }
 }
 

@@ -147,7 +147,7 @@ impl Run<'_> {
             let client = Client::new(Interruptible::new(link, stop.interrupts_link()));
             return self.execute(client, &mut watched, recorder);
         }
-        if self.session.device.is_none() {
+        if !self.session.needs_device() {
             let link = LazyLink::new(|| Err("this session needs no device".into()));
             let client = Client::new(Interruptible::new(link, stop.interrupts_link()));
             return self.execute(client, people, recorder);

@@ -8,7 +8,7 @@ use super::Failure;
 #[cfg(feature = "window")]
 pub fn show(
     title: &str,
-    session_view: Option<SessionView>,
+    session: Option<SessionView>,
     stop: &StopFlag,
     worker: impl FnOnce(&mut WindowPeople) -> Result<(), Failure> + Send,
 ) -> Result<(), Failure> {
@@ -16,8 +16,8 @@ pub fn show(
 
     let options = WindowOptions {
         title: format!("{title} - thermal-lab"),
-        tones: session_view.is_some().then(Tones::start),
-        session_view,
+        tones: session.is_some().then(Tones::start),
+        session,
         stop: stop.clone(),
     };
     let shown = run_window(options, worker).map_err(Failure::input)?;
@@ -37,7 +37,7 @@ pub fn show(
 #[cfg(not(feature = "window"))]
 pub fn show(
     _title: &str,
-    _session_view: Option<SessionView>,
+    _session: Option<SessionView>,
     _stop: &StopFlag,
     _worker: impl FnOnce(&mut WindowPeople) -> Result<(), Failure> + Send,
 ) -> Result<(), Failure> {

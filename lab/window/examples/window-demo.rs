@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let is_monitor = ["monitor", "tripped"].contains(&screen.as_str());
     let options = WindowOptions {
         title: "thermal-lab: demonstration".into(),
-        session_view: (!is_monitor).then(session_view),
+        session: (!is_monitor).then(session_view),
         stop: StopFlag::default(),
         tones: Some(Tones::start()),
     };

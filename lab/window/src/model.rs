@@ -206,7 +206,13 @@ impl Model {
             .as_ref()
             .and_then(|session| session.rest.as_ref())
         {
-            let means = self.fingers.values().map(|view| view.trace.skin_c());
+            // As the executor: by the thermistors of the running trial only, whatever other fingers have reported before.
+            let stations = self.session.iter().flat_map(|session| &session.stations);
+            let presented = self.trial.iter().flat_map(|view| &view.trial.presented);
+            let sensors = stations
+                .zip(presented)
+                .filter_map(|(station, presented)| station.skin_sensor_at(presented));
+            let means = sensors.map(|sensor| self.fingers.get(&sensor)?.trace.skin_c());
             self.skin.observe(rest, means, at);
         }
         if finger == self.followed_finger()

@@ -27,7 +27,7 @@ pub struct WindowOptions {
     /// Title of the operator's window.
     pub title: String,
     /// The session; `None` for a monitored device, which has no participant.
-    pub session_view: Option<SessionView>,
+    pub session: Option<SessionView>,
     /// The stop, which a handler of signals may press, too.
     pub stop: StopFlag,
     /// Tones for the participant.
@@ -67,12 +67,12 @@ pub fn run_window<T: Send, E: Display + Send>(
 ) -> Result<Shown<T, E>, WindowError> {
     let WindowOptions {
         title,
-        session_view,
+        session,
         stop,
         tones,
     } = options;
-    let with_participant = session_view.is_some();
-    let (mut people, window_side) = WindowPeople::new(session_view, stop.clone(), tones);
+    let with_participant = session.is_some();
+    let (mut people, window_side) = WindowPeople::new(session, stop.clone(), tones);
     let running = AtomicBool::new(false);
     let latency = Mutex::new(ScreenLatency::default());
     thread::scope(|scope| {

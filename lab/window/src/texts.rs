@@ -209,7 +209,9 @@ pub fn placement(stations: &[Station], trial: &PlannedTrial) -> Vec<String> {
                 finger,
                 skin_sensor,
             }) => {
-                let sensor = skin_sensor.map(|sensor| format!(" with skin thermistor {sensor}"));
+                // Where nothing is presented, nothing is measured.
+                let sensor = skin_sensor.filter(|_| *presented != Presented::Nothing);
+                let sensor = sensor.map(|sensor| format!(" with skin thermistor {sensor}"));
                 let sensor = sensor.unwrap_or_default();
                 format!("{name}: {what}, under the {finger}{sensor}")
             }

@@ -179,6 +179,61 @@ fn the_gate_of_the_skin_counts_how_long_it_holds() {
     assert!(model.gate(s(8.0)).unwrap().reached < 1e-6);
 }
 
+/// Telemetry of a finger.
+fn of_finger(finger: u8, tick: u32, skin_c: f64) -> Update {
+    let Update::Telemetry(mut line) = telemetry(tick, StateName::Off, skin_c) else {
+        unreachable!()
+    };
+    line.finger = Some(finger);
+    Update::Telemetry(line)
+}
+
+#[test]
+fn the_gate_of_the_skin_is_by_the_thermistors_of_the_running_trial() {
+    let mut session = session_view();
+    // The display of the right station is finger 0, and measures by its own thermistor.
+    session.stations[0].skin_sensor = Some(1);
+    let mut model = Model::new(Some(session));
+    let Update::Trial {
+        mut trial,
+        attempt,
+        of,
+    } = trial()
+    else {
+        unreachable!()
+    };
+    let reached = |model: &mut Model, from_s: u32, skins_c: &[(u8, f64)]| {
+        model.fold(&Update::Phase(Phase::Rest), s(f64::from(from_s)));
+        for second in from_s..=from_s + 4 {
+            for (finger, skin_c) in skins_c {
+                let line = of_finger(*finger, second * 1000, *skin_c);
+                model.fold(&line, s(f64::from(second)));
+            }
+        }
+        model.gate(s(f64::from(from_s + 4))).unwrap().reached
+    };
+    let begin = |trial: &_| Update::Trial {
+        trial: Clone::clone(trial),
+        attempt,
+        of,
+    };
+    model.fold(&begin(&trial), s(0.0));
+    // A third finger that has reported is on nobody; each of the two others counts.
+    let of_both = reached(&mut model, 0, &[(2, 24.0), (1, 34.0), (0, 34.0)]);
+    assert!(of_both > 0.7, "{of_both}");
+    let of_sample = reached(&mut model, 10, &[(1, 24.0), (0, 34.0)]);
+    assert!(of_sample < 1e-6, "{of_sample}");
+    // Where nothing is presented, nobody waits for the thermistor.
+    trial.presented[0] = thermal_session::Presented::Nothing;
+    model.fold(&begin(&trial), s(20.0));
+    let of_display = reached(&mut model, 20, &[(1, 24.0), (0, 34.0)]);
+    assert!(of_display > 0.7, "{of_display}");
+    assert_eq!(
+        model.placement()[0],
+        "left: nothing, under the left index finger"
+    );
+}
+
 #[test]
 fn after_the_landing_the_gate_is_the_end_of_the_contact() {
     let mut model = after(&[Update::Phase(Phase::Contact)]);

@@ -160,7 +160,7 @@ impl<'a, L: Link> Executor<'a, L> {
 
     fn run_trials(&mut self, plan: &Plan, mut schedule: Schedule<'_>) -> Result<(), SessionEnd> {
         self.phase(Phase::Connect);
-        if self.session.device.is_some() {
+        if self.session.needs_device() {
             self.connect(plan)?;
         }
         if !self.recorder.records().is_empty() {
