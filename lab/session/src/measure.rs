@@ -35,7 +35,10 @@ pub fn skin_fall(samples: &[(f64, f64)], land_s: f64, lift_s: f64) -> (Option<f6
         mean(inside.map(|(_, skin_c)| *skin_c))
     };
     let before_c = mean_before(land_s);
-    let after_c = mean_before(lift_s);
+    // A contact that is shorter than the mean has no end of its own.
+    let after_c = (lift_s - MEAN_S >= land_s)
+        .then(|| mean_before(lift_s))
+        .flatten();
     let fall_k = before_c.zip(after_c).map(|(before, after)| before - after);
     (before_c, fall_k)
 }
@@ -81,6 +84,8 @@ pub fn measure(
                 .find(|sample| sample.t_s > off.t_s)
                 .map(|sample| sample.t_s - land_s),
         };
+        // A small force that is near its target only at the very end, between two tremors, has not settled.
+        let settled = settled.filter(|settled_s| land_s + settled_s <= lift_s - FORCE_S);
         (error_rms_n, settled)
     });
     StationRecord {
@@ -175,6 +180,26 @@ mod tests {
         // The mean of the last half second is that of 9.75 s after the landing.
         near(fall_k, 0.5 * 9.75);
         assert_eq!(skin_fall(&samples[100..], 1.0, 11.0), (None, None));
+    }
+
+    #[test]
+    fn a_contact_shorter_than_the_mean_has_no_fall() {
+        let samples: Vec<(f64, f64)> = (0..200).map(|i| (f64::from(i) / 1e2, 34.0)).collect();
+        let (before_c, fall_k) = skin_fall(&samples, 1.0, 1.4);
+        near(before_c, 34.0);
+        assert_eq!(fall_k, None);
+        assert_eq!(skin_fall(&samples, 1.0, 1.5).1, Some(0.0));
+    }
+
+    #[test]
+    fn a_force_has_settled_if_it_stays_through_the_last_two_seconds_before_the_tone() {
+        // It is within 10 % from 1.8 s after the landing on, at 2.8 s, and the finger lifts at 12 s.
+        let settled = |tone_s: f64| {
+            measure(&samples(), "copper".into(), Some(1.0), tone_s, Some(2.0)).force_settled_s
+        };
+        near(settled(4.9), 1.8);
+        assert_eq!(settled(4.7), None);
+        assert_eq!(settled(3.5), None);
     }
 
     #[test]

@@ -429,7 +429,7 @@ impl Planner<'_> {
             .collect();
         let mut order: Vec<usize> = (0..drafts.len()).collect();
         // The constraint that was broken last is looked at first: one that no order fulfils is soon given up.
-        let mut suspect = 0;
+        let mut last_broken = 0;
         for _ in 0..ATTEMPTS {
             stream.shuffle(&mut order);
             let is_broken = |index: &usize| {
@@ -439,9 +439,9 @@ impl Planner<'_> {
                     has_run_above(before.iter().chain(own), *most)
                 })
             };
-            let mut by_suspicion = (suspect..constraints.len()).chain(0..suspect);
-            let broken = by_suspicion.find(is_broken);
-            suspect = broken.unwrap_or_default();
+            let mut last_broken_first = (last_broken..constraints.len()).chain(0..last_broken);
+            let broken = last_broken_first.find(is_broken);
+            last_broken = broken.unwrap_or_default();
             match broken.and_then(|index| failures.get_mut(index)) {
                 None => {
                     for (place, index) in block.iter_mut().zip(order) {

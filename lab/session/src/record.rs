@@ -77,7 +77,7 @@ pub struct StationRecord {
     pub force_end_sd_n: Option<f64>,
     /// RMS distance of the force from its target from 2 s after the landing on, N.
     pub force_error_rms_n: Option<f64>,
-    /// Time from the landing until the force stays within 10 % of its target, s.
+    /// Time from the landing until the force stays within 10 % of its target, through the last 2 s before the tone to lift at least, s.
     pub force_settled_s: Option<f64>,
     /// Whether the set-point was limited or not followed at any time of the contact.
     pub is_limited: Option<bool>,

@@ -13,20 +13,7 @@ struct Contact<'a> {
     participant: usize,
     target_n: f64,
     material: &'a str,
-    contact_s: Option<f64>,
     station: &'a StationRecord,
-}
-
-/// The end of a contact in which a force that has settled must not leave its target, s; it is that of the recorded means.
-const END_S: f64 = 2.0;
-
-impl Contact<'_> {
-    /// Time to settle, s. A small force that is near its target only at the very end, between two tremors, has not settled.
-    fn settled_s(&self) -> Option<f64> {
-        let settled_s = self.station.force_settled_s.and_then(finite)?;
-        let last_s = self.contact_s.map_or(f64::INFINITY, |s| s - END_S);
-        (settled_s <= last_s).then_some(settled_s)
-    }
 }
 
 fn contacts(task: &Task) -> Vec<Contact<'_>> {
@@ -43,7 +30,6 @@ fn contacts(task: &Task) -> Vec<Contact<'_>> {
                 participant,
                 target_n,
                 material: stimulus.material,
-                contact_s: trial.record.contact_s,
                 station,
             }));
         }
@@ -103,6 +89,8 @@ pub fn force_matching(task: &Task) -> Section {
                     .iter()
                     .filter(|contact| contact.material == material && contact.target_n == target_n)
             };
+            let settled_s =
+                |contact: &Contact<'_>| contact.station.force_settled_s.and_then(finite);
             let of_station = |value: fn(&StationRecord) -> Option<f64>| {
                 mean(of().filter_map(|contact| value(contact.station).and_then(finite)))
             };
@@ -118,8 +106,8 @@ pub fn force_matching(task: &Task) -> Section {
                 material,
                 target_n,
                 count,
-                of().filter(|contact| contact.settled_s().is_some()).count(),
-                mean(of().filter_map(Contact::settled_s)),
+                of().filter_map(settled_s).count(),
+                mean(of().filter_map(settled_s)),
                 force_n,
                 sem,
                 force_n.map(|force_n| 100.0 * (force_n / target_n - 1.0)),
@@ -221,7 +209,9 @@ pub fn designs(task: &Task) -> Vec<Design> {
     };
     vec![
         of("fall of skin / K", |contact| contact.station.skin_fall_k),
-        of("time to settle / s", |contact| contact.settled_s()),
+        of("time to settle / s", |contact| {
+            contact.station.force_settled_s
+        }),
         of("RMS error over target", |contact| {
             Some(contact.station.force_error_rms_n? / contact.target_n)
         }),

@@ -53,11 +53,11 @@ impl<L: Link> Executor<'_, L> {
         // Another program may have left it driven.
         self.switch_off()?;
         self.clear_trips()?;
-        self.place_skin_sensors()
+        self.ask_for_skin_sensors()
     }
 
-    /// Tells the operator which skin thermistors the session file has put where.
-    fn place_skin_sensors(&mut self) -> Result<(), SessionEnd> {
+    /// Asks the operator to put the skin thermistors where the session file has them.
+    fn ask_for_skin_sensors(&mut self) -> Result<(), SessionEnd> {
         let stations = self.session.stations.iter();
         let places: Vec<_> = stations
             .filter_map(|station| {

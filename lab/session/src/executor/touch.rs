@@ -166,10 +166,10 @@ impl<L: Link> Executor<'_, L> {
         let record = self.trial.record(self.session, trial, None, now_s);
         let rules = &self.session.voids;
         let on_displays = || {
-            record
-                .stations
-                .iter()
-                .filter(|station| station.land_s.is_some())
+            let stations = trial.presented.iter().zip(&record.stations);
+            stations
+                .filter(|(presented, _)| presented.device_finger().is_some())
+                .map(|(_, station)| station)
         };
         let off_preset = on_displays()
             .filter_map(|station| Some((station.display_c? - station.setpoint_c?).abs()))
