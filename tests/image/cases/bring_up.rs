@@ -1,6 +1,6 @@
 //! The release image on a board that is brought up: sound, and with errors of assembly.
 
-use std::thread;
+use std::env;
 
 use image_tests::image;
 use stm32_emulator::{Firmware, OneFingerBoard};
@@ -35,6 +35,13 @@ fn on_the_image(name: &str) -> Report {
     })
 }
 
+/// A variable of the environment: with `all`, the image meets every board, for minutes; without, every fifth broken one.
+const BOARDS_VARIABLE: &str = "THERMAL_IMAGE_BOARDS";
+
+fn on_all_boards() -> bool {
+    env::var(BOARDS_VARIABLE).is_ok_and(|boards| boards == "all")
+}
+
 /// Names of the checks that failed.
 fn failed(report: &Report) -> Vec<&str> {
     let failed = report.records.iter();
@@ -44,28 +51,21 @@ fn failed(report: &Report) -> Vec<&str> {
         .collect()
 }
 
-#[test]
-fn a_sound_board_passes_with_the_release_image() {
-    let report = on_the_image(SOUND);
-    assert!(report.passed(), "{:#?}", report.findings());
-}
-
 /// What is found, and in which words, is asserted with the native device; the checks that fail first are the same ones.
 #[test]
-fn the_image_on_a_broken_board_fails_at_the_same_check_as_the_native_device() {
-    thread::scope(|scope| {
-        for half in BROKEN_BOARDS.chunks(BROKEN_BOARDS.len().div_ceil(2)) {
-            scope.spawn(move || {
-                for board in half {
-                    let (image, native) = (
-                        on_the_image(board.name),
-                        brought_up(board.name, NativeEngine::new),
-                    );
-                    assert!(!image.passed(), "{}", board.name);
-                    let (image, native) = (failed(&image), failed(&native));
-                    assert_eq!(image.first(), native.first(), "{}", board.name);
-                }
-            });
-        }
-    });
+fn the_image_is_brought_up_as_the_native_device_is() {
+    let step = if on_all_boards() { 1 } else { 5 };
+    for board in BROKEN_BOARDS.iter().step_by(step) {
+        let (image, native) = (
+            on_the_image(board.name),
+            brought_up(board.name, NativeEngine::new),
+        );
+        assert!(!image.passed(), "{}", board.name);
+        let (image, native) = (failed(&image), failed(&native));
+        assert_eq!(image.first(), native.first(), "{}", board.name);
+    }
+    if on_all_boards() {
+        let report = on_the_image(SOUND);
+        assert!(report.passed(), "{:#?}", report.findings());
+    }
 }

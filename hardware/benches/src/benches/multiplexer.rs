@@ -36,7 +36,7 @@ fn deck(neighbour_ohm: f64, more: &str) -> String {
     )
 }
 
-/// Errors of finger 0's reading, mK, each a time in us after its multiplexer has been switched.
+/// Error of finger 0's reading, mK, for each delay of `after_us` after its multiplexer has been switched, us.
 fn errors_mk<const N: usize>(
     netlists: &Netlists,
     neighbour_ohm: f64,

@@ -26,7 +26,7 @@ const PROPERTIES: [(&str, Property); 3] = [
 pub fn ancova(task: &Task) -> Section {
     let mut section = Section::new("ancova", "Analysis of covariance").note(
         "Per cent correct of each participant with each pair, or material, by participant and one covariate: y = m + b x, with a \
-         mean m of each participant and the same slope b for all (type III sums of squares). The covariate of a pair is the binary \
+         mean m of each participant and the same slope b for all (each effect adjusted for the other). The covariate of a pair is the binary \
          logarithm of the ratio of its materials' properties, the larger over the smaller; of a single material it is that of its \
          property. n counts cells. Roughnesses are those of the session's materials, Young's moduli those of Tables 3-2 and 4-1 of \
          the thesis; it does not say what its factor was. The properties of few materials go together, such as those of foam, so \
@@ -80,7 +80,7 @@ fn covariate(
         .map(|level| doublings(task, level, property))
         .collect();
     let Some(values) = values else {
-        return section.lacks(&what, "it is not known of each material");
+        return section.lacks(&what, "it is zero, or not known, of a material");
     };
     let groups = design.cells.partial.iter().map(|(_, cells)| {
         let there = values
