@@ -15,7 +15,7 @@ use thermal_plant::{Params, PlantConfig, SampleTouch};
 use thermal_session::dataset::Recorder;
 use thermal_session::record::TrialRecord;
 use thermal_session::{Decision, Executor, People, Plan, Response, Schedule, Session, Update};
-use thermal_sim::scene::{ActiveFault, FaultKind};
+use thermal_sim::scene::{ActiveFault, FaultKind, Sensor};
 
 use crate::run::{folder, run, session};
 
@@ -137,11 +137,11 @@ fn another_thermistor_on_the_finger_at_a_display_sees_what_its_own_sees() {
     assert!(falls[0].iter().any(|fall_k| *fall_k > 0.5), "{falls:?}");
 }
 
-/// What is said on the line to the device, and its telemetry.
+/// What is said on the line to the device, and its telemetry with the finger.
 #[derive(Clone, Default)]
 struct Heard {
     sent: Rc<RefCell<String>>,
-    telemetry: Rc<RefCell<Vec<Telemetry>>>,
+    telemetry: Rc<RefCell<Vec<(u8, Telemetry)>>>,
 }
 
 struct HeardLink<L> {
@@ -175,7 +175,8 @@ struct HeardPeople<P> {
 impl<P: People> People for HeardPeople<P> {
     fn inform(&mut self, update: &Update) {
         if let Update::Telemetry(line) = update {
-            self.heard.telemetry.borrow_mut().push(line.telemetry);
+            let heard = (line.finger.unwrap_or(0), line.telemetry);
+            self.heard.telemetry.borrow_mut().push(heard);
         }
         self.people.inform(update);
     }
@@ -226,10 +227,34 @@ fn a_device_that_only_measures_the_skin_is_never_armed() {
         }
         let telemetry = heard.telemetry.borrow();
         assert!(telemetry.len() > 100, "{file}: {} lines", telemetry.len());
-        for line in telemetry.iter() {
+        for (_, line) in telemetry.iter() {
             assert_eq!(line.state, StateName::Off, "{file}");
             assert!(line.demand_a.is_none_or(|demand_a| demand_a == 0.0));
         }
+    }
+}
+
+#[test]
+fn a_finger_that_only_measures_stays_off_while_another_one_is_driven() {
+    let session = session(
+        "p5-real-and-simulated.toml",
+        &[(
+            "finger = \"left index\"",
+            "finger = \"left index\"\nskin_sensor = 1",
+        )],
+    );
+    let (records, heard) = listen("mixed", &session, 4);
+    assert!(records.iter().all(|record| record.void.is_none()));
+    let telemetry = heard.telemetry.borrow();
+    let of_finger = |finger| {
+        let lines = telemetry.iter().filter(move |(of, _)| *of == finger);
+        lines.map(|(_, telemetry)| telemetry)
+    };
+    assert!(of_finger(0).any(|line| line.state == StateName::Contact));
+    assert!(of_finger(1).count() > 100);
+    for line in of_finger(1) {
+        assert_eq!(line.state, StateName::Off);
+        assert!(line.demand_a.is_none_or(|demand_a| demand_a == 0.0));
     }
 }
 
@@ -266,7 +291,10 @@ fn a_finger_that_trips_while_it_only_measures_makes_the_trial_void() {
         trial: 2,
         attempt: Some(1),
         what: Happening::FaultAfterLanding {
-            fault: ActiveFault::from(FaultKind::ThermistorOpen),
+            fault: ActiveFault {
+                sensor: Sensor::Skin,
+                ..ActiveFault::from(FaultKind::ThermistorOpen)
+            },
             from_s: 1.0,
             for_s: 0.5,
         },
@@ -281,7 +309,7 @@ fn a_finger_that_trips_while_it_only_measures_makes_the_trial_void() {
         .collect();
     assert_eq!(voids.len(), 1, "{voids:?}");
     assert!(
-        voids[0].0 == 2 && voids[0].1.contains("tripped"),
+        voids[0].0 == 2 && voids[0].1.contains("tripped: skin-open"),
         "{voids:?}"
     );
     assert_eq!(records.len(), 4);

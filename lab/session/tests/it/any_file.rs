@@ -160,7 +160,7 @@ fn joined(count: usize, item: impl Fn(usize) -> String) -> String {
     items.join(", ")
 }
 
-/// The largest files have a megabyte. Nothing in one may take time or memory that grows faster than the file.
+/// The largest files have a megabyte. Lists that long are refused before anything is built from them.
 #[test]
 fn large_files_are_refused_soon() {
     let levels = joined(90_000, |index| format!("\"l{index}\""));
