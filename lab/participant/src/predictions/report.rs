@@ -112,7 +112,7 @@ pub struct PairResult {
     pub simulated: String,
     /// Whether the published proportion is below the threshold.
     pub published_below: bool,
-    /// Per cent correct in the order of [`DisplayMode::ALL`].
+    /// Per cent correct in the order of [`DisplayMode::ALL`](super::DisplayMode::ALL).
     pub correct: [f64; 2],
 }
 
