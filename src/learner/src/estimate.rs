@@ -6,8 +6,8 @@ use crate::signals::dot;
 
 /// Largest variance, in prior variances.
 pub const VARIANCE_MAX: f32 = 1.25;
-/// Added to each variance by an update: forgets slowly, and is a hundred times the rounding of an update, so that the covariance
-/// stays positive.
+/// Added to each variance by an update: forgets slowly, and is a hundred times the rounding of an update, so that the
+/// covariance stays positive.
 const VARIANCE_ADDED: f32 = 1e-5;
 /// Deviations by which the parameters may differ from contact to contact: components, relative, K, relative, relative.
 const BETWEEN_CONTACTS: Parameters = [0.05, 0.05, 0.1, 0.02, 0.07, 0.01];

@@ -6,7 +6,7 @@ use crate::parameters::{Place, RESISTANCE, Scale};
 use crate::regressors::{Lagged, Signals};
 use crate::sensor::FluxSensor;
 use crate::trust::{Distrust, Judge, Trust};
-use crate::window::{Contact, LearnerInput, Resistance, WINDOW_TICKS};
+use crate::window::{Contact, LearnerInput, Resistance};
 
 /// Ticks after landing from which a contact is learnt from: the display's surface and the sensor have then settled.
 const LEARNT_FROM_TICKS: u32 = 20;
@@ -93,12 +93,6 @@ impl Learner {
 
     fn learn(&mut self, contact: &Contact, windows: u8, lagged: &Lagged) {
         let ticks = contact.ticks_since_landing;
-        let resistance_m2k_w = contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT;
-        let parameters = self.estimate.parameters;
-        let measurement =
-            lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &parameters);
-        self.judge.judge_flux(&measurement, ticks);
-
         let every = match ticks {
             ..EVERY_WINDOW_TICKS => 1,
             EVERY_WINDOW_TICKS..EVERY_SECOND_TICKS => 2,
@@ -107,6 +101,11 @@ impl Learner {
         if !windows.is_multiple_of(every) {
             return;
         }
+        let resistance_m2k_w = contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT;
+        let parameters = self.estimate.parameters;
+        let measurement =
+            lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &parameters);
+
         let model_k2 = MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_ERROR_TICKS);
         let factor = 1.0 + parameters[RESISTANCE] * self.scale.deviations[RESISTANCE];
         let zero_k = factor * resistance_m2k_w * ZERO_ERROR_W_M2;
@@ -116,11 +115,11 @@ impl Learner {
         let parameters = &self.estimate.parameters;
         let state = (resistance_m2k_w, ticks);
         self.judge
-            .judge_update(innovation, &measurement, state, parameters, &self.scale);
+            .judge(innovation, &measurement, state, parameters, &self.scale);
     }
 
-    /// Takes the parameters towards those of the mean finger, in some 100 ms so that set-points do not jump. That the contact is
-    /// better than usual is kept.
+    /// Takes the parameters towards those of the mean finger, in some 100 ms so that set-points do not jump. That the contact
+    /// is better than usual is kept.
     fn approach_mean(&mut self, why: Distrust) {
         for (index, parameter) in self.estimate.parameters.iter_mut().enumerate() {
             if index != RESISTANCE || why != Distrust::Wet {
@@ -135,5 +134,3 @@ impl Learner {
         LearnerOutput::new(sequence, parameters, &variances, &self.scale, trust)
     }
 }
-
-const _: () = assert!(LEARNT_FROM_TICKS >= WINDOW_TICKS);

@@ -20,7 +20,8 @@ pub struct FluxSensor {
 }
 
 impl FluxSensor {
-    /// A sensor of this lag, µs (lags below 100 µs count as 100 µs), whose layer has this resistance. In `f64`, so for set-up only.
+    /// A sensor of this lag, µs (lags below 100 µs count as 100 µs), whose layer has this resistance. In `f64`, so for set-up
+    /// only.
     #[must_use]
     pub const fn new(lag_us: u32, resistance_mm2k_w: Resistance) -> Self {
         let mut lag_s = lag_us as f64 * 1e-6;

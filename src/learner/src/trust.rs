@@ -8,8 +8,8 @@ use crate::regressors::Measurement;
 pub enum Distrust {
     /// Flux is missing or has the wrong sign: the sensor.
     Sensor,
-    /// The flux is outside of what fingers give, or the contact resistance stays at its upper limit: something lies between
-    /// finger and display.
+    /// The flux is less than fingers give, or the contact resistance stays at its upper limit: something lies between finger
+    /// and display.
     Between,
     /// The contact resistance stays at its lower limit: water.
     Wet,
@@ -43,17 +43,15 @@ const INNOVATION_MAX: [f32; 2] = [3.0, 1.0];
 const INNOVATION_MAX_LIGHT: f32 = 20.0;
 /// Nominal contact resistance, m² K/W, above which the force is light: that of 0.48 N on the reference display.
 pub const LIGHT_RESISTANCE_M2K_W: f32 = 2.4e-3;
-/// Updates or windows in a row that distrust needs.
+/// Updates in a row that distrust needs.
 const STRANGE_IN_A_ROW: u8 = 3;
 /// Updates in a row with a parameter at a limit that distrust needs.
 const AT_LIMIT_IN_A_ROW: u8 = 30;
-/// Ticks of contact from which the flux must be in the range of fingers.
-const RANGE_FROM_TICKS: u32 = 60;
-/// Temperature drop, K, from which the range of the flux is looked at.
+/// Temperature drop, K, from which it is asked how much of it the measured flux explains.
 const DROP_MIN_K: f32 = 1.0;
-/// Least and largest drop that the measured flux makes in the mean finger, over the drop that there is.
-const EXPLAINED: core::ops::RangeInclusive<f32> = 0.25..=5.0;
-/// Below this part the flux is missing.
+/// Part of the drop that the measured flux makes in the mean finger, below which something lies between finger and display.
+const EXPLAINED_BETWEEN: f32 = 0.25;
+/// The same, below which the flux is missing.
 const EXPLAINED_BY_NO_FLUX: f32 = 0.05;
 
 /// Counts of what does not fit.
@@ -62,7 +60,6 @@ pub struct Judge {
     trust: Trust,
     filtered_innovation: f32,
     strange_innovations: u8,
-    strange_fluxes: u8,
     at_limit: u8,
 }
 
@@ -72,7 +69,6 @@ impl Judge {
         trust: Trust::Learning,
         filtered_innovation: 0.0,
         strange_innovations: 0,
-        strange_fluxes: 0,
         at_limit: 0,
     };
 
@@ -100,21 +96,9 @@ impl Judge {
         self.trust = Trust::Mean(why);
     }
 
-    /// Judges the flux of a window, so many ticks after landing.
-    pub fn judge_flux(&mut self, measurement: &Measurement, ticks: u32) {
-        if ticks < RANGE_FROM_TICKS {
-            return;
-        }
-        let explained = explained(measurement);
-        let is_strange = explained.is_some_and(|part| !EXPLAINED.contains(&part));
-        if counted(&mut self.strange_fluxes, is_strange) >= STRANGE_IN_A_ROW {
-            self.distrust(self.cause(explained, ticks, None));
-        }
-    }
-
     /// Judges an update: the squared innovation over its variance, at a nominal contact resistance, m² K/W, and so many ticks
     /// after landing; and the parameters.
-    pub fn judge_update(
+    pub fn judge(
         &mut self,
         innovation: Option<f32>,
         measurement: &Measurement,
@@ -164,7 +148,7 @@ impl Judge {
         match (explained, resistance) {
             (Some(part), _) if part < EXPLAINED_BY_NO_FLUX => Distrust::Sensor,
             _ if was_trusted => Distrust::Contact,
-            (Some(part), _) if part < *EXPLAINED.start() => Distrust::Between,
+            (Some(part), _) if part < EXPLAINED_BETWEEN => Distrust::Between,
             (Some(part), Some(Limit::High)) if part < 1.0 => Distrust::Between,
             (Some(part), Some(Limit::Low)) if part > 1.0 => Distrust::Wet,
             _ => Distrust::Unexplained,

@@ -33,8 +33,8 @@ pub struct LearnerInput {
 pub struct Contact {
     /// Ticks with contact, 1 to 10.
     pub touching_ticks: u8,
-    /// Skin temperature before contact less that of the display's surface, below the flux sensor, K; mean of the ten ticks, those
-    /// without contact counted as 0.
+    /// Skin temperature before contact less that of the display's surface, below the flux sensor, K; mean of the ten ticks,
+    /// those without contact counted as 0.
     pub skin_above_display_k: Celsius,
     /// Flux that the film of air has taken from the assumed finger's skin before contact.
     pub air_flux_w_m2: Flux,

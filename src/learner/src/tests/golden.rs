@@ -1,4 +1,5 @@
-//! The learner against recursive least squares in `f64`, on contacts that are simulated independently: `tests/data/generate.py`.
+//! The learner against recursive least squares in `f64`, on contacts that are simulated independently:
+//! `tests/data/generate.py`.
 
 use std::string::String;
 

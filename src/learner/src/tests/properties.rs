@@ -5,7 +5,7 @@ use std::vec::Vec;
 use contact_model::fixed_point::{Celsius, WEIGHTS};
 use proptest::prelude::*;
 
-use super::contacts::sensor;
+use super::contacts::{learnt, sensor};
 use super::random::Random;
 use super::simulation::*;
 use crate::{
@@ -151,7 +151,13 @@ fn distrusted_finger_becomes_the_mean_one_until_the_next_landing() {
         .iter()
         .map(|input| learner.advance(input))
         .collect();
-    assert_eq!(again[5].trust, Trust::Learning);
+    // Before the new contact is learnt from, all is as before the first.
+    let new = Learner::new(sensor(), Place::Air).advance(&LIFTED);
+    assert_eq!(again[2].trust, Trust::Learning);
+    assert_eq!(
+        (again[2].parameters, again[2].variances),
+        (new.parameters, new.variances)
+    );
     assert_eq!(
         again.last().map(|output| output.trust),
         Some(Trust::Trusted)
@@ -198,4 +204,32 @@ fn windows_that_are_not_steady_change_nothing_that_is_learnt() {
         );
     }
     assert_eq!(first.weights.len(), WEIGHTS);
+}
+
+#[test]
+fn wet_finger_keeps_its_low_resistance() {
+    let mut finger = Finger::mean(Place::Air);
+    finger.resistance_factor = 0.2;
+    let mut seen = 0;
+    for object in OBJECTS {
+        let scene = Scene {
+            finger: &finger,
+            object,
+            force_n: 2.0,
+            ticks: 1500,
+            errors: Errors::NONE,
+            reported: &sound,
+        };
+        let last = *learnt(&scene, &mut Random(0), 0).last().expect("an output");
+        if last.trust == Trust::Mean(Distrust::Wet) {
+            seen += 1;
+            assert!((last.resistance_factor.to_num::<f64>() - 0.4).abs() < 1e-6);
+            assert!(
+                last.weights
+                    .iter()
+                    .all(|weight| (weight.to_num::<f64>() - 1.0).abs() < 1e-6)
+            );
+        }
+    }
+    assert!(seen > 0);
 }

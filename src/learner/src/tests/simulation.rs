@@ -1,7 +1,7 @@
 //! Contacts of layered fingers with a display, simulated with finite volumes in `f64`, as the learner is to see them.
 //!
-//! The display shows an object as the device does that knows the mean finger only: it follows the set-point of the mean finger on
-//! the object, after 6 ms of dead time and a lag of 6 ms.
+//! The display shows an object as the device does that knows the mean finger only: it follows the set-point of the mean finger
+//! on the object, after 6 ms of dead time and a lag of 6 ms.
 
 use std::vec;
 use std::vec::Vec;
@@ -337,8 +337,8 @@ impl Errors {
         surface_noise_k: 0.0,
     };
 
-    /// Of the sensor that is designed: gain 1.5 %, zero 3.5 W/m², noise 7 W/m² a tick, lag and resistance 5 %; and a surface that
-    /// is known to 20 mK.
+    /// Of the sensor that is designed: gain 1.5 %, zero 3.5 W/m², noise 7 W/m² a tick, lag and resistance 5 %; and a surface
+    /// that is known to 20 mK.
     pub fn drawn(random: &mut Random) -> Self {
         Self {
             gain: 0.015 * random.normal(),
