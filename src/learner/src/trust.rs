@@ -49,9 +49,7 @@ const STRANGE_IN_A_ROW: u8 = 3;
 const AT_LIMIT_IN_A_ROW: u8 = 30;
 /// Temperature drop, K, from which it is asked how much of it the measured flux explains.
 const DROP_MIN_K: f32 = 1.0;
-/// Part of the drop that the measured flux makes in the mean finger, below which something lies between finger and display.
-const EXPLAINED_BETWEEN: f32 = 0.25;
-/// The same, below which the flux is missing.
+/// Part of the drop that the measured flux makes in the mean finger, below which the flux is missing.
 const EXPLAINED_BY_NO_FLUX: f32 = 0.05;
 
 /// Counts of what does not fit.
@@ -148,9 +146,7 @@ impl Judge {
         match (explained, resistance) {
             (Some(part), _) if part < EXPLAINED_BY_NO_FLUX => Distrust::Sensor,
             _ if was_trusted => Distrust::Contact,
-            (Some(part), _) if part < EXPLAINED_BETWEEN => Distrust::Between,
             (Some(part), Some(Limit::High)) if part < 1.0 => Distrust::Between,
-            (Some(part), Some(Limit::Low)) if part > 1.0 => Distrust::Wet,
             _ => Distrust::Unexplained,
         }
     }

@@ -87,7 +87,11 @@ fn errors(force_n: f64, fingers: u64, with: fn(&mut Random) -> Errors) -> [[f64;
                 );
             }
             let last = outputs.last().expect("an output");
-            assert_eq!(last.trust, Trust::Trusted);
+            // 480 ms and 1.5 s after landing.
+            assert_eq!(
+                [outputs[49].trust, last.trust],
+                [Trust::Learning, Trust::Trusted]
+            );
             resistances
                 .push(last.resistance_factor.to_num::<f64>() / finger.resistance_factor - 1.0);
             if object.name != "foam" {
