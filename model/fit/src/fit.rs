@@ -42,7 +42,8 @@ impl Fit {
     }
 }
 
-fn logarithmic(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
+/// `count` values, evenly spaced in the logarithm.
+pub fn logarithmic(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
     (0..count).map(move |i| from * (to / from).powf(i as f64 / (count - 1) as f64))
 }
 

@@ -5,7 +5,8 @@ use core::fmt;
 use fixed::types::{I0F32, I1F31, I12F20, U16F16};
 
 use super::relaxation_bank::{
-    FastRelaxation, MATCH_HORIZON_TICKS, RelaxationBank, Relaxations, SlowRelaxation, WINDOW,
+    FastRelaxation, MATCH_HORIZON_TICKS, RelaxationBank, Relaxations, SlowRelaxation, StateFactors,
+    WINDOW,
 };
 use super::{Celsius, Fraction, saturating_product, to_fixed};
 use crate::decimal::Shortest;
@@ -270,6 +271,8 @@ impl FingerBody {
 pub type BodyState = RelaxationBank<FAST_MAX, SLOW_MAX>;
 /// State of the tissue of one of the fingers in [`FingerBody`], which have fewer relaxations than a body may have.
 pub type TissueState = RelaxationBank<TISSUE_FAST, TISSUE_SLOW>;
+/// Factors by which a [`TissueState`] changes with the weights of its tissue.
+pub type TissueStateFactors = StateFactors<TISSUE_FAST, TISSUE_SLOW>;
 /// Fast relaxations of a finger's tissue.
 const TISSUE_FAST: usize = 3;
 /// Slow relaxations of a finger's tissue.
@@ -416,6 +419,9 @@ impl Body {
         self.tick_gain
     }
 }
+
+mod weights;
+pub use weights::{TissueWeights, WEIGHTS};
 
 #[cfg(test)]
 mod tests;

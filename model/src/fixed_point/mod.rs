@@ -21,6 +21,7 @@ mod ticks;
 
 pub use body::{
     Body, BodyError, BodyState, FAST_MAX, FingerBody, SLOW_MAX, ScaledBody, TissueState,
+    TissueStateFactors, TissueWeights, WEIGHTS,
 };
 pub use chord_interpolation::ChordInterpolation;
 pub use contact::{Contact, Response};
@@ -33,7 +34,7 @@ pub use pressure::{Area, Force, contact_area, log2_relative_pressure};
 pub use product::{Word, product, saturated, saturating_product, to_fixed};
 pub use properties::ContactPairError;
 pub use relaxation_bank::{
-    FastRelaxation, MATCH_HORIZON_TICKS, RelaxationBank, Relaxations, SlowRelaxation,
+    FastRelaxation, MATCH_HORIZON_TICKS, RelaxationBank, Relaxations, SlowRelaxation, StateFactors,
 };
 pub use ticks::Ticks;
 

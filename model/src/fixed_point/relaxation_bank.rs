@@ -10,7 +10,7 @@
 //! the window's fluxes; within a window their sum is extrapolated along a straight line.
 
 use fixed::traits::LossyFrom;
-use fixed::types::{I0F32, I1F31, I10F54, I11F53, I12F20};
+use fixed::types::{I0F32, I1F31, I10F54, I11F53, I12F20, I32F32};
 
 use super::{Celsius, product};
 
@@ -84,6 +84,43 @@ pub struct Relaxations<'a> {
     pub(super) inverse_horizon_gain: I0F32,
     /// The states are temperatures divided by this power of two, for bodies whose gains exceed the range of theirs.
     pub(super) state_scale: i32,
+}
+
+/// Factors by which states change when the gains of their relaxations change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StateFactors<const FAST: usize, const SLOW: usize> {
+    fast: [I32F32; FAST],
+    slow: [I32F32; SLOW],
+}
+
+impl<const FAST: usize, const SLOW: usize> StateFactors<FAST, SLOW> {
+    /// Factors for a change from the relaxations `from` to `to`, of the same rates in the same order. A relaxation without a
+    /// positive gain in `from` keeps its state.
+    #[must_use]
+    pub fn new(from: &Relaxations<'_>, to: &Relaxations<'_>) -> Self {
+        let factor = |from: I0F32, to: I0F32| {
+            let bits = (i64::from(to.to_bits()) << 32).checked_div(from.to_bits().into());
+            bits.filter(|_| from > 0).map(I32F32::from_bits)
+        };
+        let mut factors = Self {
+            fast: [I32F32::ONE; FAST],
+            slow: [I32F32::ONE; SLOW],
+        };
+        for ((own, from), to) in factors.fast.iter_mut().zip(from.fast).zip(to.fast) {
+            *own = factor(from.input_gain, to.input_gain).unwrap_or(I32F32::ONE);
+        }
+        for ((own, from), to) in factors.slow.iter_mut().zip(from.slow).zip(to.slow) {
+            *own = factor(from.input_gain, to.input_gain).unwrap_or(I32F32::ONE);
+        }
+        factors
+    }
+}
+
+/// A state times a factor; saturates.
+fn rescaled(state: I10F54, factor: I32F32) -> I10F54 {
+    let bits = (i128::from(state.to_bits()) * i128::from(factor.to_bits())) >> I32F32::FRAC_NBITS;
+    let limit = if bits < 0 { i64::MIN } else { i64::MAX };
+    I10F54::from_bits(i64::try_from(bits).unwrap_or(limit))
 }
 
 /// Change of the surface temperature of a body, updated tick by tick; the default is uniform. It has room for `FAST` fast
@@ -247,6 +284,30 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
         (self.slow_sum, self.slow_change) = (sum, I10F54::ZERO);
         self.slow_decay = decay / i64::from(WINDOW);
         (self.flux_sum, self.window, self.ticks_left) = (Celsius::ZERO, ticks, ticks);
+    }
+
+    /// Makes the state, which the relaxations `from` of [`StateFactors::new`] have made, the one that the relaxations `to`
+    /// would have made by the same fluxes; error of each state at most 2^-32 times the state before, per call, and of the
+    /// surface the resolution of the states' sum.
+    pub fn rescale(&mut self, factors: &StateFactors<FAST, SLOW>, to: &Relaxations<'_>) {
+        let (mut fast_sum, mut slow_sum) = (Celsius::ZERO, Celsius::ZERO);
+        for (state, factor) in self.fast.iter_mut().zip(factors.fast) {
+            *state = rescaled(*state, factor);
+            fast_sum = fast_sum.saturating_add(celsius(*state));
+        }
+        let mut decay = I10F54::ZERO;
+        let slow = self.slow.iter_mut().zip(factors.slow);
+        for ((state, factor), relaxation) in slow.zip(to.slow) {
+            *state = limited(rescaled(*state, factor));
+            slow_sum = slow_sum.saturating_add(celsius(*state));
+            decay += celsius(*state).wide_mul(relaxation.decay);
+        }
+        self.slow_sum = slow_sum;
+        self.slow_decay = decay / i64::from(WINDOW);
+        let passed = i64::from(self.window - self.ticks_left);
+        self.slow_change = self.flux_sum.wide_mul(to.slow_input_gain) - self.slow_decay * passed;
+        let sum = fast_sum.saturating_add(self.slow_response());
+        self.free_response = scaled_up(sum, to.state_scale);
     }
 
     /// The constant scaled flux that, added to a flux common to both, brings this surface to that of `other`
