@@ -6,6 +6,7 @@ mod control_law;
 mod display_modes;
 mod electrical_parameters;
 mod fidelity_populations;
+mod flux_sensor;
 mod hold_stability;
 mod processor_faults;
 mod range_limits;
