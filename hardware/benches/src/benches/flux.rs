@@ -105,6 +105,18 @@ fn lag_s(netlists: &Netlists, zero: f64, counts_per_w_m2: f64) -> Result<[f64; 2
     Ok([measured.get("reached")? - 1e-3, delay_s])
 }
 
+/// Time from the break of a wire to a code that no sound wires have, s.
+fn break_s(netlists: &Netlists) -> Result<f64> {
+    let wires = "Vb break 0 PULSE(1 0 1m 1u 1u 1 2)\nSp tp cp break 0 breaks\nRm tm cm 0.1\n\
+                 .model breaks sw(vt=0.5 vh=0.1 ron=0.1 roff=1t)";
+    let more = format!(
+        ".tran 50u 100m 0 50u\n.meas tran rail when v(adc)={} rise=1\n",
+        SOUND_CODES.1 / COUNTS_PER_V
+    );
+    let measured = ngspice::run("flux-break", netlists, &deck("0", wires, &more))?;
+    Ok(measured.get("rail")? - 1e-3)
+}
+
 /// Ripple of the pin's voltage from peak to peak, V: the tile's terminal under PWM, through its ceramic to the plate, and from
 /// there through the layer to the thermopile.
 fn ripple_v(netlists: &Netlists) -> Result<f64> {
@@ -204,6 +216,12 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
             0.0,
         ));
     }
+    all.push(Quantity::at_most(
+        "wire tp breaks: beyond them after",
+        1e3 * break_s(netlists)?,
+        "ms",
+        10.0,
+    ));
     let [shorted] = codes(netlists, &format!("{WIRES}\nRs cp cm 0.1"), [10.0])?;
     all.push(Quantity::at_most(
         "wires shorted: 10 kW/m2 reads as (no rail shows it)",
