@@ -131,6 +131,8 @@ impl Plant {
             supply_counts: 0.0,
         };
         let sensors = Sensors::new(params.sensors, &at_rest, config.seed);
+        let flux = (params.flux)
+            .map(|flux| FluxSensor::new(flux, air_flux_w_m2(&heat, config.room_c), config.seed));
         Ok(Self {
             start_s: config.start_s,
             appears_s: config.appears_s,
@@ -159,8 +161,7 @@ impl Plant {
             heat,
             receptors: RECEPTORS_M.map(|depth_m| DepthProbe::at(&finger, depth_m)),
             sensors,
-            // The display has the temperature of the room.
-            flux: (params.flux).map(|flux| FluxSensor::new(flux, 0.0, config.seed)),
+            flux,
             skin_elsewhere_c: None,
             steps: 0,
             force_n: 0.0,
@@ -290,7 +291,7 @@ impl Plant {
                     let taken_j = self.heat.energy().from_finger_j - before_j;
                     taken_j / (contact.area_m2 * STEP_S)
                 }
-                None => self.heat.tile().film_w_m2k() * (self.room_c - self.heat.display_c()),
+                None => air_flux_w_m2(&self.heat, self.room_c),
             };
             flux.step(STEP_S, mean_w_m2);
         }
@@ -448,8 +449,9 @@ impl Plant {
     }
 
     /// Surface temperature of a display on which the skin would be as warm as it is on the real object, deg C: that skin less
-    /// the heat that flows into the object times the contact resistance of the display, with that of a heat-flux sensor. For half-spaces under a constant
-    /// force this is Eq. 6-12. None in the step before a contact and without one.
+    /// the heat that flows into the object times the resistance between display and skin, the layer of a heat-flux sensor
+    /// included. For half-spaces under a constant force, without that layer, this is Eq. 6-12. None in the step before a
+    /// contact and without one.
     #[must_use]
     pub fn exact_display_c(&self) -> Option<f64> {
         let display = self.on_display?;
@@ -489,6 +491,11 @@ impl Plant {
     pub fn energy(&self) -> Energy {
         self.heat.energy()
     }
+}
+
+/// Heat flux out of the air into the display where it is not touched, W/m2.
+fn air_flux_w_m2(heat: &ThermalModel, room_c: f64) -> f64 {
+    heat.tile().film_w_m2k() * (room_c - heat.display_c())
 }
 
 #[cfg(test)]

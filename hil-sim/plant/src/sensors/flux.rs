@@ -10,7 +10,7 @@ use super::lag::FirstOrderLag;
 use crate::parameters::stream_seed;
 
 /// Code at which the sensor reads no flux: mid-scale, 1.65 V.
-pub const MID_SCALE: f64 = 0.5 * CODES;
+const MID_SCALE: f64 = 0.5 * CODES;
 
 /// Parameters of the heat-flux sensor. Fluxes are positive out of the skin.
 ///

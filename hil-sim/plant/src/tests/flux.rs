@@ -151,6 +151,14 @@ fn without_contact_the_sensor_sees_the_air_film_on_the_display() {
     // 10 W/(m2 K), into the air.
     let off_w_m2 = plant.flux_w_m2().expect("a sensor") + 10.0 * warmer_k;
     assert!(off_w_m2.abs() < 1e-9, "{off_w_m2}");
+
+    let mut config = config("granite");
+    config.params.flux = Some(IDEAL);
+    config.params.tile.coolant_k = -5.0;
+    let plant = Plant::new(&config).expect("a good configuration");
+    assert_eq!(plant.flux_w_m2(), Some(50.0));
+    // 50 W/m2 are 6 counts.
+    assert_eq!(plant.flux_code(), Some(2054));
 }
 
 #[test]
