@@ -5,6 +5,7 @@ mod dividers;
 mod edges;
 mod faults;
 mod five_fingers;
+mod flux;
 mod force;
 mod ground;
 mod leakage;
@@ -73,7 +74,7 @@ impl Bench {
 }
 
 /// All benches.
-pub const ALL: [Bench; 16] = [
+pub const ALL: [Bench; 17] = [
     thresholds::BENCH,
     self_test::BENCH,
     faults::BENCH,
@@ -85,6 +86,7 @@ pub const ALL: [Bench; 16] = [
     current_measurement::BENCH,
     dividers::BENCH,
     force::BENCH,
+    flux::BENCH,
     ground::BENCH,
     leakage::BENCH,
     multiplexer::BENCH,
