@@ -117,9 +117,7 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
         ),
         units(members),
     ];
-    // Stored settings take most of the time: a cut in every flash operation, every bit flipped.
-    let native =
-        "test --release --quiet --package system-tests --test native -- --skip settings_storage";
+    let native = "test --release --quiet --package system-tests --test native";
     vec![vec![
         small,
         vec![check("native device on the simulated plant", [native])],
