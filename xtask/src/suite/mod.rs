@@ -117,7 +117,9 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
         ),
         units(members),
     ];
-    let native = "test --release --quiet --package system-tests --test native";
+    // The power cuts and flipped bits of stored settings are left out for the sake of the quick suite's time.
+    let native =
+        "test --release --quiet --package system-tests --test native -- --skip settings_storage";
     vec![vec![
         small,
         vec![check("native device on the simulated plant", [native])],
