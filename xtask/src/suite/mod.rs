@@ -186,7 +186,7 @@ fn whole(
         let line = format!("test --release --no-fail-fast {which}");
         Ok(vec![choice.handed_to(cargo(&line))])
     };
-    // The command is selected beside them for the sake of its dependencies' features, with which they are compiled.
+    // `hil-sim` is selected, too, so that cargo unifies features as for the workspace and compiles no dependency again.
     let on_image = "-p image-tests -p hil-sim --test image";
     let on_target = choice.handed_to(cargo("xtask on-target --emulated --check"));
     let fuzz = format!("xtask fuzz --seconds {FUZZ_S}");
