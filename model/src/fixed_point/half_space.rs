@@ -18,7 +18,7 @@
 
 mod conductance;
 
-pub use conductance::ContactConductance;
+pub use conductance::{ContactConductance, OwnResistances};
 
 use fixed::types::{I0F32, I12F20};
 

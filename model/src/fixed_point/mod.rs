@@ -24,9 +24,9 @@ pub use body::{
     TissueStateFactors, TissueWeights, WEIGHTS,
 };
 pub use chord_interpolation::ChordInterpolation;
-pub use contact::{Contact, Response};
+pub use contact::{Contact, Response, preset};
 pub use contact_pair::ContactPair;
-pub use half_space::{ContactConductance, HalfSpace};
+pub use half_space::{ContactConductance, HalfSpace, OwnResistances};
 pub use kernel::erfcx;
 pub use logarithm::{Log2, exp2, log2};
 pub use mantissa_exponent::MantissaExponent;

@@ -1,8 +1,8 @@
 //! The finger: its temperature before contact, its force, and by how much the display has cooled its skin.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, ContactConductance, ContactPair, Force, contact_area, log2_relative_pressure,
-    product, saturating_product,
+    Celsius, Contact, ContactConductance, ContactPair, Force, Ratio, contact_area,
+    log2_relative_pressure, product, saturating_product,
 };
 use fixed::types::{I2F30, I10F22};
 
@@ -71,23 +71,34 @@ pub struct ContactConductances {
     /// Conductance between skin and presented object, as scaled heat flux (K) per kelvin; determines how much the
     /// simulated skin cools on the object.
     pub object: ContactConductance,
+    /// Resistance between skin and display over that between skin and object, with the finger's own ones.
+    pub ratio: Ratio,
 }
 
 impl ContactConductances {
-    fn new(pair: &ContactPair, bodies: Option<&Bodies<'_>>, force: Force) -> Self {
+    fn new(pair: &ContactPair, bodies: Option<&Bodies>, force: Force) -> Self {
         let contact = pair.at_pressure(log2_relative_pressure(force));
         let (display, object) = match bodies {
             None => (contact.display_conductance(), contact.object_conductance()),
-            Some(Bodies { finger, object, .. }) => (
-                contact.display_conductance_of(&finger.tissue),
-                contact.conductance_of(&finger.tissue, object),
+            Some(Bodies {
+                finger,
+                object,
+                resistances,
+                ..
+            }) => (
+                contact.display_conductance_of(&finger.tissue, resistances),
+                contact.conductance_of(&finger.tissue, object, resistances),
             ),
         };
+        let ratio = bodies.map_or(contact.ratio, |bodies| {
+            contact.ratio_of(&bodies.resistances)
+        });
         Self {
             force,
             contact,
             display,
             object,
+            ratio,
         }
     }
 
@@ -378,7 +389,7 @@ impl FingerEstimator {
     pub fn step_skin_heat_flow(
         &mut self,
         pair: &ContactPair,
-        bodies: &Bodies<'_>,
+        bodies: &Bodies,
         surface: Celsius,
     ) -> Watt {
         let Some(before) = self.before_contact else {

@@ -58,7 +58,7 @@ impl Estimator {
         touch: Option<Force>,
         landed_ticks: u32,
         pair: Option<&ContactPair>,
-        bodies: &Bodies<'_>,
+        bodies: &Bodies,
     ) -> PlateEstimateBeforeReading {
         let ValidReadings {
             display,

@@ -4,7 +4,8 @@
 //! under a changing force, and in a contact that begins soon after another one.
 
 use contact_model::fixed_point::{
-    BodyState, Celsius, ContactConductance, ContactPair, Fraction, Ratio, Word, saturating_product,
+    BodyState, Celsius, ContactConductance, ContactPair, Force, Fraction, OwnResistances, Ratio,
+    Word, log2_relative_pressure, saturating_product,
 };
 use fixed::types::U16F16;
 
@@ -25,20 +26,29 @@ pub struct ContactPairFactors {
     /// drop across the object's contact times this ratio is the drop that the same heat flow causes across the
     /// display's contact.
     ratio: Ratio,
+    /// The same with the finger's own resistances at the force with which a finger is expected to land, for the time before
+    /// contact: a layer on the display makes it depend on the force.
+    pub ratio_at_landing: Ratio,
 }
+
+/// Force with which a finger is expected to land, N.
+const LANDING_FORCE: Force = Force::lit("1");
 
 impl ContactPairFactors {
     /// Computes the constants of Eq. 6-12 for the contacts of the skin with object and display in `pair`: the weight of
     /// the object, its reciprocal, and the ratio of the contact resistances. The reciprocal takes a 64-bit division, for
     /// which the processor has no instruction, so it is computed only when another object is presented.
     #[must_use]
-    pub fn new(pair: &ContactPair) -> Self {
+    pub fn new(pair: &ContactPair, resistances: &OwnResistances) -> Self {
         // 1 in 2^-48 over the weight in 2^-32.
         let inverse = (1u64 << 48) / u64::from(pair.weight().to_bits().max(1));
         Self {
             weight: pair.weight(),
             inverse_weight: U16F16::from_bits(inverse.min(u64::from(u32::MAX)) as u32),
             ratio: pair.ratio(),
+            ratio_at_landing: pair
+                .at_pressure(log2_relative_pressure(LANDING_FORCE))
+                .ratio_of(resistances),
         }
     }
 
@@ -54,7 +64,7 @@ impl ContactPairFactors {
 #[derive(Clone, Copy, Debug)]
 pub struct BodiesBeforeContact<'a> {
     /// Finger and object.
-    pub bodies: &'a Bodies<'a>,
+    pub bodies: &'a Bodies,
     /// The skin's temperature minus the object's, K.
     pub skin_above_object: Celsius,
     /// The skin's temperature minus the room's, K.
@@ -71,19 +81,19 @@ pub struct SurfaceChanges {
 }
 
 impl SurfaceChanges {
-    /// The set-point, °C, as [`SkinOnObject::setpoint`].
+    /// The set-point, °C, as [`SkinOnObject::setpoint`], for a ratio of the resistances of display and object.
     #[must_use]
     #[inline]
     pub fn setpoint(
         &self,
-        factors: &ContactPairFactors,
+        ratio: Ratio,
         skin_before_contact: Celsius,
         skin_above_object: Celsius,
     ) -> Celsius {
         let step_at_object = skin_above_object
             .saturating_sub(self.cooling)
             .saturating_sub(self.warming);
-        let step_at_display: Celsius = saturating_product(step_at_object, factors.ratio);
+        let step_at_display: Celsius = saturating_product(step_at_object, ratio);
         skin_before_contact
             .saturating_sub(self.cooling)
             .saturating_sub(step_at_display)
@@ -111,7 +121,7 @@ impl SkinOnObject {
     pub fn start_from_skin_on_display(
         &mut self,
         skin_state_on_display: &SkinState,
-        bodies: &Bodies<'_>,
+        bodies: &Bodies,
     ) {
         self.skin = skin_state_on_display.staggered(bodies);
         self.object = BodyState::default();
@@ -215,7 +225,7 @@ impl SkinOnObject {
         &self,
         skin_state_on_display: &SkinState,
         display: &ContactConductance,
-        bodies: Option<&Bodies<'_>>,
+        bodies: Option<&Bodies>,
     ) -> Celsius {
         let scaled_flux = match (skin_state_on_display, &self.skin, bodies) {
             (SkinState::HalfSpace(from), SkinState::HalfSpace(to), None) => {

@@ -132,7 +132,7 @@ fn last_leads(follows: impl Fn(u32) -> bool) -> Vec<Celsius> {
     let pair = ContactPair::new(&SKIN, granite, &REFERENCE_DISPLAY, TICK_S).expect("pair");
     let (skin, object) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
     let bodies = Bodies {
-        finger: &FingerBody::MEAN,
+        finger: FingerBody::MEAN,
         are_half_spaces: false,
         ..Bodies::HALF_SPACES
     };

@@ -22,7 +22,7 @@ pub struct ChosenObject {
     /// The word of the object's body in the protocol.
     pub body_name: &'static str,
     /// The assumed finger and the object as bodies. Before a material is chosen, the object is the skin's half-space.
-    bodies: Bodies<'static>,
+    bodies: Bodies,
     /// Temperature of the object before contact, °C; `None` takes the room's temperature.
     pub temperature: Option<Celsius>,
     /// Contact model that gives the set-point while the object is presented: with contact resistance, or perfect
@@ -97,7 +97,7 @@ impl ChosenObject {
     /// Assumes this finger from now on.
     pub fn choose_finger(&mut self, finger: AssumedFinger) {
         self.finger = finger;
-        self.bodies.finger = finger.body();
+        self.bodies.finger = *finger.body();
         self.bodies.are_half_spaces = self.is_half_space && finger == AssumedFinger::Thesis;
     }
 
@@ -109,7 +109,7 @@ impl ChosenObject {
 
     /// The assumed finger and the object.
     #[must_use]
-    pub const fn bodies(&self) -> &Bodies<'static> {
+    pub const fn bodies(&self) -> &Bodies {
         &self.bodies
     }
 
