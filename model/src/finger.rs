@@ -67,14 +67,14 @@ pub const MEAN_ON_PAD: FingerProperties = FingerProperties {
     ..MEAN
 };
 
-/// How fingers differ: relative deviations of the weights of [`MEAN`] per unit of the two largest components of the differences,
-/// whose standard deviations over the simulated fingers are 1. The weights are those of the relaxations from the slowest to the
-/// fastest, without the integrator, then of the direct term.
+/// How fingers differ: relative deviations of the weights of [`MEAN`] per unit of the two largest components of the
+/// differences, whose standard deviations over the simulated fingers are 1. The weights are those of the relaxations from the
+/// slowest to the fastest, without the integrator, then of the direct term.
 ///
-/// Computed from the 600 fingers that the simulator draws from the seeds 0 to 599, whose impedances differ from that of [`MEAN`]
-/// by 15.4 % rms at Laplace variables from 0.05 to 700 1/s; with the first component by 1.1 %, with both by 0.3 %. No weight of
-/// these fingers is below 0.67 of that of [`MEAN`]. `cargo test --release -p system-tests finger_components -- --nocapture`
-/// prints all of this.
+/// Computed from the 600 fingers that the simulator draws from the seeds 0 to 599, whose impedances differ from that of
+/// [`MEAN`] by 15.4 % rms at Laplace variables from 0.05 to 700 1/s; with the first component by 1.1 %, with both by 0.3 %. No
+/// weight of these fingers is below 0.67 of that of [`MEAN`]. `cargo test --release -p system-tests finger_components --
+/// --nocapture` prints all of this.
 pub const COMPONENTS: [[f64; 9]; 2] = [
     [
         -0.1476, -0.0858, -0.1855, -0.1129, -0.1484, -0.1537, -0.1313, -0.1665, -0.1202,

@@ -1,7 +1,7 @@
 //! The components of the finger's weights are those of the simulator's fingers.
 
 use contact_model::finger::{COMPONENT_MEANS, COMPONENTS};
-use relaxation_fit::{Back, Layer, impedance, shapes};
+use relaxation_fit::{Back, Layer, components, impedance};
 use thermal_plant::finger::FingerParams;
 use thermal_plant::parameters::draw_finger;
 
@@ -25,7 +25,7 @@ fn drawn(seed: u64) -> impl Fn(f64) -> f64 {
 
 #[test]
 fn committed_components_are_those_of_the_drawn_fingers() {
-    let found = shapes(&(0..FINGERS).map(drawn).collect::<Vec<_>>());
+    let found = components(&(0..FINGERS).map(drawn).collect::<Vec<_>>());
     println!("{found:#.4?}");
     let committed = COMPONENTS.iter().flatten().chain(&COMPONENT_MEANS);
     let computed = found.weights.iter().flatten().chain(&found.means);

@@ -286,9 +286,9 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
         (self.flux_sum, self.window, self.ticks_left) = (Celsius::ZERO, ticks, ticks);
     }
 
-    /// Makes the state, which the relaxations `from` of [`StateFactors::new`] have made, the one that the relaxations `to` would
-    /// have made by the same fluxes; error of each state at most 2^-32 times the state before, per call, and of the surface the
-    /// resolution of the states' sum.
+    /// Makes the state, which the relaxations `from` of [`StateFactors::new`] have made, the one that the relaxations `to`
+    /// would have made by the same fluxes; error of each state at most 2^-32 times the state before, per call, and of the
+    /// surface the resolution of the states' sum.
     pub fn rescale(&mut self, factors: &StateFactors<FAST, SLOW>, to: &Relaxations<'_>) {
         let (mut fast_sum, mut slow_sum) = (Celsius::ZERO, Celsius::ZERO);
         for (state, factor) in self.fast.iter_mut().zip(factors.fast) {

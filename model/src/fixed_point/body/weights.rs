@@ -8,8 +8,8 @@ use super::{Body, FingerBody};
 /// and of its direct term.
 pub const WEIGHTS: usize = 9;
 
-/// Relative weights of the mean finger's tissue, in the order of [`crate::finger::COMPONENTS`]: the gains of a finger over those
-/// of [`crate::finger::MEAN`].
+/// Relative weights of the mean finger's tissue, in the order of [`crate::finger::COMPONENTS`]: the gains of a finger over
+/// those of [`crate::finger::MEAN`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TissueWeights([I2F30; WEIGHTS]);
 

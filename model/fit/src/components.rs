@@ -19,7 +19,7 @@ const RIDGE: f64 = 0.1;
 
 /// The two largest components of the relative differences of fingers from the mean finger.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shapes {
+pub struct Components {
     /// Relative deviations of the mean finger's weights per unit of each component: of its relaxations from the slowest to the
     /// fastest, without the integrator, then of the direct term.
     pub weights: [[f64; WEIGHTS]; COMPONENTS],
@@ -36,7 +36,7 @@ pub struct Shapes {
 /// # Panics
 /// There are fewer than two fingers, or all are alike.
 #[must_use]
-pub fn shapes(fingers: &[impl Fn(f64) -> f64]) -> Shapes {
+pub fn components(fingers: &[impl Fn(f64) -> f64]) -> Components {
     let mean = &MEAN.impedance;
     let samples: Vec<_> = logarithmic(S_MIN_1_S, S_MAX_1_S, SAMPLES).collect();
     let deviations = DMatrix::from_fn(SAMPLES, fingers.len(), |sample, finger| {
@@ -64,7 +64,7 @@ pub fn shapes(fingers: &[impl Fn(f64) -> f64]) -> Shapes {
     let count = fingers.len() as f64;
     let mut rest = deviations;
     let rms = |of: &DMatrix<f64>| (of.norm_squared() / of.len() as f64).sqrt();
-    let mut result = Shapes {
+    let mut result = Components {
         weights: [[0.0; WEIGHTS]; COMPONENTS],
         means: [0.0; COMPONENTS],
         errors: [rms(&rest); COMPONENTS + 1],
@@ -76,9 +76,9 @@ pub fn shapes(fingers: &[impl Fn(f64) -> f64]) -> Shapes {
         let mean_score = scores.mean();
         let deviation = (scores.norm_squared() / count - mean_score * mean_score).sqrt();
         // A higher value of a component is a finger that its surface moves less after some seconds.
-        let shape: DVector<f64> = left.column(chosen) * deviation;
-        let sign = -shape.sum().signum();
-        let fitted = &inverse * shares.tr_mul(&(shape * sign));
+        let curve: DVector<f64> = left.column(chosen) * deviation;
+        let sign = -curve.sum().signum();
+        let fitted = &inverse * shares.tr_mul(&(curve * sign));
         let scores = scores * (sign / deviation);
         result.means[component] = scores.mean();
         rest -= &shares * &fitted * &scores;

@@ -1,0 +1,136 @@
+//! The learner: one finger on one display, window by window.
+
+use crate::estimate::Estimate;
+use crate::output::LearnerOutput;
+use crate::parameters::{Place, RESISTANCE, Scale};
+use crate::regressors::{Lagged, Signals};
+use crate::sensor::FluxSensor;
+use crate::trust::{Distrust, Judge, Trust};
+use crate::window::{Contact, LearnerInput, Resistance};
+
+/// Ticks after landing from which a contact is learnt from: the display's surface and the sensor have then settled.
+const LEARNT_FROM_TICKS: u32 = 20;
+/// Up to these ticks after landing every window, and every second one, is learnt from; later every fourth.
+const EVERY_WINDOW_TICKS: u32 = 300;
+const EVERY_SECOND_TICKS: u32 = 1000;
+/// Error of the model at landing, K. Its square grows in proportion to the time, so that each octave of time weighs alike.
+const MODEL_ERROR_K: f32 = 20e-3;
+/// Ticks in which the model's squared error at landing is added once more.
+const MODEL_ERROR_TICKS: f32 = 50.0;
+/// Error of the surface of the display, K.
+const SURFACE_ERROR_K: f32 = 1.5e-3;
+/// Error of the sensor's zero, W/m²: two of its deviations.
+const ZERO_ERROR_W_M2: f32 = 7.0;
+/// Part of the parameters that remains per window once the finger is distrusted.
+const REMAINING_IF_DISTRUSTED: f32 = 0.75;
+/// Unit of [`Resistance`], m² K/W.
+const M2K_W_PER_BIT: f32 = 1e-6 / (1u32 << Resistance::FRAC_NBITS) as f32;
+
+/// Learns a finger from the flux into the display. All methods are total, take bounded time and do not panic.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Learner {
+    sensor: FluxSensor,
+    scale: Scale,
+    signals: Signals,
+    estimate: Estimate,
+    judge: Judge,
+    /// Of the present contact, modulo 256.
+    windows_in_contact: Option<u8>,
+}
+
+impl Learner {
+    /// A learner of a finger that is at `place` before its contacts.
+    #[must_use]
+    pub fn new(sensor: FluxSensor, place: Place) -> Self {
+        Self {
+            scale: Scale::new(place, sensor.lag_deviation),
+            sensor,
+            signals: Signals::default(),
+            estimate: Estimate::prior(),
+            judge: Judge::NEW,
+            windows_in_contact: None,
+        }
+    }
+
+    /// Takes one window's measurements, and returns what is known of the finger after it.
+    pub fn advance(&mut self, input: &LearnerInput) -> LearnerOutput {
+        if let Some(place) = input.restart {
+            *self = Self::new(self.sensor, place);
+        }
+        let lagged = self.signals.advance(input, &self.sensor);
+        match &input.contact {
+            Some(contact) => {
+                if self.windows_in_contact.is_none() {
+                    self.land();
+                }
+                let windows = self
+                    .windows_in_contact
+                    .map_or(1, |windows| windows.wrapping_add(1));
+                self.windows_in_contact = Some(windows);
+                let is_learnt_from =
+                    contact.is_steady && contact.ticks_since_landing >= LEARNT_FROM_TICKS;
+                if is_learnt_from && !matches!(self.judge.trust(), Trust::Mean(_)) {
+                    self.learn(contact, windows, &lagged);
+                }
+            }
+            None => {
+                if self.windows_in_contact.take().is_some() {
+                    self.estimate.widen(&self.scale);
+                }
+            }
+        }
+        if let Trust::Mean(why) = self.judge.trust() {
+            self.approach_mean(why);
+        }
+        self.output(input.sequence)
+    }
+
+    fn land(&mut self) {
+        if !self.judge.land() {
+            self.estimate = Estimate::prior();
+        }
+    }
+
+    fn learn(&mut self, contact: &Contact, windows: u8, lagged: &Lagged) {
+        let ticks = contact.ticks_since_landing;
+        let every = match ticks {
+            ..EVERY_WINDOW_TICKS => 1,
+            EVERY_WINDOW_TICKS..EVERY_SECOND_TICKS => 2,
+            EVERY_SECOND_TICKS.. => 4,
+        };
+        if !windows.is_multiple_of(every) {
+            return;
+        }
+        let resistance_m2k_w = contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT;
+        let parameters = self.estimate.parameters;
+        let measurement =
+            lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &parameters);
+
+        let model_k2 = MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_ERROR_TICKS);
+        let factor = 1.0 + parameters[RESISTANCE] * self.scale.deviations[RESISTANCE];
+        let zero_k = factor * resistance_m2k_w * ZERO_ERROR_W_M2;
+        let variance_k2 =
+            (model_k2 + zero_k * zero_k + SURFACE_ERROR_K * SURFACE_ERROR_K) / f32::from(every);
+        let innovation = self.estimate.update(&measurement, variance_k2, &self.scale);
+        let parameters = &self.estimate.parameters;
+        let state = (resistance_m2k_w, ticks);
+        self.judge
+            .judge(innovation, &measurement, state, parameters, &self.scale);
+    }
+
+    /// Takes the parameters towards those of the mean finger, in some 100 ms so that set-points do not jump. That the contact
+    /// is better than usual is kept.
+    fn approach_mean(&mut self, why: Distrust) {
+        for (index, parameter) in self.estimate.parameters.iter_mut().enumerate() {
+            if index != RESISTANCE || why != Distrust::Wet {
+                *parameter *= REMAINING_IF_DISTRUSTED;
+            }
+        }
+    }
+
+    fn output(&self, sequence: u16) -> LearnerOutput {
+        let variances = self.estimate.variances();
+        let (parameters, trust) = (&self.estimate.parameters, self.judge.trust());
+        LearnerOutput::new(sequence, parameters, &variances, &self.scale, trust)
+    }
+}

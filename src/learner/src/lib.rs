@@ -1,0 +1,27 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+mod decay;
+mod estimate;
+mod learner;
+mod output;
+mod parameters;
+mod regressors;
+mod sensor;
+mod signals;
+mod trust;
+mod window;
+
+pub use learner::Learner;
+pub use output::LearnerOutput;
+pub use parameters::{PARAMETERS, Place};
+pub use sensor::FluxSensor;
+pub use trust::{Distrust, Trust};
+pub use window::{Contact, Flux, LearnerInput, Resistance, WINDOW_TICKS};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,57 @@
+//! What has been learnt, in fixed point.
+
+use contact_model::fixed_point::{Celsius, WEIGHTS};
+use fixed::traits::Fixed;
+use fixed::types::{I2F30, I4F28};
+
+use crate::parameters::{AIR, PARAMETERS, Parameters, RESISTANCE, SKIN, Scale, relative_weights};
+use crate::trust::Trust;
+
+/// The finger, to be applied ten ticks after its input was taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LearnerOutput {
+    /// Number of the input's window.
+    pub sequence: u16,
+    /// Weights of the tissue over those of the mean finger, 0.4 to 2, for `TissueWeights`.
+    pub weights: [I2F30; WEIGHTS],
+    /// Relative change of the flux that the air took before contact, -1 to 1.5.
+    pub air_change: I4F28,
+    /// Skin before contact less what its thermistor says, -0.3 to 0.3 K.
+    pub skin_offset_k: Celsius,
+    /// Factor on the nominal contact resistance, 0.4 to 2.5.
+    pub resistance_factor: I4F28,
+    /// What this is worth.
+    pub trust: Trust,
+    /// Components of the tissue, changes of air, skin, contact resistance and lag, in prior deviations.
+    pub parameters: [I4F28; PARAMETERS],
+    /// Their variances, in prior variances: above 0, at most 1.25.
+    pub variances: [I2F30; PARAMETERS],
+}
+
+/// A result in fixed point. The cast saturates, and takes what is not a number for 0.
+fn to_fixed<T: Fixed<Bits = i32>>(value: f32) -> T {
+    T::from_bits((value * (1u32 << T::FRAC_NBITS) as f32) as i32)
+}
+
+impl LearnerOutput {
+    /// Converts parameters and variances within their limits.
+    pub fn new(
+        sequence: u16,
+        parameters: &Parameters,
+        variances: &Parameters,
+        scale: &Scale,
+        trust: Trust,
+    ) -> Self {
+        let change = |index: usize| parameters[index] * scale.deviations[index];
+        Self {
+            sequence,
+            weights: relative_weights(parameters).map(to_fixed),
+            air_change: to_fixed(change(AIR)),
+            skin_offset_k: to_fixed(change(SKIN)),
+            resistance_factor: to_fixed(1.0 + change(RESISTANCE)),
+            trust,
+            parameters: parameters.map(to_fixed),
+            variances: variances.map(to_fixed),
+        }
+    }
+}

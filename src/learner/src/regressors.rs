@@ -1,0 +1,118 @@
+//! From a window's signals to one measurement that is linear in the parameters.
+
+use fixed::traits::Fixed;
+
+use crate::parameters::{
+    MEAN_WEIGHTS, Parameters, RELATIVE_COMPONENTS, Scale, clamped, relative_weights,
+};
+use crate::sensor::FluxSensor;
+use crate::signals::{Bank, BankOutput, Lag, dot};
+use crate::window::{LearnerInput, WINDOW_TICKS};
+
+/// All signals that pass the sensor's lag, and the banks that they drive.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Signals {
+    skin_above_display: Lag,
+    skin_above_display_twice: Lag,
+    air: Lag,
+    touching: Lag,
+    /// Driven by the measured flux beyond that of the air before contact.
+    by_flux: Bank,
+    /// Driven by the flux of the air before contact.
+    by_air: Bank,
+}
+
+/// Signals of one window with contact, after the sensor's lag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lagged {
+    flux_w_m2: f32,
+    /// Skin before contact above the display's surface, K; and with the lag applied twice.
+    above_k: f32,
+    above_twice_k: f32,
+    /// 1 in contact.
+    touching: f32,
+    by_flux: BankOutput,
+    by_air: BankOutput,
+}
+
+/// A measurement as a float.
+fn to_float<T: Fixed<Bits = i32>>(value: T) -> f32 {
+    value.to_bits() as f32 / (1u32 << T::FRAC_NBITS) as f32
+}
+
+impl Signals {
+    /// Advances by a window.
+    pub fn advance(&mut self, input: &LearnerInput, sensor: &FluxSensor) -> Lagged {
+        let (above, air, touching) = input.contact.as_ref().map_or((0.0, 0.0, 0.0), |contact| {
+            let share = f32::from(contact.touching_ticks) / WINDOW_TICKS as f32;
+            let touching = clamped(share, 0.0, 1.0);
+            let air = to_float(contact.air_flux_w_m2) * touching;
+            (to_float(contact.skin_above_display_k), air, touching)
+        });
+        let flux_w_m2 = to_float(input.flux_w_m2);
+        let above_k = self.skin_above_display.advance(above, sensor);
+        let air_w_m2 = self.air.advance(air, sensor);
+        Lagged {
+            flux_w_m2,
+            above_k,
+            above_twice_k: self.skin_above_display_twice.advance(above_k, sensor),
+            touching: self.touching.advance(touching, sensor),
+            by_flux: self.by_flux.advance(flux_w_m2 - air_w_m2),
+            by_air: self.by_air.advance(air_w_m2),
+        }
+    }
+}
+
+/// One measurement: `residual = regressors . parameters + error`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurement {
+    /// What the mean finger leaves of the temperature difference of skin and display, K.
+    pub residual_k: f32,
+    /// Change of the residual per prior deviation of each parameter, K.
+    pub regressors: Parameters,
+    /// Temperature difference across tissue and contact, K: the skin that would be without contact, above the display.
+    pub drop_k: f32,
+}
+
+/// Sum of a bank's output with the mean finger's weights times relative ones, K.
+fn rise_k(output: &BankOutput, relative: &BankOutput) -> f32 {
+    let mut weighted = *relative;
+    for (one, mean) in weighted.iter_mut().zip(&MEAN_WEIGHTS) {
+        *one *= mean;
+    }
+    dot(output, &weighted)
+}
+
+impl Lagged {
+    /// The measurement of this window, for a nominal contact resistance, m² K/W, with the present parameters of the finger.
+    pub fn measurement(
+        &self,
+        resistance_m2k_w: f32,
+        sensor: &FluxSensor,
+        scale: &Scale,
+        parameters: &Parameters,
+    ) -> Measurement {
+        let [first, second] = &RELATIVE_COMPONENTS;
+        let contact_k = resistance_m2k_w * self.flux_w_m2;
+        let residual_k = self.above_k
+            - dot(&self.by_flux, &MEAN_WEIGHTS)
+            - contact_k
+            - sensor.resistance_m2k_w * self.flux_w_m2;
+        let mut regressors = [
+            rise_k(&self.by_flux, first),
+            rise_k(&self.by_flux, second),
+            -rise_k(&self.by_air, &relative_weights(parameters)),
+            -self.touching,
+            contact_k,
+            self.above_k - self.above_twice_k,
+        ];
+        for (regressor, deviation) in regressors.iter_mut().zip(&scale.deviations) {
+            *regressor *= deviation;
+        }
+        Measurement {
+            residual_k,
+            regressors,
+            drop_k: self.above_k + dot(&self.by_air, &MEAN_WEIGHTS),
+        }
+    }
+}

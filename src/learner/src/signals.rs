@@ -1,0 +1,84 @@
+//! First-order lags and the bank of unit relaxations, updated once per window.
+
+use contact_model::fixed_point::WEIGHTS;
+
+use crate::decay::WindowDecay;
+use crate::parameters::RELAXATIONS;
+use crate::sensor::FluxSensor;
+use crate::window::WINDOW_S;
+
+/// Number of relaxations with a rate.
+pub const RATES: usize = WEIGHTS - 1;
+
+/// The flux sensor's lag, applied to another signal.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lag(f32);
+
+impl Lag {
+    /// Mean of the lagged signal over a window in which the signal is constant.
+    pub fn advance(&mut self, signal: f32, sensor: &FluxSensor) -> f32 {
+        let mean = signal + (self.0 - signal) * sensor.mean;
+        self.0 = signal + (self.0 - signal) * sensor.remaining;
+        mean
+    }
+}
+
+/// Coefficients of a unit relaxation `du/dt = input - rate u` for windows.
+#[derive(Clone, Copy)]
+struct UnitRelaxation {
+    /// Part of the state that remains at the window's end.
+    remaining: f32,
+    /// State at the window's end over an input that is constant in the window, s.
+    gain_s: f32,
+    /// Mean of the decaying state over the window, over its value at the start.
+    mean: f32,
+    /// Mean of the state over the window, over the input, s.
+    mean_gain_s: f32,
+}
+
+const UNIT_RELAXATIONS: [UnitRelaxation; RATES] = {
+    let mut all = [UnitRelaxation {
+        remaining: 0.0,
+        gain_s: 0.0,
+        mean: 0.0,
+        mean_gain_s: 0.0,
+    }; RATES];
+    let mut k = 0;
+    while k < RATES {
+        let decay = WindowDecay::new(RELAXATIONS[k].rate_1_s);
+        all[k] = UnitRelaxation {
+            remaining: decay.remaining as f32,
+            gain_s: (decay.mean * WINDOW_S) as f32,
+            mean: decay.mean as f32,
+            mean_gain_s: (decay.mean_of_dose * WINDOW_S) as f32,
+        };
+        k += 1;
+    }
+    all
+};
+
+/// Unit relaxations of the mean finger's rates, all driven by one flux.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bank([f32; RATES]);
+
+/// Window means of a bank's states, J/m², and the flux itself, W/m²: with the weights of a finger their sum is the rise of its
+/// surface, K.
+pub type BankOutput = [f32; WEIGHTS];
+
+impl Bank {
+    /// Output of a window with this mean flux, W/m².
+    pub fn advance(&mut self, flux_w_m2: f32) -> BankOutput {
+        let mut output = [flux_w_m2; WEIGHTS];
+        let states = self.0.iter_mut().zip(&UNIT_RELAXATIONS);
+        for ((state, one), mean) in states.zip(&mut output) {
+            *mean = one.mean * *state + one.mean_gain_s * flux_w_m2;
+            *state = one.remaining * *state + one.gain_s * flux_w_m2;
+        }
+        output
+    }
+}
+
+/// The sum of products, from the first to the last.
+pub fn dot<const N: usize>(a: &[f32; N], b: &[f32; N]) -> f32 {
+    a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
+}

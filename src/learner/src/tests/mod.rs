@@ -1,0 +1,8 @@
+//! The learner against simulated contacts, an independent implementation, and properties.
+
+mod bound;
+pub mod contacts;
+mod golden;
+mod properties;
+pub mod random;
+pub mod simulation;

@@ -1,0 +1,174 @@
+//! Whether the measured flux fits any finger on the display.
+
+use crate::parameters::{FIRST_COMPONENT, Parameters, RESISTANCE, SECOND_COMPONENT, Scale};
+use crate::regressors::Measurement;
+
+/// Why a contact is not learnt from. What the words name is the most likely cause; the learner sees the flux only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Distrust {
+    /// Flux is missing or has the wrong sign: the sensor.
+    Sensor,
+    /// The flux is less than fingers give, or the contact resistance stays at its upper limit: something lies between finger
+    /// and display.
+    Between,
+    /// The contact resistance stays at its lower limit: water.
+    Wet,
+    /// The flux fitted a finger, then no longer: the finger has rolled off, or the sensor has failed.
+    Contact,
+    /// The flux fits no finger.
+    Unexplained,
+    /// A result is not a number.
+    Arithmetic,
+}
+
+/// What the output is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trust {
+    /// Learnt from less than half a second of contact; before the first contact an average finger.
+    Learning,
+    /// Learnt from half a second of contact or more.
+    Trusted,
+    /// On the way to the mean finger, or there, until the next landing.
+    Mean(Distrust),
+}
+
+/// Ticks of contact after which a finger is trusted, and a smaller innovation is tolerated.
+const TRUSTED_TICKS: u32 = 500;
+/// Time constant, in updates, of the filter of squared innovations over their variance.
+const INNOVATION_UPDATES: f32 = 8.0;
+/// Largest filtered innovation before and after [`TRUSTED_TICKS`]. Innovations are over a variance that includes the error of
+/// the model, so that those of fingers are far below 1.
+const INNOVATION_MAX: [f32; 2] = [3.0, 1.0];
+/// The same under a light force, where the contact resistance hides the finger.
+const INNOVATION_MAX_LIGHT: f32 = 20.0;
+/// Nominal contact resistance, m² K/W, above which the force is light: that of 0.48 N on the reference display.
+pub const LIGHT_RESISTANCE_M2K_W: f32 = 2.4e-3;
+/// Updates in a row that distrust needs.
+const STRANGE_IN_A_ROW: u8 = 3;
+/// Updates in a row with a parameter at a limit that distrust needs.
+const AT_LIMIT_IN_A_ROW: u8 = 30;
+/// Temperature drop, K, from which it is asked how much of it the measured flux explains.
+const DROP_MIN_K: f32 = 1.0;
+/// Part of the drop that the measured flux makes in the mean finger, below which the flux is missing.
+const EXPLAINED_BY_NO_FLUX: f32 = 0.05;
+
+/// Counts of what does not fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judge {
+    trust: Trust,
+    filtered_innovation: f32,
+    strange_innovations: u8,
+    at_limit: u8,
+}
+
+impl Judge {
+    /// Before the first contact.
+    pub const NEW: Self = Self {
+        trust: Trust::Learning,
+        filtered_innovation: 0.0,
+        strange_innovations: 0,
+        at_limit: 0,
+    };
+
+    /// What the parameters are worth.
+    pub const fn trust(&self) -> Trust {
+        self.trust
+    }
+
+    /// A new contact. Returns whether the finger is the one that was learnt before.
+    pub const fn land(&mut self) -> bool {
+        let is_known = !matches!(self.trust, Trust::Mean(_));
+        *self = Self {
+            trust: if is_known {
+                self.trust
+            } else {
+                Trust::Learning
+            },
+            ..Self::NEW
+        };
+        is_known
+    }
+
+    /// Distrusts from now on until the next landing.
+    pub const fn distrust(&mut self, why: Distrust) {
+        self.trust = Trust::Mean(why);
+    }
+
+    /// Judges an update: the squared innovation over its variance, at a nominal contact resistance, m² K/W, and so many ticks
+    /// after landing; and the parameters.
+    pub fn judge(
+        &mut self,
+        innovation: Option<f32>,
+        measurement: &Measurement,
+        (resistance_m2k_w, ticks): (f32, u32),
+        parameters: &Parameters,
+        scale: &Scale,
+    ) {
+        let Some(innovation) = innovation else {
+            return self.distrust(Distrust::Arithmetic);
+        };
+        self.filtered_innovation += (innovation - self.filtered_innovation) / INNOVATION_UPDATES;
+        let largest = if resistance_m2k_w > LIGHT_RESISTANCE_M2K_W {
+            INNOVATION_MAX_LIGHT
+        } else {
+            INNOVATION_MAX[usize::from(ticks >= TRUSTED_TICKS)]
+        };
+        let is_strange = self.filtered_innovation > largest;
+        let limit = |index: usize| {
+            if parameters[index] == scale.low[index] {
+                Some(Limit::Low)
+            } else if parameters[index] == scale.high[index] {
+                Some(Limit::High)
+            } else {
+                None
+            }
+        };
+        let resistance = limit(RESISTANCE);
+        let is_at_limit = [resistance, limit(FIRST_COMPONENT), limit(SECOND_COMPONENT)]
+            .iter()
+            .any(Option::is_some);
+        if counted(&mut self.strange_innovations, is_strange) >= STRANGE_IN_A_ROW {
+            self.distrust(self.cause(explained(measurement), ticks, resistance));
+        } else if counted(&mut self.at_limit, is_at_limit) >= AT_LIMIT_IN_A_ROW {
+            self.distrust(match resistance {
+                Some(Limit::Low) => Distrust::Wet,
+                Some(Limit::High) => Distrust::Between,
+                None => Distrust::Unexplained,
+            });
+        } else if ticks >= TRUSTED_TICKS && self.trust == Trust::Learning {
+            self.trust = Trust::Trusted;
+        }
+    }
+
+    /// The most likely cause of a flux that does not fit, with the limit at which the contact resistance is.
+    fn cause(&self, explained: Option<f32>, ticks: u32, resistance: Option<Limit>) -> Distrust {
+        let was_trusted = self.trust == Trust::Trusted && ticks >= TRUSTED_TICKS;
+        match (explained, resistance) {
+            (Some(part), _) if part < EXPLAINED_BY_NO_FLUX => Distrust::Sensor,
+            _ if was_trusted => Distrust::Contact,
+            (Some(part), Some(Limit::High)) if part < 1.0 => Distrust::Between,
+            _ => Distrust::Unexplained,
+        }
+    }
+}
+
+/// The limit at which a parameter is.
+#[derive(Clone, Copy)]
+enum Limit {
+    Low,
+    High,
+}
+
+/// Drop of temperature that the measured flux makes in the mean finger with its contact, over the drop that there is; none if
+/// that one is small.
+fn explained(measurement: &Measurement) -> Option<f32> {
+    let drop_k = measurement.drop_k;
+    (!(-DROP_MIN_K..=DROP_MIN_K).contains(&drop_k))
+        .then(|| (drop_k - measurement.residual_k) / drop_k)
+}
+
+/// Counts in a row.
+fn counted(count: &mut u8, is_so: bool) -> u8 {
+    *count = if is_so { count.saturating_add(1) } else { 0 };
+    *count
+}
