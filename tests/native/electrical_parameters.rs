@@ -89,10 +89,10 @@ fn plant_and_benches_have_the_pwm_period_of_the_firmware() {
 }
 
 /// The quantities that a bench has simulated.
-struct Simulated(&'static str, Vec<Quantity>);
+pub struct Simulated(&'static str, Vec<Quantity>);
 
 impl Simulated {
-    fn by_bench(name: &'static str, netlists: &Netlists) -> Self {
+    pub fn by_bench(name: &'static str, netlists: &Netlists) -> Self {
         let bench = benches::ALL.iter().find(|bench| bench.name == name);
         let bench = bench.unwrap_or_else(|| panic!("no bench is called {name}"));
         let quantities = (bench.run)(netlists);
@@ -102,8 +102,13 @@ impl Simulated {
         )
     }
 
+    /// All of them.
+    pub fn quantities(&self) -> &[Quantity] {
+        &self.1
+    }
+
     /// The value of the first quantity whose name begins so.
-    fn of(&self, begin: &str) -> f64 {
+    pub fn of(&self, begin: &str) -> f64 {
         let mut named = self.1.iter().filter(|of| of.name.starts_with(begin));
         let value = named.next().map(|quantity| quantity.value);
         value.unwrap_or_else(|| panic!("{} simulates no {begin}", self.0))

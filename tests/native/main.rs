@@ -7,6 +7,7 @@ mod display_modes;
 mod electrical_parameters;
 mod fidelity_populations;
 mod finger_components;
+mod flux_sensor;
 mod hold_stability;
 mod processor_faults;
 mod range_limits;

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use crate::number;
 
 /// Files of the folder `hardware/`, in the order in which decks include them.
-pub const FILES: [&str; 13] = [
+pub const FILES: [&str; 14] = [
     "parts",
     "dividers",
     "comparator",
@@ -17,6 +17,7 @@ pub const FILES: [&str; 13] = [
     "bridge",
     "mirror",
     "force",
+    "flux",
     "ground",
     "leakage",
     "multiplexer",

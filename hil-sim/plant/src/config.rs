@@ -8,7 +8,7 @@ use super::contact::ContactLaw;
 use super::finger::{FingerParams, Vessels};
 use super::object::ObjectConfig;
 use super::parameters::{self, ParameterError};
-use super::sensors::SensorParams;
+use super::sensors::{FluxParams, SensorParams};
 use super::slab::{BackBoundary, Layer};
 use super::supply::SupplyParams;
 use super::tile::TileParams;
@@ -47,6 +47,8 @@ pub struct Params {
     pub tile: TileParams,
     /// Sensors and converter.
     pub sensors: SensorParams,
+    /// Heat-flux sensor on the display; none if it is not fitted.
+    pub flux: Option<FluxParams>,
     /// Power stage.
     pub bridge: BridgeParams,
     /// Comparator that cuts the supply of the power stage.
@@ -84,6 +86,7 @@ impl Params {
             contact: ContactLaw::NOMINAL,
             tile: TileParams::NOMINAL,
             sensors: SensorParams::NOMINAL,
+            flux: None,
             bridge: BridgeParams::NOMINAL,
             comparator: ComparatorParams::NOMINAL,
             supply: SupplyParams::NOMINAL,

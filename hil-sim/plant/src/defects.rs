@@ -2,7 +2,7 @@
 
 use super::bridge::BridgeDefects;
 use super::comparator::ComparatorDefects;
-use super::sensors::SensorDefects;
+use super::sensors::{FluxDefect, SensorDefects};
 use super::supply::SupplyDefects;
 use super::tile::{CoolingDefects, ModuleDefect};
 
@@ -11,6 +11,8 @@ use super::tile::{CoolingDefects, ModuleDefect};
 pub struct Defects {
     /// Sensors in front of the converter.
     pub sensors: SensorDefects,
+    /// Heat-flux sensor, where one is fitted.
+    pub flux: FluxDefect,
     /// Power stage.
     pub bridge: BridgeDefects,
     /// Comparator.

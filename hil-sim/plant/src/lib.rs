@@ -29,7 +29,7 @@ pub use defects::Defects;
 use energy::Energy;
 use finger::Vessels;
 pub use sample::SampleTouch;
-use sensors::{BONDED, CHANNELS, Channel, SensorInputs, SensorReadings, Sensors};
+use sensors::{BONDED, CHANNELS, Channel, FluxSensor, SensorInputs, SensorReadings, Sensors};
 use slab::{DepthProbe, Grading, Slab, steady_state};
 use supply::Supply;
 pub use thermal::Finger;
@@ -67,6 +67,8 @@ pub struct Plant {
     heat: ThermalModel,
     receptors: [Option<DepthProbe>; RECEPTORS_M.len()],
     sensors: Sensors,
+    /// Heat-flux sensor on the display, if it is fitted.
+    flux: Option<FluxSensor>,
     /// Surface temperature of the skin beside the skin thermistor, deg C, if it is not that on the display.
     skin_elsewhere_c: Option<f64>,
     /// Number of steps made.
@@ -129,6 +131,8 @@ impl Plant {
             supply_counts: 0.0,
         };
         let sensors = Sensors::new(params.sensors, &at_rest, config.seed);
+        let flux = (params.flux)
+            .map(|flux| FluxSensor::new(flux, air_flux_w_m2(&heat, config.room_c), config.seed));
         Ok(Self {
             start_s: config.start_s,
             appears_s: config.appears_s,
@@ -157,6 +161,7 @@ impl Plant {
             heat,
             receptors: RECEPTORS_M.map(|depth_m| DepthProbe::at(&finger, depth_m)),
             sensors,
+            flux,
             skin_elsewhere_c: None,
             steps: 0,
             force_n: 0.0,
@@ -189,6 +194,9 @@ impl Plant {
         self.comparator.set_defects(&defects.comparator);
         self.heat.set_cooling(&defects.cooling);
         self.heat.set_module(defects.module);
+        if let Some(flux) = &mut self.flux {
+            flux.set_defect(defects.flux);
+        }
     }
 
     /// Sets the test of the comparator.
@@ -247,9 +255,12 @@ impl Plant {
         self.supply.sensed_v()
     }
 
-    /// Reseeds the noise of the A/D converter; its non-linearity, which belongs to the device, stays.
+    /// Reseeds the noise of the A/D converters; their non-linearity, which belongs to the device, stays.
     pub fn reseed_noise(&mut self, seed: u64) {
         self.sensors.reseed_noise(seed);
+        if let Some(flux) = &mut self.flux {
+            flux.reseed_noise(seed);
+        }
     }
 
     /// Advances by [`STEP_S`] under constant bridge outputs.
@@ -270,8 +281,19 @@ impl Plant {
             Output::Open => (BridgeOutputs::default(), None),
             Output::Resistor(ohm) => (BridgeOutputs::default(), Some(ohm)),
         };
+        let before_j = self.heat.energy().from_finger_j;
         for index in substeps::of_step(self.steps_since_change) {
             self.heat.step(index, &mut self.bridge, &tile_legs);
+        }
+        if let Some(flux) = &mut self.flux {
+            let mean_w_m2 = match self.on_display {
+                Some(contact) => {
+                    let taken_j = self.heat.energy().from_finger_j - before_j;
+                    taken_j / (contact.area_m2 * STEP_S)
+                }
+                None => air_flux_w_m2(&self.heat, self.room_c),
+            };
+            flux.step(STEP_S, mean_w_m2);
         }
         self.bridge_current = match load_ohm {
             None => self.heat.tile().current(),
@@ -333,7 +355,12 @@ impl Plant {
                 ..contact
             })
         };
-        let (on_display, on_object) = (at_force(display), at_force(object).filter(|_| present));
+        let layer_m2k_w = (self.flux.as_ref()).map_or(0.0, FluxSensor::resistance_m2k_w);
+        let on_display = at_force(display).map(|contact| SkinContact {
+            resistance_m2k_w: contact.resistance_m2k_w + layer_m2k_w,
+            ..contact
+        });
+        let on_object = at_force(object).filter(|_| present);
         if contact::is_abrupt(self.on_display, on_display)
             || contact::is_abrupt(self.on_object, on_object)
         {
@@ -354,6 +381,20 @@ impl Plant {
     /// Converts all channels in scan order; the codes are those of [`convert`](Self::convert).
     pub fn convert_scan(&mut self) -> [u16; CHANNELS] {
         self.sensors.convert_scan()
+    }
+
+    /// Code of the heat-flux sensor at the end of the last step, 0 to 4095; none if it is not fitted. Its converter samples once
+    /// a step.
+    #[must_use]
+    pub fn flux_code(&self) -> Option<u16> {
+        self.flux.as_ref().map(FluxSensor::code)
+    }
+
+    /// Flux that the heat-flux sensor is under, mean of the last step, W/m2: out of the skin, or without contact out of the air,
+    /// into the display. None if it is not fitted.
+    #[must_use]
+    pub fn flux_w_m2(&self) -> Option<f64> {
+        self.flux.as_ref().map(FluxSensor::flux_w_m2)
     }
 
     /// Whether driver or comparator pull nFAULT low.
@@ -381,7 +422,7 @@ impl Plant {
         self.force_n
     }
 
-    /// True surface temperature of the display, deg C.
+    /// True surface temperature of the display, deg C; that of the plate's face under the heat-flux sensor, if it is fitted.
     #[must_use]
     pub fn display_c(&self) -> f64 {
         self.heat.display_c()
@@ -408,8 +449,9 @@ impl Plant {
     }
 
     /// Surface temperature of a display on which the skin would be as warm as it is on the real object, deg C: that skin less
-    /// the heat that flows into the object times the contact resistance of the display. For half-spaces under a constant
-    /// force this is Eq. 6-12. None in the step before a contact and without one.
+    /// the heat that flows into the object times the resistance between display and skin, the layer of a heat-flux sensor
+    /// included. For half-spaces under a constant force, without that layer, this is Eq. 6-12. None in the step before a
+    /// contact and without one.
     #[must_use]
     pub fn exact_display_c(&self) -> Option<f64> {
         let display = self.on_display?;
@@ -449,6 +491,11 @@ impl Plant {
     pub fn energy(&self) -> Energy {
         self.heat.energy()
     }
+}
+
+/// Heat flux out of the air into the display where it is not touched, W/m2.
+fn air_flux_w_m2(heat: &ThermalModel, room_c: f64) -> f64 {
+    heat.tile().film_w_m2k() * (room_c - heat.display_c())
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The whole plant with the mesh and the steps of every simulation.
 
+mod flux;
 mod layered;
 mod reference;
 

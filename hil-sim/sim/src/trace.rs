@@ -7,7 +7,7 @@ use std::path::Path;
 
 use thermal_client::client::Telemetry;
 use thermal_plant::infrared::Reading;
-use thermal_plant::sensors::SensorReadings;
+use thermal_plant::sensors::{FluxParams, SensorReadings};
 use thermal_plant::{Finger, Plant, RECEPTORS_M};
 
 /// Number of rows without telemetry, and of telemetry lines without a row, that are kept for matching.
@@ -37,6 +37,9 @@ pub struct TraceRow {
     pub sink_c: f64,
     /// Current through the module, A.
     pub current_a: f64,
+    /// Heat flux under the sensor for it, mean of the last step, and the sensor's reading at the nominal gain, W/m2; `None`
+    /// if it is not fitted.
+    pub flux_w_m2: Option<[f64; 2]>,
     /// Sensor outputs before the converter.
     pub taken: SensorReadings,
     /// Sensed supply of the bridge, V.
@@ -64,6 +67,7 @@ impl TraceRow {
             receptors_real_c: plant.receptors_c(Finger::OnObject),
             sink_c: plant.sink_c(),
             current_a: plant.current_a(),
+            flux_w_m2: flux_w_m2(plant),
             taken: plant.sensor_readings(),
             supply_v: plant.sensed_supply_v(),
             fault_line: plant.bridge_fault(),
@@ -71,6 +75,13 @@ impl TraceRow {
             device: None,
         }
     }
+}
+
+fn flux_w_m2(plant: &Plant) -> Option<[f64; 2]> {
+    Some([
+        plant.flux_w_m2()?,
+        FluxParams::read_w_m2(plant.flux_code()?),
+    ])
 }
 
 /// Rows of a run, each with the telemetry of the tick before it.
@@ -139,10 +150,11 @@ impl Trace {
     /// The writer's.
     pub fn write_to(&self, writer: impl io::Write) -> io::Result<()> {
         let has_camera = self.rows.iter().any(|row| row.camera.is_some());
+        let has_flux = self.rows.iter().any(|row| row.flux_w_m2.is_some());
         let columns = || {
-            COLUMNS
-                .iter()
-                .chain(CAMERA_COLUMNS.iter().filter(|_| has_camera))
+            let camera = CAMERA_COLUMNS.iter().filter(|_| has_camera);
+            let flux = FLUX_COLUMNS.iter().filter(|_| has_flux);
+            COLUMNS.iter().chain(camera).chain(flux)
         };
         let mut csv = csv::Writer::from_writer(writer);
         csv.write_record(columns().map(|(name, _)| name))?;
@@ -209,6 +221,16 @@ const CAMERA_COLUMNS: [Column; 2] = [
     }),
     ("camera_skin_c", |row| {
         optional_cell(row.camera.map(|reading| reading.recovered_c), 6)
+    }),
+];
+
+/// Additional columns of a run with a heat-flux sensor.
+const FLUX_COLUMNS: [Column; 2] = [
+    ("flux_w_m2", |row| {
+        optional_cell(row.flux_w_m2.map(|[flux, _]| flux), 3)
+    }),
+    ("flux_sensor_w_m2", |row| {
+        optional_cell(row.flux_w_m2.map(|[_, reading]| reading), 3)
     }),
 ];
 

@@ -218,6 +218,12 @@ impl World {
         };
     }
 
+    /// Code of the heat-flux sensor at the end of the last step, 0 to 4095; none if it is not fitted.
+    #[must_use]
+    pub fn flux_code(&self) -> Option<u16> {
+        self.plant.flux_code()
+    }
+
     /// Whether nFAULT is low, pulled by the bridge driver or the comparator.
     #[must_use]
     pub fn bridge_fault(&self) -> bool {

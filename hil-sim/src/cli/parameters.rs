@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use thermal_plant::Params;
 use thermal_plant::finger::FingerParams;
 use thermal_plant::parameters::{self, Parameter};
+use thermal_plant::sensors::FluxParams;
 
 use super::Failure;
 
@@ -17,6 +18,9 @@ pub struct Arguments {
     /// Tissue of the finger
     #[arg(long, value_enum, default_value_t = Tissue::Homogeneous)]
     tissue: Tissue,
+    /// With a heat-flux sensor on the display
+    #[arg(long)]
+    flux_sensor: bool,
     /// Print one JSON array
     #[arg(long)]
     json: bool,
@@ -36,6 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.tissue == Tissue::Layered {
         params.finger = FingerParams::layered();
     }
+    params.flux = arguments.flux_sensor.then_some(FluxParams::NOMINAL);
     let mut all = parameters::all(&params);
     if let Some(seed) = arguments.draw {
         parameters::draw(&mut params, seed);

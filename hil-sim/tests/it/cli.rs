@@ -347,6 +347,10 @@ fn parameters_are_printed_with_limits_and_drawn_alike_by_one_seed() {
     );
     let layered = read(&["--tissue", "layered"]);
     assert!(layered.len() > nominal.len());
+    let fitted = read(&["--flux-sensor"]);
+    let flux = fitted.iter().filter(|row| row["key"].starts_with("flux."));
+    assert_eq!(flux.count(), 6);
+    assert_eq!(fitted.len(), nominal.len() + 6);
     let drawn = read(&["--draw", "4"]);
     assert_eq!(drawn, read(&["--draw", "4"]));
     assert_ne!(drawn, read(&["--draw", "5"]));

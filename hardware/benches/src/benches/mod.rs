@@ -5,6 +5,7 @@ mod dividers;
 mod edges;
 mod faults;
 mod five_fingers;
+mod flux;
 mod force;
 mod ground;
 mod leakage;
@@ -48,7 +49,7 @@ pub struct Bench {
 }
 
 /// All benches.
-pub const ALL: [Bench; 16] = [
+pub const ALL: [Bench; 17] = [
     thresholds::BENCH,
     self_test::BENCH,
     faults::BENCH,
@@ -60,6 +61,7 @@ pub const ALL: [Bench; 16] = [
     current_measurement::BENCH,
     dividers::BENCH,
     force::BENCH,
+    flux::BENCH,
     ground::BENCH,
     leakage::BENCH,
     multiplexer::BENCH,

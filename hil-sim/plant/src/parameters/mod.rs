@@ -10,6 +10,7 @@ mod contact;
 mod entry;
 mod finger;
 mod finger_draw;
+mod flux;
 mod host;
 mod sensors;
 mod supply;
@@ -138,7 +139,8 @@ pub fn all(params: &Params) -> Vec<Parameter> {
     entries(&mut params).iter().map(Entry::parameter).collect()
 }
 
-/// Sets the parameter of a key. Optional parts that the finger lacks (layers, core, vessels) have no keys.
+/// Sets the parameter of a key. Parts that are not there (layers, core and vessels of the finger, the
+/// heat-flux sensor) have no keys.
 ///
 /// # Errors
 /// The key is unknown or the value out of range; nothing is changed then.
@@ -191,6 +193,7 @@ fn entries(params: &mut Params) -> Vec<Entry<'_>> {
         contact,
         tile,
         sensors,
+        flux,
         bridge,
         comparator,
         supply,
@@ -204,6 +207,7 @@ fn entries(params: &mut Params) -> Vec<Entry<'_>> {
     all.extend(comparator::entries(comparator));
     all.extend(supply::entries(supply));
     all.extend(sensors::entries(sensors));
+    all.extend(flux.iter_mut().flat_map(flux::entries));
     all.extend(host::entries(host));
     all
 }

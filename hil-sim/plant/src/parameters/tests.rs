@@ -3,11 +3,19 @@ use std::collections::HashSet;
 use super::*;
 use crate::contact::ContactLaw;
 use crate::finger::FingerParams;
+use crate::sensors::FluxParams;
 
 fn layered() -> Params {
     Params {
         finger: FingerParams::layered(),
         ..Params::nominal()
+    }
+}
+
+fn with_flux_sensor() -> Params {
+    Params {
+        flux: Some(FluxParams::NOMINAL),
+        ..layered()
     }
 }
 
@@ -21,7 +29,7 @@ fn numbers(params: &Params) -> Vec<f64> {
 
 #[test]
 fn every_field_has_exactly_one_parameter() {
-    for params in [Params::nominal(), layered()] {
+    for params in [Params::nominal(), layered(), with_flux_sensor()] {
         let all = all(&params);
         assert_eq!(numbers(&params).len(), all.len());
         let keys: HashSet<_> = all.iter().map(|parameter| &parameter.key).collect();
@@ -39,7 +47,7 @@ fn every_field_has_exactly_one_parameter() {
 
 #[test]
 fn keys_reach_the_fields_they_name() {
-    let params = layered();
+    let params = with_flux_sensor();
     for parameter in all(&params) {
         let field = parameter.key.rsplit('.').next().expect("a name");
         let mut changed = params.clone();
@@ -71,7 +79,7 @@ fn keys_reach_the_fields_they_name() {
 
 #[test]
 fn nominal_values_are_allowed_and_within_their_tolerance() {
-    for params in [Params::nominal(), layered()] {
+    for params in [Params::nominal(), layered(), with_flux_sensor()] {
         for p in all(&params) {
             assert!(p.least <= p.low && p.low <= p.value, "{p:?}");
             assert!(p.value <= p.high && p.high <= p.most, "{p:?}");
@@ -86,7 +94,7 @@ fn nominal_values_are_allowed_and_within_their_tolerance() {
 
 #[test]
 fn draws_follow_their_distribution_within_the_tolerance() {
-    let nominal = layered();
+    let nominal = with_flux_sensor();
     let limits = all(&nominal);
     const DRAWS: u64 = 2000;
     let drawn: Vec<Vec<f64>> = (0..DRAWS)
@@ -170,6 +178,12 @@ fn draws_depend_on_seed_and_key_only() {
         (many.display, many.finger.surface)
     );
     assert_eq!(few.finger.air_w_m2k, 0.0, "no air film appears");
+    // Nor does a heat-flux sensor.
+    let fitted = Params {
+        flux: None,
+        ..draw_of(with_flux_sensor(), 7)
+    };
+    assert_eq!(many, fitted);
 }
 
 #[test]

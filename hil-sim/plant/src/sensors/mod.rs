@@ -4,6 +4,7 @@
 
 mod converter;
 mod defects;
+mod flux;
 mod lag;
 mod params;
 mod thermistor;
@@ -13,6 +14,8 @@ use rand::rngs::Xoshiro256PlusPlus;
 
 pub use converter::ConverterParams;
 pub use defects::{Circuit, ForceDefect, SensorDefects, ThermistorDefect};
+pub(crate) use flux::FluxSensor;
+pub use flux::{FluxCircuit, FluxDefect, FluxParams};
 pub(crate) use params::BONDED;
 pub use params::{ForceParams, MirrorParams, ReferenceParams, SensorParams};
 pub use thermistor::ThermistorParams;

@@ -154,6 +154,12 @@ impl Tile {
         }
     }
 
+    /// Film coefficient of air on the display plate, W/(m2 K).
+    #[must_use]
+    pub const fn film_w_m2k(&self) -> f64 {
+        self.params.film_w_m2k
+    }
+
     /// Updates the properties of the legs for the middle of the coming step, s.
     pub fn prepare(&mut self, step_s: f64) {
         let (all_ohm, all_w_k, all_v_k) = (

@@ -50,6 +50,7 @@ pub(super) struct Trigger {
 pub(super) struct Device {
     pub commissioned: bool,
     pub finger: Option<AssumedFinger>,
+    pub flux_sensor: bool,
     pub brown_out_level: Option<Spanned<u32>>,
     pub lsi_hz: Option<Spanned<u32>>,
     pub external_clock: bool,
@@ -74,6 +75,7 @@ impl Default for Device {
         Self {
             commissioned: true,
             finger: None,
+            flux_sensor: false,
             brown_out_level: None,
             lsi_hz: None,
             external_clock: true,

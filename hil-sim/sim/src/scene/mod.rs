@@ -175,11 +175,12 @@ impl Scene {
     }
 
     /// Whether Eq. 3-1 or Eq. 6-12 give the exact set-point: Eq. 3-1 in its mode, Eq. 6-12 if the finger is the thesis's,
-    /// without a film of air, and the object a half-space.
+    /// without a film of air, the object a half-space, and no layer of a heat-flux sensor between them.
     #[must_use]
     pub fn has_closed_form(&self) -> bool {
+        let finger_is_thesiss = self.nominal.finger == FingerParams::homogeneous();
         self.mode == ContactModel::SemiInfinite
-            || (self.object.is_half_space() && self.nominal.finger == FingerParams::homogeneous())
+            || (self.object.is_half_space() && finger_is_thesiss && self.nominal.flux.is_none())
     }
 
     /// The exact set-point for a nominal finger of known temperature before contact, °C, `since_s` after it landed with

@@ -49,7 +49,12 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         file::Mode::SemiInfinite => ContactModel::SemiInfinite,
     };
     let (faults, injections) = faults(&source, &file.fault, duration_s, file.seed)?;
-    let (nominal, params, draws) = params(&source, file.finger.as_ref(), file.plant.as_ref())?;
+    let (nominal, params, draws) = params(
+        &source,
+        file.finger.as_ref(),
+        file.plant.as_ref(),
+        file.device.flux_sensor,
+    )?;
     let scene = Scene {
         duration_s,
         settle_s,

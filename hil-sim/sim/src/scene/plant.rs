@@ -6,6 +6,7 @@ use contact_model::material::SKIN;
 use thermal_plant::Params;
 use thermal_plant::finger::{BLOOD_J_M3K, FingerParams, Vessels};
 use thermal_plant::parameters::{self, FingerDraw};
+use thermal_plant::sensors::FluxParams;
 use thermal_plant::slab::{Layer, Medium};
 use toml::Spanned;
 
@@ -13,14 +14,16 @@ use super::Draws;
 use super::file::{self, NodeNumber, ParameterNode};
 use super::source::{SceneError, Source};
 
-/// The nominal parameters, with the scene's finger; the same drawn, then overridden by the values of the scene; and what was
+/// The nominal parameters, with the scene's finger and its heat-flux sensor; the same drawn, then overridden by the values of the scene; and what was
 /// drawn.
 pub(super) fn params(
     source: &Source<'_>,
     finger: Option<&Spanned<file::Finger>>,
     plant: Option<&Spanned<ParameterNode>>,
+    flux_sensor: bool,
 ) -> Result<(Params, Params, Draws), SceneError> {
     let (mut params, mut draws) = (Params::nominal(), Draws::default());
+    params.flux = flux_sensor.then_some(FluxParams::NOMINAL);
     if let Some(finger) = finger {
         tissue(source, finger.get_ref(), &mut params)?;
         finger_values(source, finger.get_ref(), &mut params)?;

@@ -1,11 +1,13 @@
 //! The display error: display minus the exact set-point of a nominal finger on the object as it is.
 
+use contact_model::material::{SKIN, find};
+use thermal_plant::contact::ContactLaw;
 use thermal_sim::World;
 use thermal_sim::engine::NativeEngine;
 use thermal_sim::metrics::{display_errors, figures};
 use thermal_sim::run::run;
 
-use super::{example, scene};
+use super::{at, example, rows, scene};
 
 const GRANITE: &str =
     "duration_s = 4\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"granite\"\n";
@@ -40,6 +42,30 @@ fn exact_setpoints_of_layers_that_make_a_half_space_are_those_of_eq_6_12() {
         let bound_k = if *t_s < 0.52 { 0.05 } else { 2e-3 };
         assert!(off_k.abs() < bound_k, "off by {off_k} K at {t_s} s");
     }
+}
+
+/// The layer of a heat-flux sensor is in series with the contact: where `q` flows into the object, the display must be colder by
+/// 3e-5 m2 K/W times `q`.
+#[test]
+fn the_exact_setpoint_has_the_layer_of_a_heat_flux_sensor_in_it() {
+    let closed_form = exact_setpoints(&format!("{GRANITE}{FORCE}"));
+    let text = format!("{GRANITE}[device]\nflux_sensor = true\n{FORCE}");
+    let fitted = exact_setpoints(&text);
+    let surface = &find("granite").expect("a material").surface;
+    let contact = ContactLaw::NOMINAL.at_force(2.0, &SKIN.surface, surface);
+    let resistance_m2k_w = contact.expect("a contact").resistance_m2k_w;
+    let rows = rows(&text);
+    for ((t_s, exact_c), (fitted_s, fitted_c)) in closed_form[1..].iter().zip(fitted) {
+        assert_eq!(*t_s, fitted_s);
+        let row = at(&rows, *t_s);
+        let flux_w_m2 = (row.skin_real_c - row.object_real_c) / resistance_m2k_w;
+        let off_k = fitted_c + 3e-5 * flux_w_m2 - exact_c;
+        let bound_k = if *t_s < 0.52 { 0.05 } else { 2e-3 };
+        assert!(off_k.abs() < bound_k, "off by {off_k} K at {t_s} s");
+    }
+    let last = rows.last().expect("rows");
+    let colder_k = 3e-5 * (last.skin_real_c - last.object_real_c) / resistance_m2k_w;
+    assert!((0.05..0.2).contains(&colder_k), "{colder_k} K");
 }
 
 /// With the finger and the object that the device is told, what is left is how well the display follows.

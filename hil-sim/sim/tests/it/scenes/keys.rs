@@ -4,6 +4,7 @@ use contact_model::material::find;
 use thermal_plant::contact::ContactLaw;
 use thermal_plant::finger::{FingerParams, Vessels};
 use thermal_plant::object::ObjectConfig;
+use thermal_plant::sensors::FluxParams;
 use thermal_plant::{Params, parameters};
 use thermal_sim::World;
 use thermal_sim::engine::NativeEngine;
@@ -68,6 +69,36 @@ fn own_values_override_a_draw_wherever_they_stand() {
         params("[finger]\ntissue = \"layered\"\nair_w_m2k = 7\n[plant]\ndraw = 3\n").finger;
     assert_eq!(finger.air_w_m2k, 7.0);
     assert_ne!(finger.layers, FingerParams::layered().layers);
+}
+
+#[test]
+fn a_heat_flux_sensor_is_fitted_on_request_and_has_its_own_keys() {
+    const FITTED: &str = "[device]\nflux_sensor = true\n";
+    let nominal = Some(FluxParams::NOMINAL);
+    assert_eq!(params(FITTED).flux, nominal);
+    let mut slow = FluxParams::NOMINAL;
+    slow.lag_s = 0.1;
+    let keys = format!("{FITTED}[plant]\nflux.lag_s = 0.1\n");
+    assert_eq!(params(&keys).flux, Some(slow));
+    // It is drawn with the plant, of which nothing else is drawn otherwise.
+    let (with, without) = (
+        params(&format!("{FITTED}[plant]\ndraw = 3\n")),
+        params("[plant]\ndraw = 3\n"),
+    );
+    assert!(with.flux.is_some() && with.flux != nominal);
+    assert_eq!(Params { flux: None, ..with }, without);
+
+    let header = |tables: &str| {
+        let scene = scene(&format!("{HEAD}{tables}"));
+        let mut engine = NativeEngine::new(World::new(&scene).expect("a plant"));
+        let outcome = run(&scene, &mut engine, |_| ()).expect("the device takes the scene");
+        let mut csv = Vec::new();
+        outcome.trace.write_to(&mut csv).expect("memory");
+        let text = String::from_utf8(csv).expect("text");
+        text.lines().next().expect("a header").to_owned()
+    };
+    let (with, without) = (header(FITTED), header(""));
+    assert_eq!(with, without + ",flux_w_m2,flux_sensor_w_m2");
 }
 
 #[test]
