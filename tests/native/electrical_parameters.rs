@@ -95,7 +95,7 @@ impl Simulated {
     pub fn by_bench(name: &'static str, netlists: &Netlists) -> Self {
         let bench = benches::ALL.iter().find(|bench| bench.name == name);
         let bench = bench.unwrap_or_else(|| panic!("no bench is called {name}"));
-        let quantities = (bench.run)(netlists);
+        let quantities = bench.run(netlists);
         Self(
             name,
             quantities.unwrap_or_else(|error| panic!("{name}: {error:#}")),

@@ -88,7 +88,7 @@ fn run(cli: &Cli) -> Result<bool> {
     if ngspice::is_installed() {
         let netlists = Netlists::load()?;
         for bench in benches {
-            let quantities = (bench.run)(&netlists)?;
+            let quantities = bench.run(&netlists)?;
             let report = Report {
                 bench: bench.name,
                 title: bench.title,

@@ -3,7 +3,6 @@
 use hardware_benches::benches::ALL;
 use hardware_benches::netlist::Netlists;
 use hardware_benches::ngspice;
-use hardware_benches::quantity::Quantity;
 
 /// Whether ngspice is there; where not, says that nothing is simulated.
 fn can_simulate() -> bool {
@@ -21,7 +20,7 @@ fn every_simulated_quantity_is_allowed() {
     }
     let netlists = Netlists::load().unwrap();
     for bench in ALL {
-        let quantities = (bench.run)(&netlists).unwrap();
+        let quantities = bench.run(&netlists).unwrap();
         assert!(!quantities.is_empty(), "{}", bench.name);
         for quantity in quantities {
             assert!(quantity.holds(), "{}: {quantity:?}", bench.name);
@@ -37,9 +36,7 @@ fn every_bench_fails_on_its_broken_circuit() {
     let netlists = Netlists::load().unwrap();
     for bench in ALL {
         let broken = (bench.broken)(&netlists).unwrap();
-        let result = (bench.run)(&broken);
-        // A measurement that fails, because an event never comes, is a failure too.
-        let passes = result.is_ok_and(|quantities| quantities.iter().all(Quantity::holds));
-        assert!(!passes, "{} does not notice its broken circuit", bench.name);
+        let notices = bench.fails(&broken);
+        assert!(notices, "{} does not notice its broken circuit", bench.name);
     }
 }

@@ -27,14 +27,56 @@ pub fn run_1_ms<E: Engine>(engine: &mut E, bytes: &[u8]) -> Result<(), E::Stop> 
     Ok(())
 }
 
-/// A line to the device of an engine. Time passes only while its owner waits for lines.
-#[derive(Debug)]
-pub struct SimulatedLink<'a, E> {
-    engine: &'a mut E,
+/// Both directions of a line in virtual time, which passes only while its owner waits for lines.
+#[derive(Debug, Default)]
+pub struct VirtualLine {
     to_send: Vec<u8>,
     splitter: LineSplitter,
     received: VecDeque<ReceivedLine>,
     ms: u64,
+}
+
+impl VirtualLine {
+    /// Keeps bytes for the next millisecond.
+    pub fn send(&mut self, bytes: &[u8]) {
+        self.to_send.extend(bytes);
+    }
+
+    /// The next line, or `None` after `timeout`. `run_1_ms` runs the device for a millisecond in which it is sent the bytes of the
+    /// first argument, and appends what it has sent to the second.
+    ///
+    /// # Errors
+    /// Those of `run_1_ms`.
+    pub fn receive(
+        &mut self,
+        timeout: Duration,
+        mut run_1_ms: impl FnMut(&[u8], &mut Vec<u8>) -> Result<(), LinkError>,
+    ) -> Result<Option<ReceivedLine>, LinkError> {
+        let end = self.now() + timeout;
+        while self.received.is_empty() && self.now() < end {
+            let bytes = std::mem::take(&mut self.to_send);
+            run_1_ms(&bytes, self.splitter.received())?;
+            self.ms += 1;
+            let at = self.now();
+            let lines = self.splitter.complete().into_iter();
+            self.received
+                .extend(lines.map(|text| ReceivedLine { text, at }));
+        }
+        Ok(self.received.pop_front())
+    }
+
+    /// Time since the beginning.
+    #[must_use]
+    pub const fn now(&self) -> Duration {
+        Duration::from_millis(self.ms)
+    }
+}
+
+/// A line to the device of an engine. Time passes only while its owner waits for lines.
+#[derive(Debug)]
+pub struct SimulatedLink<'a, E> {
+    engine: &'a mut E,
+    line: VirtualLine,
 }
 
 impl<'a, E: Engine> SimulatedLink<'a, E> {
@@ -42,10 +84,7 @@ impl<'a, E: Engine> SimulatedLink<'a, E> {
     pub fn new(engine: &'a mut E) -> Self {
         Self {
             engine,
-            to_send: Vec::new(),
-            splitter: LineSplitter::default(),
-            received: VecDeque::new(),
-            ms: 0,
+            line: VirtualLine::default(),
         }
     }
 
@@ -57,26 +96,20 @@ impl<'a, E: Engine> SimulatedLink<'a, E> {
 
 impl<E: Engine> Link for SimulatedLink<'_, E> {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
-        self.to_send.extend(bytes);
+        self.line.send(bytes);
         Ok(())
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
-        let end = self.now() + timeout;
-        while self.received.is_empty() && self.now() < end {
-            let bytes = std::mem::take(&mut self.to_send);
-            run_1_ms(self.engine, &bytes).map_err(|stop| LinkError::Gone(stop.to_string()))?;
-            self.ms += 1;
-            self.engine.receive(self.splitter.received());
-            let at = self.now();
-            let lines = self.splitter.complete().into_iter();
-            self.received
-                .extend(lines.map(|text| ReceivedLine { text, at }));
-        }
-        Ok(self.received.pop_front())
+        let engine = &mut *self.engine;
+        self.line.receive(timeout, |bytes, received| {
+            run_1_ms(engine, bytes).map_err(|stop| LinkError::Gone(stop.to_string()))?;
+            engine.receive(received);
+            Ok(())
+        })
     }
 
     fn now(&self) -> Duration {
-        Duration::from_millis(self.ms)
+        self.line.now()
     }
 }

@@ -1,12 +1,11 @@
 //! The simulated device of a bench: with one finger or with five, commissioned, and switched on anew for each trial.
 
-use std::collections::VecDeque;
 use std::time::Duration;
 
 use contact_model::material::MATERIALS;
 use thermal_client::client::Client;
 use thermal_client::commissioning;
-use thermal_client::link::{LineSplitter, Link, LinkError, ReceivedLine};
+use thermal_client::link::{Link, LinkError, ReceivedLine};
 use thermal_device::{PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_STEPS_PER_SECOND};
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::parameters::stream_seed;
@@ -17,7 +16,7 @@ use thermal_sim::commissioning::settings_for_device;
 use thermal_sim::engine::{Engine, NativeEngine, NativeFiveFingers};
 use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine};
 use thermal_sim::scene::ActiveFault;
-use thermal_sim::simulated_link::run_1_ms;
+use thermal_sim::simulated_link::{VirtualLine, run_1_ms};
 
 use crate::BenchError;
 
@@ -227,10 +226,7 @@ impl RunningDevice {
 pub struct DeviceLink {
     device: RunningDevice,
     force_n: f64,
-    to_send: Vec<u8>,
-    splitter: LineSplitter,
-    received: VecDeque<ReceivedLine>,
-    ms: u64,
+    line: VirtualLine,
 }
 
 impl DeviceLink {
@@ -239,10 +235,7 @@ impl DeviceLink {
         Self {
             device,
             force_n: 0.0,
-            to_send: Vec::new(),
-            splitter: LineSplitter::default(),
-            received: VecDeque::new(),
-            ms: 0,
+            line: VirtualLine::default(),
         }
     }
 
@@ -259,30 +252,24 @@ impl DeviceLink {
 
 impl Link for DeviceLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
-        self.to_send.extend(bytes);
+        self.line.send(bytes);
         Ok(())
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
-        let end = self.now() + timeout;
-        while self.received.is_empty() && self.now() < end {
-            let bytes = std::mem::take(&mut self.to_send);
-            let input = FingerInput {
-                force_n: self.force_n,
-                skin_elsewhere_c: None,
-            };
-            self.device.run_1_ms(&bytes, &[input], &[]);
-            self.ms += 1;
-            self.device.receive(self.splitter.received());
-            let at = self.now();
-            let lines = self.splitter.complete().into_iter();
-            self.received
-                .extend(lines.map(|text| ReceivedLine { text, at }));
-        }
-        Ok(self.received.pop_front())
+        let input = FingerInput {
+            force_n: self.force_n,
+            skin_elsewhere_c: None,
+        };
+        let device = &mut self.device;
+        self.line.receive(timeout, |bytes, received| {
+            device.run_1_ms(bytes, &[input], &[]);
+            device.receive(received);
+            Ok(())
+        })
     }
 
     fn now(&self) -> Duration {
-        Duration::from_millis(self.ms)
+        self.line.now()
     }
 }

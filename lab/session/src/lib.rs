@@ -25,5 +25,5 @@ pub use schedule::{Next, OtherSession, Schedule};
 pub use session::{
     ANALYSES, Answer, AnswerKind, ContactRule, CorrectAnswer, DeviceSetup, PUBLISHED_TABLES,
     Procedure, Quantity, Rest, RestPlace, Score, Session, StaircaseRule, Station, TrialRules,
-    VoidRules,
+    VoidRules, skin_sensors,
 };

@@ -100,8 +100,7 @@ impl Session {
     /// The fingers of the device whose skin thermistors measure in a trial, in ascending order.
     #[must_use]
     pub fn skin_sensors(&self, trial: &PlannedTrial) -> Vec<u8> {
-        let stations = trial.presented.iter().enumerate();
-        ascending(stations.filter_map(|(station, presented)| self.skin_sensor(station, presented)))
+        ascending(skin_sensors(&self.stations, &trial.presented))
     }
 
     /// The fingers of the device that report in a trial, in ascending order: those that present something, and those whose skin
@@ -137,13 +136,18 @@ impl Session {
 impl Station {
     /// The finger of the device whose skin thermistor measures what the station presents: that of the key `skin_sensor`, otherwise
     /// that of the display. `None` where it presents nothing.
-    #[must_use]
-    pub fn skin_sensor_at(&self, presented: &Presented) -> Option<u8> {
+    fn skin_sensor_at(&self, presented: &Presented) -> Option<u8> {
         if *presented == Presented::Nothing {
             return None;
         }
         self.skin_sensor.or_else(|| presented.device_finger())
     }
+}
+
+/// The fingers of the device whose skin thermistors measure what stations present, in the order of the stations.
+pub fn skin_sensors(stations: &[Station], presented: &[Presented]) -> impl Iterator<Item = u8> {
+    let stations = stations.iter().zip(presented);
+    stations.filter_map(|(station, presented)| station.skin_sensor_at(presented))
 }
 
 /// Each number once, in ascending order.

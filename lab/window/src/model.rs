@@ -7,6 +7,7 @@ use thermal_client::client::{ReceivedEvent, ReceivedTelemetry, Telemetry};
 use thermal_device::events::DeviceEventKind;
 use thermal_session::{
     OperatorQuestion, Phase, PlannedTrial, Presented, Rest, Session, Station, TrialRules, Update,
+    skin_sensors,
 };
 
 use crate::gate::{Gate, SkinGate, Waiting};
@@ -207,11 +208,9 @@ impl Model {
             .and_then(|session| session.rest.as_ref())
         {
             // As the executor: by the thermistors of the running trial only, whatever other fingers have reported before.
-            let stations = self.session.iter().flat_map(|session| &session.stations);
-            let presented = self.trial.iter().flat_map(|view| &view.trial.presented);
-            let sensors = stations
-                .zip(presented)
-                .filter_map(|(station, presented)| station.skin_sensor_at(presented));
+            let running = self.session.iter().zip(&self.trial);
+            let sensors = running
+                .flat_map(|(session, view)| skin_sensors(&session.stations, &view.trial.presented));
             let means = sensors.map(|sensor| self.fingers.get(&sensor)?.trace.skin_c());
             self.skin.observe(rest, means, at);
         }

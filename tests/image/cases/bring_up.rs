@@ -1,9 +1,8 @@
 //! The release image on a board that is brought up: sound, and with errors of assembly.
 
-use std::env;
-
 use image_tests::image;
 use stm32_emulator::{Firmware, OneFingerBoard};
+use system_tests::one_case_in;
 use thermal_client::client::Client;
 use thermal_lab::bring_up::{EmulatedBench, Report, SimulatedBoard, Verdict, bring_up};
 use thermal_sim::World;
@@ -35,13 +34,6 @@ fn on_the_image(name: &str) -> Report {
     })
 }
 
-/// A variable of the environment: with `all`, the image meets every board, for minutes; without, every fifth broken one.
-const BOARDS_VARIABLE: &str = "THERMAL_IMAGE_BOARDS";
-
-fn on_all_boards() -> bool {
-    env::var(BOARDS_VARIABLE).is_ok_and(|boards| boards == "all")
-}
-
 /// Names of the checks that failed.
 fn failed(report: &Report) -> Vec<&str> {
     let failed = report.records.iter();
@@ -54,7 +46,7 @@ fn failed(report: &Report) -> Vec<&str> {
 /// What is found, and in which words, is asserted with the native device; the checks that fail first are the same ones.
 #[test]
 fn the_image_is_brought_up_as_the_native_device_is() {
-    let step = if on_all_boards() { 1 } else { 5 };
+    let step = one_case_in(9);
     for board in BROKEN_BOARDS.iter().step_by(step) {
         let (image, native) = (
             on_the_image(board.name),
@@ -64,7 +56,7 @@ fn the_image_is_brought_up_as_the_native_device_is() {
         let (image, native) = (failed(&image), failed(&native));
         assert_eq!(image.first(), native.first(), "{}", board.name);
     }
-    if on_all_boards() {
+    if step == 1 {
         let report = on_the_image(SOUND);
         assert!(report.passed(), "{:#?}", report.findings());
     }

@@ -1,6 +1,7 @@
 //! Faults on the image for five fingers: some of the matrix, whose other runs take minutes.
 
 use stm32_emulator::Firmware;
+use system_tests::one_case_in;
 use thermal_campaigns::faults::{FiveFingerRun, Reference, five_finger_cases};
 use thermal_campaigns::parallel_map;
 use thermal_sim::five_fingers::FINGERS;
@@ -15,8 +16,8 @@ const KINDS: [&str; 7] = [
     "select-line-stuck",
     "select-line-open",
 ];
-/// Of each kind with more than one row, every so many.
-const EVERY: usize = 3;
+/// Of each kind with more than one row, the suite takes one in so many.
+const ONE_IN: usize = 6;
 
 /// A fault of one finger stops that finger only, a fault of what they share stops all, each with a right reason.
 #[test]
@@ -26,7 +27,7 @@ fn faults_stop_the_fingers_that_have_them_and_no_others() {
     let cases = five_finger_cases();
     let of_kinds = KINDS.iter().flat_map(|kind| {
         let cases = cases.iter().filter(|case| case.fault.kind() == **kind);
-        cases.step_by(EVERY).copied()
+        cases.step_by(one_case_in(ONE_IN)).copied()
     });
     let runs = FiveFingerRun::all(of_kinds.collect(), 1);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);

@@ -10,7 +10,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "dividers",
     title: "thermistor dividers: static error, converter's crosstalk, filter, wrong plug",
-    run,
+    parts: &[run],
     // The converter on the filter's capacitor, without the follower.
     broken: |netlists| netlists.with_line("X1 in follow follower", "Rf in follow 1"),
     pictures: &[],

@@ -12,7 +12,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "edges",
     title: "propagation delay, effective dead time and loss at 6 A, against 0.3 us of the firmware",
-    run,
+    parts: &[run],
     // The drive current of the smallest strap.
     broken: |netlists| netlists.with_line("X3 i1 i2 vbr", &format!("{DRIVER} i_src=10m i_snk=20m")),
     pictures: &[("edges", scene)],

@@ -11,7 +11,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "faults",
     title: "dead comparator, shorted switch, missing supplies, emergency stop",
-    run,
+    parts: &[emergency_stop, dead_parts, missing_supplies, excursions],
     // The emergency stop's contact is welded.
     broken: |netlists| netlists.with_line("S1 contact vstop", "RS1 contact vstop 1m"),
     pictures: &[("trip", trip_scene), ("emergency-stop", stop_scene)],
@@ -20,7 +20,7 @@ pub const BENCH: Bench = Bench {
 /// Bridge supply above which a switch has not opened, V.
 const STILL_ON_V: f64 = 9.0;
 
-fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
+fn dead_parts(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let mut all = Vec::new();
     let (v3, warm) = self_test::SOUND;
     for (side, alive) in [("hot", "alive_hot"), ("cold", "alive_cold")] {
@@ -54,9 +54,6 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
             0.4,
         ),
     ]);
-    all.extend(missing_supplies(netlists)?);
-    all.extend(excursions(netlists)?);
-    all.extend(emergency_stop(netlists)?);
     Ok(all)
 }
 

@@ -12,7 +12,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "five-fingers",
     title: "five fingers: relay of the emergency stop, welded contact, current of the 12 V supply",
-    run,
+    parts: &[run],
     // The relay's contact is welded.
     broken: |netlists| weld(netlists),
     pictures: &[("stop-relay", scene)],

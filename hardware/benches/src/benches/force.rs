@@ -11,7 +11,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "force",
     title: "force amplifier against 410 counts at 0 N and 300 counts/N; each wire broken",
-    run,
+    parts: &[run],
     // The lower sense wire is not used, as with a four-wire cell.
     broken: |netlists| netlists.with_line("R4 ref0 sm", "R4 ref0 0 {r_ref_bottom}"),
     pictures: &[],

@@ -11,7 +11,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "ground",
     title: "6 A of tile current in a thermistor's reading",
-    run,
+    parts: &[run],
     // The thermistor's return on the power board, and 1 mohm of copper that both share.
     broken: |netlists| netlists.with("r_star", 1e-3),
     pictures: &[],

@@ -10,7 +10,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "leakage",
     title: "touch current of the plate: mains, PWM, cracked ceramic",
-    run,
+    parts: &[run],
     // A supply with an ordinary Y capacitor.
     broken: |netlists| netlists.with("c_mains", 2.2e-9),
     pictures: &[],

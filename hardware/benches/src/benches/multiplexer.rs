@@ -12,7 +12,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "multiplexer",
     title: "multiplexer of five fingers: settling within a scan, error by the neighbouring finger",
-    run,
+    parts: &[run],
     // The multiplexer on the filters' capacitors, without the followers in front of it.
     broken: |netlists| netlists.with_line("X1 in follow follower", "Rf in follow 1"),
     pictures: &[("multiplexer", scene)],

@@ -10,7 +10,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "parity",
     title: "select lines of five fingers: the parity gate shows each that is broken or shorted",
-    run,
+    parts: &[run],
     // The gate does not see the third line.
     broken: |netlists| netlists.with_line("X1 s0 s1 s2 odd v3 xor3", "X1 s0 s1 0 odd v3 xor3"),
     pictures: &[],

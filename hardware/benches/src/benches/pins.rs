@@ -12,7 +12,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "pins",
     title: "bridge off in reset, in the ROM boot loader, and while supplies come and go",
-    run,
+    parts: &[lines_alone, boot_loader, supplies],
     // Pull-downs of IN1, IN2 and enable too weak.
     broken: |netlists| netlists.scaled("r_in_down", 20.0),
     pictures: &[
@@ -50,9 +50,9 @@ fn current_a(measured: &Measured) -> Result<f64> {
     Ok(measured.get("most")?.max(-measured.get("least")?))
 }
 
-fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
-    let mut all = lines_alone(netlists)?;
-    all.extend(boot_loader(netlists)?);
+/// Supplies that come in any order, and go.
+fn supplies(netlists: &Netlists) -> Result<Vec<Quantity>> {
+    let mut all = Vec::new();
     for (what, ramps) in orders() {
         let measured = power(netlists, &ramps)?;
         all.push(Quantity::at_most(

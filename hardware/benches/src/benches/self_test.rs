@@ -11,7 +11,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "self-test",
     title: "power-on, test of the hot and of the cold side, sensed bridge supply",
-    run,
+    parts: &[run],
     broken: |netlists| netlists.scaled("r_bleed", 10.0),
     pictures: &[("self-test", scene)],
 };

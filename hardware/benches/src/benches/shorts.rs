@@ -12,7 +12,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "shorts",
     title: "shorted tile, output to ground, output to 12 V: time to nFAULT",
-    run,
+    parts: &[run],
     // A strap for a limit of 0.96 V in place of 0.12 V.
     broken: |netlists| {
         netlists.with_line(

@@ -10,7 +10,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "thresholds",
     title: "window comparator against 10 and 45 °C, over tolerances and 0 to 50 °C of the board",
-    run,
+    parts: &[run],
     broken: |netlists| netlists.scaled("r_ladder_bottom", 1.05),
     pictures: &[],
 };

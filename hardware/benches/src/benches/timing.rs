@@ -12,7 +12,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "timing",
     title: "line to tile and fault to break input, against what the firmware assumes",
-    run,
+    parts: &[run],
     // No filter at the break input: a glitch of 100 ns stops the PWM.
     broken: |netlists| netlists.scaled("c_break", 1e-3),
     pictures: &[("break-input", break_scene)],

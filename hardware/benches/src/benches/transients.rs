@@ -11,7 +11,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "transients",
     title: "enable at 6 A, +6 to -6 A in one PWM period, against over-current and saturation",
-    run,
+    parts: &[run],
     broken: |netlists| netlists.scaled("l_leg", 0.1),
     pictures: &[("enable", enable_scene), ("reversal", reversal_scene)],
 };

@@ -1,12 +1,13 @@
 //! What holds for each ready session.
 
 use std::collections::{BTreeSet, HashMap};
+use std::path::Path;
 
 use thermal_session::{
     Blocks, CorrectAnswer, Departure, Part, Plan, PlannedTrial, Presented, Quantity, Session,
 };
 
-use crate::{folder, plan, ready};
+use crate::{changed, folder, plan, ready};
 
 /// A ready session: name, trials of each part, blocks of each part, and trials before which a break comes.
 type Expected = (
@@ -73,6 +74,41 @@ fn the_folder_has_these_sessions() {
 fn each_session_has_its_own_task() {
     let tasks: BTreeSet<_> = SESSIONS.iter().map(|(name, ..)| ready(name).task).collect();
     assert_eq!(tasks.len(), SESSIONS.len());
+}
+
+/// Samples alone need no device, even if the file describes one; a skin thermistor beside a sample does, and so does a display.
+#[test]
+fn a_session_needs_a_device_for_displays_and_skin_thermistors_only() {
+    let without_device = ["p1-discrimination", "p3-localisation"];
+    for (name, ..) in SESSIONS {
+        let expected = !without_device.contains(&name);
+        assert_eq!(ready(name).needs_device(), expected, "{name}");
+    }
+    let one_thermistor = changed("p2-skin-temperature-fall", "skin_sensor = 1\n", "");
+    assert!(one_thermistor.needs_device());
+    let text = one_thermistor.text.replace("skin_sensor = 0 ", "# ");
+    let none = Session::parse(&text, Path::new("no thermistor")).expect("samples alone");
+    assert!(none.device.is_some() && !none.needs_device());
+    // A finger that touches nothing has no use for its thermistor.
+    let beside = "present]\nleft = { sample = \"copper\" }\nright = \"nothing\"\n";
+    for (thermistor_at, expected) in [("left", true), ("right", false)] {
+        let keys = |station: &str| {
+            let own = if station == thermistor_at {
+                "skin_sensor = 0\n"
+            } else {
+                ""
+            };
+            format!("[stations.{station}]\nfinger = \"{station} index\"\n{own}")
+        };
+        let text = format!(
+            "format = 1\ntitle = \"t\"\ntask = \"t\"\ncite = \"t\"\ninstruction = \"t\"\n[device]\n\
+             {}{}[{beside}[trial]\n[design]\n",
+            keys("left"),
+            keys("right")
+        );
+        let session = Session::parse(&text, Path::new("one side")).expect("a session");
+        assert_eq!(session.needs_device(), expected, "{thermistor_at}");
+    }
 }
 
 #[test]
