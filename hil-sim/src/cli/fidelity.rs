@@ -22,7 +22,7 @@ pub struct Arguments {
     /// What the finger does; several, or all [default: A, or none with --box]
     #[arg(long, num_args = 1.., value_parser = scenarios())]
     scenario: Vec<Chosen>,
-    /// Fingers, or contact laws, that are drawn in scenarios F and I
+    /// Fingers, or contact laws, that are drawn in scenarios F, G and I
     #[arg(long, value_name = "N", default_value_t = 36)]
     draws: u64,
     /// Run so many cases of each of E, F and I only, evenly spread
@@ -85,7 +85,7 @@ enum Chosen {
 
 impl Chosen {
     /// All scenarios.
-    const EACH: [Self; 8] = [
+    const EACH: [Self; 9] = [
         Self::Cases(Scenario::A),
         Self::Cases(Scenario::B),
         Self::Cases(Scenario::C),
@@ -93,6 +93,7 @@ impl Chosen {
         Self::Cases(Scenario::Unseen),
         Self::Populations("E"),
         Self::Populations("F"),
+        Self::Populations("G"),
         Self::Populations("I"),
     ];
 

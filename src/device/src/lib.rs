@@ -14,6 +14,7 @@ pub mod estimate;
 pub mod events;
 mod finger_index;
 pub mod identification;
+pub mod learning;
 mod low_pass;
 pub mod pi;
 mod pwm_period;

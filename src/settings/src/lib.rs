@@ -7,6 +7,7 @@ extern crate std;
 
 mod calibration;
 mod checksum;
+mod flux_sensor;
 mod range;
 mod settings_record;
 mod settings_store;
@@ -19,6 +20,7 @@ pub use calibration::{
     round_to_decimals,
 };
 pub use checksum::{CRC_32, Crc32Digest};
+pub use flux_sensor::FluxSensor;
 pub use range::{ADC_ERROR_STEP_RANGE, CORRECTION_RANGES, Range, TILE_RANGES};
 pub use settings_record::{
     RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode_settings_record,
@@ -71,6 +73,8 @@ pub struct Settings {
     /// Steps of the converter's error and corrections of the five thermistors, found by calibration with a reference
     /// thermometer; all zero before the first calibration.
     pub calibration: Calibration,
+    /// The sensor of the heat flux between skin and display; `None` if it is not fitted.
+    pub flux_sensor: Option<FluxSensor>,
     /// Thermal parameters of the tile, nominal until the command `tune` has identified them. [`Self::set_tile`]
     /// replaces them, because the gains follow from them.
     pub tile: Tile,
@@ -237,6 +241,7 @@ impl Default for Settings {
             gains_10hz,
             display: REFERENCE_DISPLAY,
             calibration: Calibration::default(),
+            flux_sensor: None,
             tile: Tile::FACTORY_DEFAULT,
         }
     }

@@ -13,12 +13,13 @@ use thermal_device::{
     Device, FingerIndex, PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_PERIOD_STEPS_OF_ONE_FINGER,
     TriggerEdge,
 };
+use thermal_learner::{FluxSensor as LearnerSensor, Learner, Place, Resistance};
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::comparator::ComparatorTest as PlantTest;
 use thermal_protocol::{
     CommandHandler, Error, LineReader, OutgoingLine, Reply, UnsolicitedLine, wrap_as_telemetry_line,
 };
-use thermal_settings::{Settings, StoredSettings, decode_settings_record};
+use thermal_settings::{FluxSensor, Settings, StoredSettings, decode_settings_record};
 
 use super::{BAUD, DeviceReset, Engine};
 use crate::World;
@@ -98,6 +99,20 @@ struct Finger {
     /// Whether the bridge has pulled its fault pin since the last tick, as the board's break flag records.
     fault: bool,
     outputs: BoardOutputs,
+    /// Runs only with a heat-flux sensor.
+    learner: Learner,
+}
+
+/// A learner for the heat-flux sensor as it was designed; the device says of which finger.
+fn learner() -> Learner {
+    let FluxSensor {
+        lag_s,
+        resistance_m2k_w,
+        ..
+    } = FluxSensor::DESIGNED;
+    let resistance_mm2k_w = Resistance::from_num(1e6 * resistance_m2k_w);
+    let sensor = LearnerSensor::new((1e6 * lag_s) as u32, resistance_mm2k_w);
+    Learner::new(sensor, Place::Air)
 }
 
 impl Finger {
@@ -112,6 +127,7 @@ impl Finger {
             settling_scans,
             fault: false,
             outputs: OFF,
+            learner: learner(),
         };
         finger.discard_scans(more_at_first);
         finger.start_tick();
@@ -175,6 +191,17 @@ impl Finger {
     }
 }
 
+/// Factory defaults of a device with these fingers. It has heat-flux sensors if each finger has one.
+fn settings(fingers: &[Finger]) -> Settings {
+    let mut codes = fingers.iter().map(|finger| finger.world.flux_code());
+    Settings {
+        flux_sensor: codes
+            .all(|code| code.is_some())
+            .then_some(FluxSensor::DESIGNED),
+        ..Settings::default()
+    }
+}
+
 impl NativeEngine {
     /// A device that has just started its first tick.
     #[must_use]
@@ -212,7 +239,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
     }
 
     fn with_fingers(fingers: [Finger; FINGERS], pwm_period_steps: u16) -> Self {
-        let settings = Settings::default();
+        let settings = settings(&fingers);
         let mut native = Self {
             fingers,
             handler: CommandHandler::new(settings),
@@ -250,7 +277,15 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         let finger = &mut self.fingers[index.index()];
         let needs_scatter = self.device.finger_needs_scatter(index);
         let samples = finger.samples(shared, needs_scatter);
+        let flux_code = finger.world.flux_code();
+        if let Some(code) = flux_code {
+            self.device.note_flux_code(index, code);
+        }
         let outputs = self.device.step_finger(index, &samples);
+        if let Some(input) = self.device.take_learner_input(index) {
+            let output = finger.learner.advance(&input);
+            self.device.put_learner_output(index, &output);
+        }
         match outputs.comparator_test {
             ComparatorTest::None => {}
             test => self.side_is_high = test == ComparatorTest::Cold,
@@ -317,7 +352,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         };
         let before = std::mem::replace(
             &mut self.device,
-            Device::new_optionally_tripped(cause_retained, &Settings::default()),
+            Device::new_optionally_tripped(cause_retained, &settings(&self.fingers)),
         );
         for finger in FingerIndex::all() {
             let dose = match cause {
@@ -341,6 +376,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         self.side_is_high = false;
         for finger in &mut self.fingers {
             (finger.fault, finger.outputs) = (false, OFF);
+            finger.learner = learner();
         }
         self.resets.push(DeviceReset {
             t_s: self.now_ns as f64 * 1e-9,

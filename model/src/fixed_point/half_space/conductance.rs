@@ -171,7 +171,9 @@ impl Contact {
         self.ratio.saturating_add(layer)
     }
 
-    fn display_resistance(&self) -> U16F16 {
+    /// Resistance between an average skin and the display: its temperature difference per kelvin of scaled flux.
+    #[must_use]
+    pub fn display_resistance(&self) -> U16F16 {
         resistance(self.ratio, self.root_rate_per_tick, self.weight)
     }
 

@@ -1,10 +1,10 @@
 //! The finger: its temperature before contact, its force, and by how much the display has cooled its skin.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, ContactConductance, ContactPair, Force, Ratio, contact_area,
-    log2_relative_pressure, product, saturating_product,
+    Body, Celsius, Contact, ContactConductance, ContactPair, Force, Ratio, TissueStateFactors,
+    contact_area, log2_relative_pressure, product, saturating_product,
 };
-use fixed::types::{I2F30, I10F22};
+use fixed::types::{I2F30, I10F22, U16F16};
 
 use super::Watt;
 use super::assumed_skin::AssumedSkin;
@@ -55,7 +55,13 @@ pub struct PreContactTemperatures {
 /// Updates the filtered temperature `state` of skin or room by the reading `input` of one tick, all in °C. The time
 /// constant is 2^[`SKIN_AND_ROOM_FILTER_SHIFT`] ticks of 1 ms (0.26 s).
 pub(super) fn filter_skin_or_room(state: Celsius, input: Celsius) -> Celsius {
-    state.saturating_add(input.saturating_sub(state) >> SKIN_AND_ROOM_FILTER_SHIFT)
+    state.saturating_add(filter_change(input.saturating_sub(state)))
+}
+
+/// The change of that filter's state in one tick under a `difference` of its input from its state, K.
+#[must_use]
+pub fn filter_change(difference: Celsius) -> Celsius {
+    difference >> SKIN_AND_ROOM_FILTER_SHIFT
 }
 
 /// Thermal contact conductances for one finger force, as scaled heat flux (K) per kelvin: of the real contact between
@@ -100,6 +106,12 @@ impl ContactConductances {
             object,
             ratio,
         }
+    }
+
+    /// Contact resistance of an average skin with the display, K per K of scaled flux.
+    #[must_use]
+    pub fn average_display_resistance(&self) -> U16F16 {
+        self.contact.display_resistance()
     }
 
     /// Whether the conductances may also be used for `force`, N, because it differs by at most 1/1024 from the force
@@ -363,6 +375,41 @@ impl FingerEstimator {
     #[must_use]
     pub const fn skin_state_on_display(&self) -> &SkinState {
         &self.skin_state_on_display
+    }
+
+    /// Whether the last tick has filtered the readings of skin and room.
+    #[must_use]
+    pub const fn has_filtered_skin(&self) -> bool {
+        self.before_contact.is_some() && self.lifted_ticks > SKIN_RECOVERY_TICKS
+    }
+
+    /// Temperature of the sensed skin before contact, °C, as [`Self::temperatures_before_contact`] has it unless the host assumes
+    /// another one.
+    #[must_use]
+    pub fn sensed_skin_before_contact(&self) -> Option<Celsius> {
+        match &self.assumed_skin {
+            None => self.before_contact.map(|before| before.skin),
+            Some(assumed) => assumed.sensed,
+        }
+    }
+
+    /// Changes the temperature of the sensed skin before contact by `change`, K.
+    pub fn shift_sensed_skin(&mut self, change: Celsius) {
+        let sensed = match &mut self.assumed_skin {
+            None => self.before_contact.as_mut().map(|before| &mut before.skin),
+            Some(assumed) => assumed.sensed.as_mut(),
+        };
+        if let Some(skin) = sensed {
+            *skin = skin.saturating_add(change);
+        }
+    }
+
+    /// Makes the skin's states those that the heat so far would have made in the tissue `to`.
+    pub fn change_tissue(&mut self, factors: &TissueStateFactors, to: &Body) {
+        self.skin_state_on_display.change_tissue(factors, to);
+        if let Some(assumed) = &mut self.assumed_skin {
+            assumed.sensed_state.change_tissue(factors, to);
+        }
     }
 
     /// Makes the skin's tissue uniform, as if it had recovered, because another tissue is assumed from now on.

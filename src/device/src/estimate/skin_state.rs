@@ -1,8 +1,8 @@
 //! Thermal state of the skin: the thesis's half-space, or the tissue of another finger.
 
 use contact_model::fixed_point::{
-    Celsius, ContactConductance, FingerBody, HalfSpace, OwnResistances, ScaledBody, TissueState,
-    product,
+    Body, Celsius, ContactConductance, FingerBody, HalfSpace, OwnResistances, ScaledBody,
+    TissueState, TissueStateFactors, product,
 };
 use fixed::types::U16F16;
 
@@ -128,6 +128,13 @@ impl SkinState {
     pub fn forget_tissue_history(&mut self) {
         if let Self::Body(state) = self {
             *state = TissueState::uniform_in_step_with(state);
+        }
+    }
+
+    /// Makes the state of a tissue that which the same heat would have made in the tissue `to`. A half-space stays.
+    pub fn change_tissue(&mut self, factors: &TissueStateFactors, to: &Body) {
+        if let Self::Body(state) = self {
+            state.rescale(factors, &to.relaxations());
         }
     }
 

@@ -10,7 +10,9 @@ mod skin_on_object;
 
 use core::ops::RangeInclusive;
 
-use contact_model::fixed_point::{Celsius, ChordInterpolation, ContactPair, Force, preset};
+use contact_model::fixed_point::{
+    Body, Celsius, ChordInterpolation, ContactPair, Force, TissueStateFactors, preset,
+};
 
 use crate::estimate::{
     Bodies, FingerContact, FingerEstimator, ForceChange, PreContactTemperatures,
@@ -283,6 +285,12 @@ impl ReferenceGenerator {
         self.skin_on_object
             .start_from_skin_on_display(finger.skin_state_on_display(), bodies);
         finger.forget_conductances();
+    }
+
+    /// Goes on with the tissue `to`, and with the resistances of the finger that is presented next.
+    pub fn change_finger(&mut self, factors: &TissueStateFactors, to: &Body) {
+        self.skin_on_object.change_tissue(factors, to);
+        self.factors = ContactPairFactors::default();
     }
 
     /// Set-point and target of this tick. `None` if the finger's estimator has no temperatures of skin and room, that

@@ -4,8 +4,8 @@
 //! under a changing force, and in a contact that begins soon after another one.
 
 use contact_model::fixed_point::{
-    BodyState, Celsius, ContactConductance, ContactPair, Force, Fraction, OwnResistances, Ratio,
-    Word, log2_relative_pressure, saturating_product,
+    Body, BodyState, Celsius, ContactConductance, ContactPair, Force, Fraction, OwnResistances,
+    Ratio, TissueStateFactors, Word, log2_relative_pressure, saturating_product,
 };
 use fixed::types::U16F16;
 
@@ -126,6 +126,11 @@ impl SkinOnObject {
         self.skin = skin_state_on_display.staggered(bodies);
         self.object = BodyState::default();
         self.scaled_flux = Celsius::ZERO;
+    }
+
+    /// Makes the simulated skin's state that which the heat so far would have made in the tissue `to`.
+    pub fn change_tissue(&mut self, factors: &TissueStateFactors, to: &Body) {
+        self.skin.change_tissue(factors, to);
     }
 
     /// Advances the simulated skin by one tick of 1 ms, for two half-spaces. `conductance` is that of the contact of skin

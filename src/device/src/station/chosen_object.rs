@@ -1,8 +1,11 @@
 //! The object that the host has chosen to present.
 
-use contact_model::fixed_point::{Celsius, ContactPair, ScaledBody};
+use contact_model::fixed_point::{
+    Body, Celsius, ContactPair, FingerBody, Fraction, OwnResistances, ScaledBody, to_fixed,
+};
 use contact_model::material::{MATERIALS, SKIN, Surface};
-use fixed::types::U16F16;
+use fixed::types::{I4F28, U16F16};
+use thermal_settings::FluxSensor;
 
 use crate::TICK_S;
 use crate::command::{AssumedFinger, ChosenMaterial, ObjectBody};
@@ -39,7 +42,7 @@ impl ChosenObject {
     /// resistance.
     /// Computes the default contact constants for the display's surface in `f64`, so it is for the start only.
     #[must_use]
-    pub fn new(display: &Surface) -> Self {
+    pub fn new(display: &Surface, flux_sensor: Option<&FluxSensor>) -> Self {
         let [(_, any), ..] = &MATERIALS;
         let mut chosen = Self {
             material: None,
@@ -51,6 +54,10 @@ impl ChosenObject {
             mode: ContactModel::default(),
             default_pair: ContactPair::new(&SKIN, any, display, TICK_S).ok(),
         };
+        if let Some(sensor) = flux_sensor {
+            chosen.bodies.resistances.display_layer =
+                to_fixed(sensor.resistance_m2k_w * SKIN.effusivity() / libm::sqrt(TICK_S));
+        }
         chosen.choose_finger(AssumedFinger::default());
         chosen
     }
@@ -98,7 +105,21 @@ impl ChosenObject {
     pub fn choose_finger(&mut self, finger: AssumedFinger) {
         self.finger = finger;
         self.bodies.finger = *finger.body();
+        self.bodies.resistances.skin_factor = OwnResistances::NONE.skin_factor;
         self.bodies.are_half_spaces = self.is_half_space && finger == AssumedFinger::Thesis;
+    }
+
+    /// Gives the assumed finger what was learnt of the one that touches: its tissue, the relative change of the flux that the air
+    /// took from it, and the factor on its contact resistance.
+    pub fn learn_finger(&mut self, tissue: &Body, air_change: I4F28, skin_factor: I4F28) {
+        let air = u64::from(self.finger.body().air.to_bits());
+        let factor = air_change.saturating_add(I4F28::ONE).max(I4F28::ZERO);
+        let air = (air * u64::from(factor.to_bits().unsigned_abs())) >> I4F28::FRAC_NBITS;
+        self.bodies.finger = FingerBody {
+            tissue: *tissue,
+            air: Fraction::from_bits(air.min(u32::MAX.into()) as u32),
+        };
+        self.bodies.resistances.skin_factor = skin_factor;
     }
 
     /// The finger that is assumed for the one that touches.

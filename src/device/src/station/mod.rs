@@ -15,9 +15,11 @@
 mod chosen_object;
 mod execute_command;
 mod follow_stimulus;
+mod learn;
 mod state;
 
 use contact_model::fixed_point::to_fixed;
+use thermal_learner::Place;
 use thermal_settings::Settings;
 
 pub use state::{ArmedTask, Event, State};
@@ -29,6 +31,7 @@ use crate::estimate::{
 };
 use crate::events::{DeviceEvent, EventReporter};
 use crate::identification::{AbortReason, NormalEquationAccumulator};
+use crate::learning::FingerLearning;
 use crate::reference::{Reference, ReferenceGenerator};
 use crate::safety::{
     self, Fault, FaultDetectors, FaultLatch, PreviousDemandAndResidual, SelfTestReport,
@@ -47,10 +50,8 @@ use chosen_object::ChosenObject;
 // In this order, because a load reaches 4 KB from the start of the struct: the courses come last. A tick takes 40 instructions less.
 #[repr(C)]
 pub struct Station {
-    /// Whether the next tick begins a new contact for a finger that already touches, because the host has chosen another
-    /// object, finger or contact model, or `start` has presented the object. Done in the tick: it takes 7 us, for which a
-    /// command would lock out the next finger's tick (`cargo test -p image-tests five_finger_locks`).
-    contact_restart_is_due: bool,
+    /// What the next tick does first.
+    due: DueWork,
     /// Whether the last reference is one of the present state stimulus, if that is the state.
     stimulus_has_reference: bool,
     /// Number of the last tick: ticks of 1 ms since the start of the program; wraps after 49 days.
@@ -75,6 +76,32 @@ pub struct Station {
     /// What the last self-test has measured.
     self_test_report: SelfTestReport,
     courses: CourseMemory,
+    /// Learning of the finger that touches; `None` without a sensor of the heat flux.
+    learning: Option<FingerLearning>,
+    /// Last code of that sensor.
+    flux_code: u16,
+}
+
+/// Work that a tick does first, because it must not change between two ticks or takes too long for a command: a new contact takes
+/// 7 us, for which a command would lock out the next finger's tick (`cargo test -p image-tests five_finger_locks`). One byte, so that
+/// a tick without such work asks once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct DueWork(u8);
+
+impl DueWork {
+    /// A new contact for a finger that already touches, because the host has chosen another object, finger or contact model, or
+    /// `start` has presented the object.
+    const CONTACT_RESTART: u8 = 1;
+    /// A code of the heat-flux sensor.
+    const FLUX: u8 = 2;
+
+    const fn add(&mut self, work: u8) {
+        self.0 |= work;
+    }
+
+    const fn contains(self, work: u8) -> bool {
+        self.0 & work != 0
+    }
 }
 
 /// Normal equations and outcome of the last identification of the tile. The host can request them, unless the station
@@ -133,9 +160,12 @@ impl Station {
                 plate: PlateObserver::new(&parameters.observer, limit),
                 finger: FingerEstimator::default(),
             },
-            object: ChosenObject::new(&settings.display),
+            object: ChosenObject::new(&settings.display, settings.flux_sensor.as_ref()),
+            learning: (settings.flux_sensor.as_ref())
+                .map(|sensor| FingerLearning::new(sensor, Place::Air)),
+            flux_code: 0,
             reference: ReferenceGenerator::default(),
-            contact_restart_is_due: false,
+            due: DueWork::default(),
             controller: Controller::new(&parameters, limit),
             voltage: VoltageFeedforward::new(&settings.module),
             state: State::Off,
@@ -191,8 +221,8 @@ impl Station {
     #[inline(never)]
     pub fn step(&mut self, samples: &Samples) -> BoardOutputs {
         self.tick = self.tick.wrapping_add(1);
-        if self.contact_restart_is_due {
-            self.restart_contact();
+        if self.due != DueWork::default() {
+            self.do_due_work();
         }
         self.convert_samples_and_add_calibration_means(samples);
         let valid = self.valid_readings_or_fault(samples);
@@ -218,14 +248,19 @@ impl Station {
         outputs
     }
 
-    /// Begins a new contact for a finger that already touches, with the object, finger and contact model of the host's last
-    /// command.
+    /// Takes the flux sensor's code. Begins a new contact for a finger that already touches, with the object, finger and contact
+    /// model of the host's last command.
     #[cold]
     #[inline(never)]
-    fn restart_contact(&mut self) {
-        self.contact_restart_is_due = false;
-        let bodies = self.object.bodies();
-        (self.reference).restart_contact(&mut self.estimator.finger, bodies);
+    fn do_due_work(&mut self) {
+        let due = core::mem::take(&mut self.due);
+        if due.contains(DueWork::FLUX) {
+            self.learn_from_flux();
+        }
+        if due.contains(DueWork::CONTACT_RESTART) {
+            let bodies = self.object.bodies();
+            (self.reference).restart_contact(&mut self.estimator.finger, bodies);
+        }
     }
 
     /// Converts the tick's samples to °C, N and A, as the last readings. Unless an object is presented, also adds the thermistors' samples to

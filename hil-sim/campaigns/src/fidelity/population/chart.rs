@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 
 use super::super::plot::{BOUND, COLORS, FONT, MARGIN, plain};
-use super::{Population, PopulationResult, Way};
+use super::{Aim, Population, PopulationResult, Since, Way};
 use std::ops::Range;
 
 /// File name of the chart.
@@ -49,7 +49,11 @@ pub fn draw(results: &[PopulationResult]) -> anyhow::Result<Option<String>> {
                 .light_line_style(TRANSPARENT)
                 .label_style(FONT)
                 .draw()?;
-            for (percent, aim_mk) in population.aims() {
+            let drawn = |aim: &&Aim| aim.since == Since::Ms50;
+            for Aim {
+                percent, aim_mk, ..
+            } in population.aims().iter().filter(drawn)
+            {
                 let line = [
                     (*aim_mk, 0.0),
                     (*aim_mk, *percent),

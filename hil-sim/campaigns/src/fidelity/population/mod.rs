@@ -29,9 +29,52 @@ named_enum! {
         /// Fingers that differ as people do, on the same devices.
         #[serde(rename = "F-draw")]
         DrawnFingers = "F-draw",
+        /// The same fingers and devices, with a sensor of the heat flux from which the device learns the finger in this contact.
+        #[serde(rename = "G")]
+        FirstContact = "G",
         /// Contact laws under the nominal layered finger, on an otherwise nominal plant.
         #[serde(rename = "I")]
         ContactLaws = "I",
+    }
+}
+
+/// Time since landing from which a largest skin error counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Since {
+    /// 50 ms, after the step that nothing can show.
+    Ms50,
+    /// Half a second.
+    Ms500,
+}
+
+impl Since {
+    /// The time, s.
+    #[must_use]
+    pub const fn since_s(self) -> f64 {
+        match self {
+            Self::Ms50 => 0.05,
+            Self::Ms500 => 0.5,
+        }
+    }
+}
+
+/// An aim for the largest skin error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aim {
+    /// From when on the error counts.
+    pub since: Since,
+    /// Percentile, %.
+    pub percent: f64,
+    /// Aim, mK.
+    pub aim_mk: f64,
+}
+
+const fn aim(since: Since, percent: f64, aim_mk: f64) -> Aim {
+    Aim {
+        since,
+        percent,
+        aim_mk,
     }
 }
 
@@ -42,6 +85,7 @@ impl Population {
         match self {
             Self::Objects => "E",
             Self::FingerBox | Self::DrawnFingers => "F",
+            Self::FirstContact => "G",
             Self::ContactLaws => "I",
         }
     }
@@ -55,19 +99,33 @@ impl Population {
             }
             Self::FingerBox => "layered fingers and devices of the parameter box, six objects",
             Self::DrawnFingers => "fingers of finger.draw, devices of the box, six objects",
+            Self::FirstContact => {
+                "the same as F-draw, first contact with a sensor of the heat flux"
+            }
             Self::ContactLaws => {
                 "contact laws of contact.draw; nominal layered finger, six objects"
             }
         }
     }
 
-    /// Percentiles of the largest skin error from 50 ms on, %, and their aims, mK; none of drawn contact laws.
+    /// Percentiles of the largest skin error from a time on and their aims; none of drawn contact laws.
     #[must_use]
-    pub const fn aims(self) -> &'static [(f64, f64)] {
+    pub const fn aims(self) -> &'static [Aim] {
+        use Since::{Ms50, Ms500};
+        const OBJECTS: [Aim; 2] = [aim(Ms50, 95.0, 10.0), aim(Ms50, 100.0, 20.0)];
+        const FINGER_BOX: [Aim; 2] = [aim(Ms50, 50.0, 40.0), aim(Ms50, 95.0, 130.0)];
+        const DRAWN_FINGERS: [Aim; 2] = [aim(Ms50, 50.0, 100.0), aim(Ms50, 95.0, 370.0)];
+        const FIRST_CONTACT: [Aim; 4] = [
+            aim(Ms50, 50.0, 25.0),
+            aim(Ms50, 95.0, 75.0),
+            aim(Ms500, 50.0, 15.0),
+            aim(Ms500, 95.0, 40.0),
+        ];
         match self {
-            Self::Objects => &[(95.0, 10.0), (100.0, 20.0)],
-            Self::FingerBox => &[(50.0, 40.0), (95.0, 130.0)],
-            Self::DrawnFingers => &[(50.0, 100.0), (95.0, 370.0)],
+            Self::Objects => &OBJECTS,
+            Self::FingerBox => &FINGER_BOX,
+            Self::DrawnFingers => &DRAWN_FINGERS,
+            Self::FirstContact => &FIRST_CONTACT,
             Self::ContactLaws => &[],
         }
     }
@@ -91,10 +149,17 @@ impl Population {
         let mut cases = Vec::new();
         for number in 0..draws {
             // A scene file holds 63 bits.
-            let own = stream_seed(seed, &format!("{} {number}", self.scenario())) >> 1;
+            // G has the fingers and devices of F.
+            let stream = match self {
+                Self::FirstContact => Self::DrawnFingers.scenario(),
+                other => other.scenario(),
+            };
+            let own = stream_seed(seed, &format!("{stream} {number}")) >> 1;
             let (of_device, tables) = match self {
                 Self::FingerBox => (own, layered("") + &device(own)),
-                Self::DrawnFingers => (own, layered(&format!("draw = {own}\n")) + &device(own)),
+                Self::DrawnFingers | Self::FirstContact => {
+                    (own, layered(&format!("draw = {own}\n")) + &device(own))
+                }
                 _ => (
                     seed,
                     layered("") + &format!("[plant]\ncontact.draw = {own}\n"),

@@ -36,7 +36,11 @@ fn there_are_234_different_objects_and_each_is_a_scene() {
 
 #[test]
 fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
-    for population in [Population::FingerBox, Population::DrawnFingers] {
+    for population in [
+        Population::FingerBox,
+        Population::DrawnFingers,
+        Population::FirstContact,
+    ] {
         let cases = population.cases(1, 2);
         assert_eq!(cases.len(), 12);
         let scenes: Vec<_> = (cases.iter())
@@ -66,7 +70,9 @@ fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
         let old = cases[0].scene(Way::Version01).expect("a scene");
         assert_eq!(old.assumed_finger, AssumedFinger::Thesis);
         let drawn = scenes[0].draws.finger.is_some();
-        assert_eq!(drawn, population == Population::DrawnFingers);
+        assert_eq!(drawn, population != Population::FingerBox);
+        let with_sensor = scenes[0].params.flux.is_some();
+        assert_eq!(with_sensor, population == Population::FirstContact);
     }
 }
 
@@ -99,6 +105,7 @@ fn statistics_are_by_way_and_compare_with_the_aims() {
         case: "copper".into(),
         way,
         max_after_50ms_mk,
+        max_after_500ms_mk: 0.5 * max_after_50ms_mk,
         rms_mk: 1.0,
         faults: Vec::new(),
     };

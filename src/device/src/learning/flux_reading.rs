@@ -1,0 +1,61 @@
+//! Readings of the heat-flux sensor.
+
+use fixed::types::I20F12;
+use thermal_learner::Flux;
+use thermal_settings::FluxSensor;
+
+/// Codes beyond which the amplifier is at a rail, as with a broken wire.
+const CODES: core::ops::RangeInclusive<u16> = 64..=4031;
+/// Ticks after which a code that has not changed is that of a converter which does not convert: noise alone changes it in
+/// almost every tick.
+const UNCHANGED_TICKS_MAX: u8 = 100;
+/// Binary places of codes before they are scaled.
+const CODE_PLACES: u32 = 4;
+
+/// Converts codes of the sensor to a flux, and finds codes that cannot be right.
+#[derive(Clone, Debug)]
+pub struct FluxReading {
+    /// Code without flux, in 2^-[`CODE_PLACES`].
+    zero: i32,
+    /// W/m² per count.
+    w_m2_per_count: I20F12,
+    last_code: u16,
+    unchanged_ticks: u8,
+    is_faulty: bool,
+}
+
+impl FluxReading {
+    /// Readings of this sensor. Converts from `f64`.
+    #[must_use]
+    pub fn new(sensor: &FluxSensor) -> Self {
+        Self {
+            zero: libm::round(libm::ldexp(sensor.zero_counts, CODE_PLACES as i32)) as i32,
+            w_m2_per_count: I20F12::saturating_from_num(1.0 / sensor.counts_per_w_m2),
+            last_code: 0,
+            unchanged_ticks: 0,
+            is_faulty: false,
+        }
+    }
+
+    /// The flux, W/m²; `None` for a code that cannot be right.
+    pub fn convert(&mut self, code: u16) -> Option<Flux> {
+        self.unchanged_ticks = if code == self.last_code {
+            self.unchanged_ticks.saturating_add(1)
+        } else {
+            0
+        };
+        self.last_code = code;
+        self.is_faulty = !CODES.contains(&code) || self.unchanged_ticks >= UNCHANGED_TICKS_MAX;
+        let above_zero = (i32::from(code) << CODE_PLACES) - self.zero;
+        let bits = i64::from(above_zero) * i64::from(self.w_m2_per_count.to_bits());
+        // A code has 12 bits, so the flux is within ±2^16 counts of at most 2^19 W/m².
+        let bits = (bits >> CODE_PLACES).clamp(i32::MIN.into(), i32::MAX.into());
+        (!self.is_faulty).then_some(Flux::from_bits(bits as i32))
+    }
+
+    /// Whether the last code cannot be right.
+    #[must_use]
+    pub const fn is_faulty(&self) -> bool {
+        self.is_faulty
+    }
+}

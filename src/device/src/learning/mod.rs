@@ -1,0 +1,176 @@
+//! Learning of the finger that touches, from a sensor of the heat flux between skin and display.
+//!
+//! ```text
+//! code of the sensor, estimates of the last tick -> sums of a window of ten ticks -> LearnerInput -> learner
+//!                                                                                                     |
+//!                       bodies, skin state, skin before contact <- in the last tick of the next window
+//! ```
+//!
+//! The learner runs outside of the control path. What it has found is applied ten ticks after its input was taken, however
+//! soon it was there, so that its computing time changes nothing.
+
+mod flux_reading;
+mod window_sums;
+
+use contact_model::fixed_point::Celsius;
+use thermal_learner::{LearnerInput, LearnerOutput, Place, Trust};
+use thermal_settings::FluxSensor;
+
+use crate::estimate::filter_change;
+use flux_reading::FluxReading;
+use window_sums::WindowSums;
+pub use window_sums::{StateAtEnd, TickOfContact};
+
+/// How many lags of the sensor its flux counts after the finger has lifted: what is left of the contact's is then below 1 %.
+const LAGS_AFTER_LIFTING: f64 = 5.0;
+
+/// What the host is told about the finger that is learnt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FingerKnowledge {
+    /// No sensor of the heat flux is fitted: the assumed finger.
+    NoSensor,
+    /// The sensor reads beyond its range, or the same for too long: the assumed finger.
+    SensorFault,
+    /// The learner has not answered in time, so what was learnt before stays.
+    Late,
+    /// What the learner says.
+    Learnt(Trust),
+}
+
+/// Learning of one finger: the sensor, the present window, and what was asked and answered.
+#[derive(Clone, Debug)]
+pub struct FingerLearning {
+    reading: FluxReading,
+    /// Ticks after lifting in which the flux still counts.
+    ticks_after_lifting: u32,
+    /// Ticks since the finger has lifted.
+    lifted_ticks: u32,
+    sums: WindowSums,
+    /// Number of the last window.
+    sequence: u16,
+    /// The place of another finger that may follow, for the next input.
+    restart: Option<Place>,
+    /// The input of the last window, until the learner takes it.
+    input: Option<LearnerInput>,
+    /// The learner's answer to it.
+    output: Option<LearnerOutput>,
+    /// Skin offset that was learnt, and how much of it the filtered temperature of the skin before contact contains, K.
+    skin_offset: Celsius,
+    included_offset: Celsius,
+    knowledge: FingerKnowledge,
+}
+
+impl FingerLearning {
+    /// Learning with this sensor of a finger that is at `place` before its contacts. Converts from `f64`, so it is for set-up
+    /// only.
+    #[must_use]
+    pub fn new(sensor: &FluxSensor, place: Place) -> Self {
+        Self {
+            reading: FluxReading::new(sensor),
+            ticks_after_lifting: (LAGS_AFTER_LIFTING * sensor.lag_s / crate::TICK_S) as u32,
+            lifted_ticks: u32::MAX,
+            sums: WindowSums::default(),
+            sequence: 0,
+            restart: Some(place),
+            input: None,
+            output: None,
+            skin_offset: Celsius::ZERO,
+            included_offset: Celsius::ZERO,
+            knowledge: FingerKnowledge::Learnt(Trust::Learning),
+        }
+    }
+
+    /// Forgets the finger, because another one may follow, which is at `place` before its contacts.
+    pub fn restart(&mut self, place: Place) {
+        self.restart = Some(place);
+        self.output = None;
+        self.skin_offset = Celsius::ZERO;
+    }
+
+    /// Skin before contact as its thermistor has it, from the filtered temperature `skin`, which contains the learnt offset.
+    #[must_use]
+    pub const fn skin_without_offset(&self, skin: Celsius) -> Celsius {
+        skin.saturating_sub(self.included_offset)
+    }
+
+    /// The change of the skin's filtered temperature in this tick, K, that lets it follow the thermistor's reading and the learnt
+    /// offset, where the filter itself has followed the reading alone. `is_filtered` is whether it has done so in this tick;
+    /// without an estimate of the skin nothing is included.
+    pub fn skin_change(&mut self, has_estimate: bool, is_filtered: bool) -> Celsius {
+        if !has_estimate {
+            self.included_offset = Celsius::ZERO;
+            return Celsius::ZERO;
+        }
+        if !is_filtered {
+            return Celsius::ZERO;
+        }
+        // The filter has taken the included offset back by its share, which `filter_change` towards the offset makes up for.
+        let lost = filter_change(Celsius::ZERO.saturating_sub(self.included_offset));
+        let change = filter_change(self.skin_offset.saturating_sub(self.included_offset));
+        self.included_offset = self.included_offset.saturating_add(change);
+        change.saturating_sub(lost)
+    }
+
+    /// Adds a tick: the sensor's code, and what was estimated at the end of the last tick, if the finger presses. Returns
+    /// whether the window is complete.
+    pub fn add_tick(&mut self, code: u16, contact: Option<TickOfContact>) -> bool {
+        self.lifted_ticks = match contact {
+            Some(_) => 0,
+            None => self.lifted_ticks.saturating_add(1),
+        };
+        let flux = self.reading.convert(code);
+        let counts = self.lifted_ticks <= self.ticks_after_lifting;
+        self.sums
+            .add(flux.filter(|_| counts), contact, flux.is_some());
+        self.sums.is_complete()
+    }
+
+    /// Ends a complete window: takes the answer to the input before, and offers the next one.
+    pub fn end_window(&mut self, state: &StateAtEnd) -> Option<LearnerOutput> {
+        let answer = self.output.take();
+        self.knowledge = match &answer {
+            _ if self.reading.is_faulty() => FingerKnowledge::SensorFault,
+            Some(answer) => FingerKnowledge::Learnt(answer.trust),
+            None if self.sequence == 0 => self.knowledge,
+            None => FingerKnowledge::Late,
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        let sums = core::mem::take(&mut self.sums);
+        self.input = Some(LearnerInput {
+            sequence: self.sequence,
+            restart: self.restart.take(),
+            flux_w_m2: sums.mean_flux(),
+            contact: sums.contact(state),
+        });
+        answer
+    }
+
+    /// Notes the change of the skin before contact that the learnt offset makes now, K.
+    pub fn adopt_skin_offset(&mut self, offset: Celsius, has_estimate: bool) -> Celsius {
+        self.skin_offset = offset;
+        if !has_estimate {
+            return Celsius::ZERO;
+        }
+        let change = offset.saturating_sub(self.included_offset);
+        self.included_offset = offset;
+        change
+    }
+
+    /// The input of the last window, once.
+    pub fn take_input(&mut self) -> Option<LearnerInput> {
+        self.input.take()
+    }
+
+    /// Keeps the learner's answer for the end of the present window. One to an earlier input than the last is void.
+    pub fn put_output(&mut self, output: &LearnerOutput) {
+        if output.sequence == self.sequence && self.restart.is_none() {
+            self.output = Some(*output);
+        }
+    }
+
+    /// What is known of the finger.
+    #[must_use]
+    pub const fn knowledge(&self) -> FingerKnowledge {
+        self.knowledge
+    }
+}
