@@ -42,8 +42,26 @@ impl VirtualLine {
         self.to_send.extend(bytes);
     }
 
-    /// The next line, or `None` after `timeout`. `run_1_ms` runs the device for a millisecond in which it is sent the bytes of the
-    /// first argument, and appends what it has sent to the second.
+    /// Passes a millisecond. `run_1_ms` runs the device for it, which is sent the bytes of the first argument, and appends what
+    /// the device has sent to the second.
+    ///
+    /// # Errors
+    /// Those of `run_1_ms`.
+    pub fn pass_1_ms<E>(
+        &mut self,
+        run_1_ms: impl FnOnce(&[u8], &mut Vec<u8>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let bytes = std::mem::take(&mut self.to_send);
+        run_1_ms(&bytes, self.splitter.received())?;
+        self.ms += 1;
+        let at = self.now();
+        let lines = self.splitter.complete().into_iter();
+        self.received
+            .extend(lines.map(|text| ReceivedLine { text, at }));
+        Ok(())
+    }
+
+    /// The next line, or `None` after `timeout`, with `run_1_ms` as for [`Self::pass_1_ms`].
     ///
     /// # Errors
     /// Those of `run_1_ms`.
@@ -54,15 +72,34 @@ impl VirtualLine {
     ) -> Result<Option<ReceivedLine>, LinkError> {
         let end = self.now() + timeout;
         while self.received.is_empty() && self.now() < end {
-            let bytes = std::mem::take(&mut self.to_send);
-            run_1_ms(&bytes, self.splitter.received())?;
-            self.ms += 1;
-            let at = self.now();
-            let lines = self.splitter.complete().into_iter();
-            self.received
-                .extend(lines.map(|text| ReceivedLine { text, at }));
+            self.pass_1_ms(&mut run_1_ms)?;
         }
-        Ok(self.received.pop_front())
+        Ok(self.next_line())
+    }
+
+    /// Whether a line was received that nobody has taken.
+    #[must_use]
+    pub fn has_line(&self) -> bool {
+        !self.received.is_empty()
+    }
+
+    /// The oldest received line.
+    pub fn next_line(&mut self) -> Option<ReceivedLine> {
+        self.received.pop_front()
+    }
+
+    /// Loses what is on the line in either direction. Time goes on.
+    pub fn clear(&mut self) {
+        *self = Self {
+            ms: self.ms,
+            ..Self::default()
+        };
+    }
+
+    /// Milliseconds since the beginning.
+    #[must_use]
+    pub const fn ms(&self) -> u64 {
+        self.ms
     }
 
     /// Time since the beginning.

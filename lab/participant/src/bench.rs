@@ -4,12 +4,13 @@ mod trial;
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
+use std::convert::Infallible;
 use std::rc::Rc;
 use std::time::Duration;
 
 use contact_model::material::Material;
 use serde::Serialize;
-use thermal_client::link::{LineSplitter, Link, LinkError, ReceivedLine};
+use thermal_client::link::{Link, LinkError, ReceivedLine};
 use thermal_device::command::AssumedFinger;
 use thermal_plant::finger::FingerParams;
 use thermal_plant::parameters::stream_seed;
@@ -18,6 +19,7 @@ use thermal_session::{
     AnswerKind, ContactRule, Decision, Departure, People, Phase, Plan, PlannedTrial, Presented,
     Procedure, Response, Session, Update,
 };
+use thermal_sim::simulated_link::VirtualLine;
 
 use crate::device::{FingerInput, PreparedDevice, RunningDevice};
 use crate::falls::{TouchSetup, mean_fall_k};
@@ -188,10 +190,7 @@ struct Setting {
 struct State {
     setting: Setting,
     device: Option<RunningDevice>,
-    to_send: Vec<u8>,
-    splitter: LineSplitter,
-    received: VecDeque<ReceivedLine>,
-    ms: u64,
+    line: VirtualLine,
     trial: Option<RunningTrial>,
     observations: Vec<Observation>,
     operator: Operator,
@@ -249,10 +248,7 @@ impl Bench {
                 device,
             },
             device: None,
-            to_send: Vec::new(),
-            splitter: LineSplitter::default(),
-            received: VecDeque::new(),
-            ms: 0,
+            line: VirtualLine::default(),
             trial: None,
             observations: Vec::new(),
             operator: Operator::default(),
@@ -293,25 +289,25 @@ impl Link for BenchLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         let mut state = self.0.borrow_mut();
         if state.device.is_some() {
-            state.to_send.extend(bytes);
+            state.line.send(bytes);
         }
         Ok(())
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
         let mut state = self.0.borrow_mut();
-        let end = state.now() + timeout;
-        while state.received.is_empty() && state.now() < end {
+        let end = state.line.now() + timeout;
+        while !state.line.has_line() && state.line.now() < end {
             state.step_1_ms();
             if let Some(failure) = &state.failure {
                 return Err(LinkError::Gone(failure.to_string()));
             }
         }
-        Ok(state.received.pop_front())
+        Ok(state.line.next_line())
     }
 
     fn now(&self) -> Duration {
-        self.0.borrow().now()
+        self.0.borrow().line.now()
     }
 }
 
@@ -323,9 +319,12 @@ impl People for BenchPeople {
     fn response(&mut self) -> Option<Response> {
         let mut state = self.0.borrow_mut();
         let State {
-            trial, setting, ms, ..
+            trial,
+            setting,
+            line,
+            ..
         } = &mut *state;
-        trial.as_mut()?.response(*ms, setting)
+        trial.as_mut()?.response(line.ms(), setting)
     }
 
     fn decision(&mut self) -> Option<Decision> {
@@ -334,10 +333,6 @@ impl People for BenchPeople {
 }
 
 impl State {
-    const fn now(&self) -> Duration {
-        Duration::from_millis(self.ms)
-    }
-
     /// The device as it is after power-up, if the bench has one. What is on the line is lost.
     fn power_up(&mut self, skin_c: f64, purpose: &str) -> Result<(), BenchError> {
         let setting = &self.setting;
@@ -346,14 +341,12 @@ impl State {
             Some(device) => Some(device.power_up(skin_c, noise_seed)?),
             None => None,
         };
-        self.to_send.clear();
-        self.received.clear();
-        self.splitter = LineSplitter::default();
+        self.line.clear();
         Ok(())
     }
 
     fn inform(&mut self, update: &Update) {
-        let ms = self.ms;
+        let ms = self.line.ms();
         match update {
             Update::Trial { trial, attempt, of } => {
                 if let Err(error) = self.begin_trial(trial, *attempt, *of) {
@@ -382,7 +375,7 @@ impl State {
         self.end_trial();
         self.operator.begin_trial();
         self.decisions.clear();
-        let running = RunningTrial::new(trial, attempt, of, self.ms, &self.setting)?;
+        let running = RunningTrial::new(trial, attempt, of, self.line.ms(), &self.setting)?;
         let purpose = format!("trial {} attempt {attempt}", trial.number);
         if !self.setting.options.keeps_device {
             self.power_up(running.skin_c(), &purpose)?;
@@ -410,7 +403,7 @@ impl State {
     fn end_trial(&mut self) {
         if let Some(mut trial) = self.trial.take() {
             self.observations
-                .push(trial.observation(self.ms, &self.setting));
+                .push(trial.observation(self.line.ms(), &self.setting));
         }
     }
 
@@ -418,23 +411,21 @@ impl State {
         let mut inputs = [FingerInput::default(); thermal_sim::five_fingers::FINGERS];
         let mut faults = Vec::new();
         if let Some(trial) = &mut self.trial {
-            trial.step_1_ms(self.ms, self.device.as_mut(), &mut inputs);
-            trial.faults(self.ms, &mut faults);
+            trial.step_1_ms(self.line.ms(), self.device.as_mut(), &mut inputs);
+            trial.faults(self.line.ms(), &mut faults);
         }
-        if let Some(device) = &mut self.device {
-            let bytes = std::mem::take(&mut self.to_send);
-            device.run_1_ms(&bytes, &inputs, &faults);
-        }
-        self.ms += 1;
-        if let Some(device) = &mut self.device {
-            device.receive(self.splitter.received());
-            let at = Duration::from_millis(self.ms);
-            let lines = self.splitter.complete().into_iter();
-            self.received
-                .extend(lines.map(|text| ReceivedLine { text, at }));
-        }
+        let device = &mut self.device;
+        let Ok(()) = self
+            .line
+            .pass_1_ms(|bytes, received| -> Result<(), Infallible> {
+                if let Some(device) = device {
+                    device.run_1_ms(bytes, &inputs, &faults);
+                    device.receive(received);
+                }
+                Ok(())
+            });
         if let Some(trial) = &mut self.trial {
-            let felt = trial.feel(self.ms, self.device.as_mut(), &self.setting);
+            let felt = trial.feel(self.line.ms(), self.device.as_mut(), &self.setting);
             if let Err(error) = felt {
                 self.failure = Some(error);
             }

@@ -1,8 +1,9 @@
 //! The six parameters of a finger: what is known of them before, and their limits.
 
 use contact_model::finger::{COMPONENT_MEANS, COMPONENTS, MEAN};
-use contact_model::fixed_point::WEIGHTS;
+use contact_model::fixed_point::{TissueWeights, WEIGHTS};
 use contact_model::impedance::Relaxation;
+use fixed::types::I2F30;
 
 use crate::signals::{BankOutput, RATES};
 
@@ -115,8 +116,11 @@ impl Scale {
     }
 }
 
-/// Least and largest relative weight of a finger.
-pub const WEIGHT_LIMITS: (f32, f32) = (0.4, 1.999);
+/// Least and largest relative weight of a finger: that which the device applies, and one below the range of its type.
+pub const WEIGHT_LIMITS: (f32, f32) = (
+    TissueWeights::MIN.to_bits() as f32 / (1u32 << I2F30::FRAC_NBITS) as f32,
+    1.999,
+);
 
 /// Relative weights of the finger with these parameters.
 pub fn relative_weights(parameters: &Parameters) -> BankOutput {

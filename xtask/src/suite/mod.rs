@@ -117,7 +117,7 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
         ),
         units(members),
     ];
-    // Stored settings take most of the time: a cut in every flash operation, every bit flipped.
+    // The power cuts and flipped bits of stored settings are left out for the sake of the quick suite's time.
     let native =
         "test --release --quiet --package system-tests --test native -- --skip settings_storage";
     vec![vec![

@@ -11,7 +11,7 @@ use crate::quantity::Quantity;
 pub const BENCH: Bench = Bench {
     name: "flux",
     title: "heat-flux sensor: 8.4 W/m2 a count, zero, lag, noise, each wire broken, error budget",
-    run,
+    parts: &[run],
     // Without the filter's capacitor the amplifiers' noise is that of their whole bandwidth.
     broken: |netlists| netlists.scaled("c_flux_filter", 1e-3),
     pictures: &[],

@@ -14,8 +14,8 @@ use super::Draws;
 use super::file::{self, NodeNumber, ParameterNode};
 use super::source::{SceneError, Source};
 
-/// The nominal parameters, with the scene's finger and its heat-flux sensor; the same drawn, then overridden by the values of the scene; and what was
-/// drawn.
+/// The nominal parameters, with the scene's finger and its heat-flux sensor; the same drawn, then overridden by the values of the
+/// scene; and what was drawn.
 pub(super) fn params(
     source: &Source<'_>,
     finger: Option<&Spanned<file::Finger>>,
