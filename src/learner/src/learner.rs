@@ -67,6 +67,9 @@ impl Learner {
                     .windows_in_contact
                     .map_or(1, |windows| windows.wrapping_add(1));
                 self.windows_in_contact = Some(windows);
+                if input.flux_w_m2.is_none() {
+                    self.judge.distrust(Distrust::Sensor);
+                }
                 let is_learnt_from =
                     contact.is_steady && contact.ticks_since_landing >= LEARNT_FROM_TICKS;
                 if is_learnt_from && !matches!(self.judge.trust(), Trust::Mean(_)) {

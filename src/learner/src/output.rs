@@ -54,4 +54,34 @@ impl LearnerOutput {
             variances: variances.map(to_fixed),
         }
     }
+
+    /// Whether the same finger is to be applied.
+    #[must_use]
+    pub fn is_same_finger(&self, other: &Self) -> bool {
+        self.weights == other.weights
+            && self.air_change == other.air_change
+            && self.skin_offset_k == other.skin_offset_k
+            && self.resistance_factor == other.resistance_factor
+    }
+
+    /// The next output on the way to the mean finger if the learner does not answer: to a twentieth in ten windows, as the learner
+    /// itself goes there.
+    #[must_use]
+    pub fn nearer_to_mean(&self) -> Self {
+        let change = self.resistance_factor.saturating_sub(I4F28::ONE);
+        Self {
+            weights: self.weights.map(|weight| {
+                I2F30::ONE.saturating_add(remaining(weight.saturating_sub(I2F30::ONE)))
+            }),
+            air_change: remaining(self.air_change),
+            skin_offset_k: remaining(self.skin_offset_k),
+            resistance_factor: I4F28::ONE.saturating_add(remaining(change)),
+            ..*self
+        }
+    }
+}
+
+/// Three quarters of a change; nothing of one of three units or less.
+fn remaining<T: Fixed<Bits = i32>>(change: T) -> T {
+    T::from_bits(change.to_bits() / 4 * 3)
 }

@@ -49,7 +49,7 @@ impl Signals {
             let air = to_float(contact.air_flux_w_m2) * touching;
             (to_float(contact.skin_above_display_k), air, touching)
         });
-        let flux_w_m2 = to_float(input.flux_w_m2);
+        let flux_w_m2 = input.flux_w_m2.map_or(0.0, to_float);
         let above_k = self.skin_above_display.advance(above, sensor);
         let air_w_m2 = self.air.advance(air, sensor);
         Lagged {

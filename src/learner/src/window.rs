@@ -22,8 +22,8 @@ pub struct LearnerInput {
     /// Forgets the finger before this window, because another one may follow, which is at this place before its contacts.
     pub restart: Option<Place>,
     /// Measured flux out of the skin, mean of the ten ticks; those without contact count as 0, except in the first five lags of
-    /// the sensor after lifting.
-    pub flux_w_m2: Flux,
+    /// the sensor after lifting. `None` if the sensor was beyond its range or faulty in a tick.
+    pub flux_w_m2: Option<Flux>,
     /// The contact; `None` if no tick of the window had one.
     pub contact: Option<Contact>,
 }
@@ -42,7 +42,7 @@ pub struct Contact {
     pub resistance_mm2k_w: Resistance,
     /// Ticks since landing, at the window's end.
     pub ticks_since_landing: u32,
-    /// Whether the finger may be learnt from this window: force steady or slowly changing, temperatures and flux valid, the
-    /// display not at a limit.
+    /// Whether the finger may be learnt from this window: force steady or slowly changing, temperatures valid, the display not
+    /// at a limit.
     pub is_steady: bool,
 }

@@ -59,3 +59,46 @@ impl FluxReading {
         self.is_faulty
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn flux_is_the_code_less_the_zero_over_the_gain(
+            code in CODES,
+            zero in 1500.0..2500.0,
+            gain in prop_oneof![Just(0.1192), 0.01..10.0],
+        ) {
+            let sensor = FluxSensor { counts_per_w_m2: gain, zero_counts: zero, ..FluxSensor::DESIGNED };
+            let flux = FluxReading::new(&sensor).convert(code).expect("a valid code");
+            let exact = (f64::from(code) - zero) / gain;
+            // Rounded are the zero, to a sixteenth of a count, and the reciprocal of the gain.
+            let error = 0.5 / f64::from(1 << CODE_PLACES) / gain + exact.abs() * gain / 4096.0 + 1e-3;
+            prop_assert!((flux.to_num::<f64>() - exact).abs() <= error, "{flux} for {exact}");
+        }
+    }
+
+    #[test]
+    fn codes_at_the_rails_and_one_that_stays_are_faults() {
+        let mut reading = FluxReading::new(&FluxSensor::DESIGNED);
+        for (code, is_valid) in [
+            (63, false),
+            (64, true),
+            (4031, true),
+            (4032, false),
+            (u16::MAX, false),
+        ] {
+            assert_eq!(reading.convert(code).is_some(), is_valid, "{code}");
+            assert_eq!(reading.is_faulty(), !is_valid, "{code}");
+        }
+        assert!(reading.convert(2048).is_some());
+        for tick in 1..200 {
+            assert_eq!(reading.convert(2048).is_some(), tick < 100, "{tick}");
+        }
+        assert!(reading.convert(2049).is_some());
+    }
+}

@@ -13,7 +13,7 @@ mod flux_reading;
 mod window_sums;
 
 use contact_model::fixed_point::Celsius;
-use thermal_learner::{LearnerInput, LearnerOutput, Place, Trust};
+use thermal_learner::{Flux, LearnerInput, LearnerOutput, Place, Trust};
 use thermal_settings::FluxSensor;
 
 use crate::estimate::filter_change;
@@ -29,9 +29,9 @@ const LAGS_AFTER_LIFTING: f64 = 5.0;
 pub enum FingerKnowledge {
     /// No sensor of the heat flux is fitted: the assumed finger.
     NoSensor,
-    /// The sensor reads beyond its range, or the same for too long: the assumed finger.
+    /// The sensor reads beyond its range, or the same for too long: the assumed finger until the next contact without such codes.
     SensorFault,
-    /// The learner has not answered in time, so what was learnt before stays.
+    /// The learner has not answered in time: the assumed finger until this contact has ended.
     Late,
     /// What the learner says.
     Learnt(Trust),
@@ -52,8 +52,13 @@ pub struct FingerLearning {
     restart: Option<Place>,
     /// The input of the last window, until the learner takes it.
     input: Option<LearnerInput>,
-    /// The learner's answer to it.
+    /// Whether the learner must answer that input before the present window ends, and its answer.
+    is_asked: bool,
     output: Option<LearnerOutput>,
+    /// Whether an answer was missing since the last window without contact.
+    was_late: bool,
+    /// The finger that was applied last; `None` for the assumed one.
+    applied: Option<LearnerOutput>,
     /// Skin offset that was learnt, and how much of it the filtered temperature of the skin before contact contains, K.
     skin_offset: Celsius,
     included_offset: Celsius,
@@ -73,7 +78,10 @@ impl FingerLearning {
             sequence: 0,
             restart: Some(place),
             input: None,
+            is_asked: false,
             output: None,
+            was_late: false,
+            applied: None,
             skin_offset: Celsius::ZERO,
             included_offset: Celsius::ZERO,
             knowledge: FingerKnowledge::Learnt(Trust::Learning),
@@ -83,8 +91,11 @@ impl FingerLearning {
     /// Forgets the finger, because another one may follow, which is at `place` before its contacts.
     pub fn restart(&mut self, place: Place) {
         self.restart = Some(place);
+        self.is_asked = false;
         self.output = None;
+        self.applied = None;
         self.skin_offset = Celsius::ZERO;
+        self.knowledge = FingerKnowledge::Learnt(Trust::Learning);
     }
 
     /// Skin before contact as its thermistor has it, from the filtered temperature `skin`, which contains the learnt offset.
@@ -118,31 +129,44 @@ impl FingerLearning {
             Some(_) => 0,
             None => self.lifted_ticks.saturating_add(1),
         };
-        let flux = self.reading.convert(code);
         let counts = self.lifted_ticks <= self.ticks_after_lifting;
-        self.sums
-            .add(flux.filter(|_| counts), contact, flux.is_some());
+        let flux = self.reading.convert(code);
+        let flux = flux.map(|flux| if counts { flux } else { Flux::ZERO });
+        self.sums.add(flux, contact);
         self.sums.is_complete()
     }
 
-    /// Ends a complete window: takes the answer to the input before, and offers the next one.
+    /// Ends a complete window: offers the next input, and returns the finger to be applied now, if it is not the one that was
+    /// applied last. That is the answer to the input before; if it is missing, one that is nearer to the assumed finger, until
+    /// a window without contact.
     pub fn end_window(&mut self, state: &StateAtEnd) -> Option<LearnerOutput> {
         let answer = self.output.take();
+        let sums = core::mem::take(&mut self.sums);
+        let contact = sums.contact(state);
+        self.was_late &= contact.is_some();
+        self.was_late |= self.is_asked && answer.is_none();
         self.knowledge = match &answer {
             _ if self.reading.is_faulty() => FingerKnowledge::SensorFault,
+            _ if self.was_late => FingerKnowledge::Late,
             Some(answer) => FingerKnowledge::Learnt(answer.trust),
-            None if self.sequence == 0 => self.knowledge,
-            None => FingerKnowledge::Late,
+            None => self.knowledge,
         };
         self.sequence = self.sequence.wrapping_add(1);
-        let sums = core::mem::take(&mut self.sums);
+        self.is_asked = true;
         self.input = Some(LearnerInput {
             sequence: self.sequence,
             restart: self.restart.take(),
             flux_w_m2: sums.mean_flux(),
-            contact: sums.contact(state),
+            contact,
         });
-        answer
+        let before = self.applied;
+        if self.was_late {
+            self.applied = self.applied.map(|applied| applied.nearer_to_mean());
+        } else if answer.is_some() {
+            self.applied = answer;
+        }
+        self.applied
+            .filter(|now| before.is_none_or(|before| !before.is_same_finger(now)))
     }
 
     /// Notes the change of the skin before contact that the learnt offset makes now, K.
@@ -161,9 +185,10 @@ impl FingerLearning {
         self.input.take()
     }
 
-    /// Keeps the learner's answer for the end of the present window. One to an earlier input than the last is void.
+    /// Keeps the learner's answer for the end of the present window. One to an earlier input than the last is void, and one from
+    /// before a restart.
     pub fn put_output(&mut self, output: &LearnerOutput) {
-        if output.sequence == self.sequence && self.restart.is_none() {
+        if output.sequence == self.sequence && self.is_asked {
             self.output = Some(*output);
         }
     }
@@ -174,3 +199,6 @@ impl FingerLearning {
         self.knowledge
     }
 }
+
+#[cfg(test)]
+mod tests;

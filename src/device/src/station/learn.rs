@@ -49,7 +49,7 @@ impl Station {
     }
 
     /// Adds the last tick to the learner's window, with the sensor's code at its end. At a window's end, takes over what was learnt
-    /// of the window before. A finger that is the thesis's half-space is not learnt.
+    /// up to the window before. A finger that is the thesis's half-space is not learnt.
     pub(super) fn learn_from_flux(&mut self) {
         let Some(learning) = &mut self.learning else {
             return;
@@ -109,3 +109,6 @@ impl Station {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

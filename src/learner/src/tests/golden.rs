@@ -47,7 +47,7 @@ fn learner_follows_the_independent_estimator() {
         let input = LearnerInput {
             sequence: windows,
             restart: None,
-            flux_w_m2: Flux::from_bits(number(2) as i32),
+            flux_w_m2: Some(Flux::from_bits(number(2) as i32)),
             contact,
         };
         let output = learner.advance(&input);

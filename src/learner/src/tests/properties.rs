@@ -54,13 +54,13 @@ fn input() -> impl Strategy<Value = LearnerInput> {
     (
         any::<u16>(),
         restart,
-        bits(),
+        prop::option::weighted(0.95, bits()),
         prop::option::weighted(0.9, contact()),
     )
         .prop_map(|(sequence, restart, flux, contact)| LearnerInput {
             sequence,
             restart,
-            flux_w_m2: Flux::from_bits(flux),
+            flux_w_m2: flux.map(Flux::from_bits),
             contact,
         })
 }
@@ -117,7 +117,7 @@ fn inputs(is_sound: bool) -> Vec<LearnerInput> {
 const LIFTED: LearnerInput = LearnerInput {
     sequence: 0,
     restart: None,
-    flux_w_m2: Flux::ZERO,
+    flux_w_m2: Some(Flux::ZERO),
     contact: None,
 };
 
@@ -204,6 +204,23 @@ fn windows_that_are_not_steady_change_nothing_that_is_learnt() {
         );
     }
     assert_eq!(first.weights.len(), WEIGHTS);
+}
+
+/// The flux is unknown in one window of a contact: from then on the banks are wrong.
+#[test]
+fn contact_with_an_unknown_flux_ends_in_the_mean_finger() {
+    let mut learner = Learner::new(sensor(), Place::Air);
+    for (window, input) in inputs(true).iter().enumerate() {
+        let flux_w_m2 = input.flux_w_m2.filter(|_| window != 40);
+        let trust = learner
+            .advance(&LearnerInput {
+                flux_w_m2,
+                ..*input
+            })
+            .trust;
+        let is_distrusted = trust == Trust::Mean(Distrust::Sensor);
+        assert_eq!(is_distrusted, window >= 40, "{window}: {trust:?}");
+    }
 }
 
 #[test]

@@ -50,7 +50,7 @@ impl PopulationCase {
             Way::Version01 => ("told = \"half-space\"\n", "finger = \"thesis\"\n"),
         };
         let sensor = match self.population {
-            Population::FirstContact => "flux_sensor = true\n",
+            Population::DesignedSensor | Population::HypotheticalSensor => "flux_sensor = true\n",
             _ => "",
         };
         let Self {

@@ -7,6 +7,7 @@ mod statistics;
 
 use thermal_plant::Params;
 use thermal_plant::parameters::{self, stream_seed};
+use thermal_plant::sensors::FluxParams;
 use thermal_sim::named_enum;
 
 use super::plant_draws::SAME_VALUE;
@@ -30,8 +31,11 @@ named_enum! {
         #[serde(rename = "F-draw")]
         DrawnFingers = "F-draw",
         /// The same fingers and devices, with a sensor of the heat flux from which the device learns the finger in this contact.
-        #[serde(rename = "G")]
-        FirstContact = "G",
+        #[serde(rename = "G-designed")]
+        DesignedSensor = "G-designed",
+        /// The same with a better sensor, which nobody has designed.
+        #[serde(rename = "G-hypothetical")]
+        HypotheticalSensor = "G-hypothetical",
         /// Contact laws under the nominal layered finger, on an otherwise nominal plant.
         #[serde(rename = "I")]
         ContactLaws = "I",
@@ -79,13 +83,13 @@ const fn aim(since: Since, percent: f64, aim_mk: f64) -> Aim {
 }
 
 impl Population {
-    /// The scenario's name on the command line; F has two populations.
+    /// The scenario's name on the command line; F and G have two populations.
     #[must_use]
     pub const fn scenario(self) -> &'static str {
         match self {
             Self::Objects => "E",
             Self::FingerBox | Self::DrawnFingers => "F",
-            Self::FirstContact => "G",
+            Self::DesignedSensor | Self::HypotheticalSensor => "G",
             Self::ContactLaws => "I",
         }
     }
@@ -99,8 +103,11 @@ impl Population {
             }
             Self::FingerBox => "layered fingers and devices of the parameter box, six objects",
             Self::DrawnFingers => "fingers of finger.draw, devices of the box, six objects",
-            Self::FirstContact => {
-                "the same as F-draw, first contact with a sensor of the heat flux"
+            Self::DesignedSensor => {
+                "as F-draw, first contact with the designed sensor of the heat flux"
+            }
+            Self::HypotheticalSensor => {
+                "as F-draw, first contact with a hypothetical sensor of 1 %"
             }
             Self::ContactLaws => {
                 "contact laws of contact.draw; nominal layered finger, six objects"
@@ -125,8 +132,17 @@ impl Population {
             Self::Objects => &OBJECTS,
             Self::FingerBox => &FINGER_BOX,
             Self::DrawnFingers => &DRAWN_FINGERS,
-            Self::FirstContact => &FIRST_CONTACT,
+            Self::DesignedSensor | Self::HypotheticalSensor => &FIRST_CONTACT,
             Self::ContactLaws => &[],
+        }
+    }
+
+    /// What its devices are told. Version 0.1 knew no sensor of the heat flux.
+    #[must_use]
+    pub const fn ways(self) -> &'static [Way] {
+        match self {
+            Self::DesignedSensor | Self::HypotheticalSensor => &[Way::AsItIs],
+            _ => &Way::ALL,
         }
     }
 
@@ -151,15 +167,14 @@ impl Population {
             // A scene file holds 63 bits.
             // G has the fingers and devices of F.
             let stream = match self {
-                Self::FirstContact => Self::DrawnFingers.scenario(),
+                Self::DesignedSensor | Self::HypotheticalSensor => Self::DrawnFingers.scenario(),
                 other => other.scenario(),
             };
             let own = stream_seed(seed, &format!("{stream} {number}")) >> 1;
             let (of_device, tables) = match self {
                 Self::FingerBox => (own, layered("") + &device(own)),
-                Self::DrawnFingers | Self::FirstContact => {
-                    (own, layered(&format!("draw = {own}\n")) + &device(own))
-                }
+                Self::DrawnFingers | Self::DesignedSensor => (own, drawn_finger(own)),
+                Self::HypotheticalSensor => (own, drawn_finger(own) + &hypothetical_sensor(own)),
                 _ => (
                     seed,
                     layered("") + &format!("[plant]\ncontact.draw = {own}\n"),
@@ -177,6 +192,33 @@ impl Population {
 /// A layered finger with further keys.
 fn layered(keys: &str) -> String {
     format!("[finger]\ntissue = \"layered\"\n{keys}")
+}
+
+/// A finger of `finger.draw` on a device of the parameter box.
+fn drawn_finger(seed: u64) -> String {
+    layered(&format!("draw = {seed}\n")) + &device(seed)
+}
+
+/// Standard deviations of the hypothetical sensor over those of the designed one (`docs/flux.md`): its gain, 1 of 1.5 %, and its
+/// zero, 2.7 of 3.5 W/m².
+const HYPOTHETICAL_GAIN: f64 = 1.0 / 1.5;
+const HYPOTHETICAL_ZERO: f64 = 2.7 / 3.5;
+/// Noise of a conversion of the hypothetical sensor, W/m².
+const HYPOTHETICAL_NOISE_W_M2: f64 = 22.0;
+
+/// Keys of `[plant]` by which the device of this seed has the hypothetical sensor in place of the designed one.
+fn hypothetical_sensor(seed: u64) -> String {
+    let mut params = Params {
+        flux: Some(FluxParams::NOMINAL),
+        ..Params::nominal()
+    };
+    parameters::draw(&mut params, seed);
+    let flux = params.flux.unwrap_or(FluxParams::NOMINAL);
+    format!(
+        "flux.gain_error = {:?}\nflux.zero_w_m2 = {:?}\nflux.noise_w_m2 = {HYPOTHETICAL_NOISE_W_M2:?}\n",
+        flux.gain_error * HYPOTHETICAL_GAIN,
+        flux.zero_w_m2 * HYPOTHETICAL_ZERO,
+    )
 }
 
 /// A device of the parameter box. Its display thermistors are bonded alike ([`SAME_VALUE`]): with lags that are drawn apart,

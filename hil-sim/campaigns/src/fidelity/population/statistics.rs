@@ -112,7 +112,7 @@ impl PopulationReport {
         let told = of(Way::AsItIs);
         let errors = |since| -> Vec<_> { told.iter().map(|one| one.largest_mk(since)).collect() };
         percentile(&errors(Since::Ms50), 50.0)?;
-        let ways = Way::ALL.map(|way| statistics(way, of(way)));
+        let ways = (population.ways().iter()).map(|way| statistics(*way, of(*way)));
         Some(Self {
             population,
             engine,
@@ -135,7 +135,7 @@ impl PopulationReport {
                 )
                 .collect::<Option<_>>()?,
             image,
-            ways: ways.into_iter().flatten().collect(),
+            ways: ways.flatten().collect(),
         })
     }
 }

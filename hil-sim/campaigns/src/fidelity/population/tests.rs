@@ -39,7 +39,8 @@ fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
     for population in [
         Population::FingerBox,
         Population::DrawnFingers,
-        Population::FirstContact,
+        Population::DesignedSensor,
+        Population::HypotheticalSensor,
     ] {
         let cases = population.cases(1, 2);
         assert_eq!(cases.len(), 12);
@@ -72,7 +73,44 @@ fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
         let drawn = scenes[0].draws.finger.is_some();
         assert_eq!(drawn, population != Population::FingerBox);
         let with_sensor = scenes[0].params.flux.is_some();
-        assert_eq!(with_sensor, population == Population::FirstContact);
+        assert_eq!(with_sensor, population.scenario() == "G");
+    }
+}
+
+/// Of 200 devices. The draws are cut at two standard deviations, which makes these 0.88 of what they are called.
+#[test]
+fn scenario_g_has_the_fingers_and_devices_of_f_and_sensors_of_two_classes() {
+    let params = |population: Population| -> Vec<_> {
+        (population.cases(1, 200).iter().step_by(6))
+            .map(|case| case.scene(Way::AsItIs).expect("a scene").params)
+            .collect()
+    };
+    let without = params(Population::DrawnFingers);
+    for (population, gain, zero_w_m2, noise_w_m2) in [
+        (Population::DesignedSensor, 0.015, 3.5, 6.5),
+        (Population::HypotheticalSensor, 0.01, 2.7, 22.0),
+    ] {
+        let with = params(population);
+        for (with, without) in with.iter().zip(&without) {
+            let flux = None;
+            assert_eq!(
+                thermal_plant::Params {
+                    flux,
+                    ..with.clone()
+                },
+                *without
+            );
+        }
+        let rms = |of: fn(&FluxParams) -> f64| {
+            let values = with
+                .iter()
+                .filter_map(|params| params.flux.as_ref())
+                .map(of);
+            (values.map(|one| one * one).sum::<f64>() / with.len() as f64).sqrt()
+        };
+        assert!((rms(|flux| flux.gain_error) / (0.88 * gain) - 1.0).abs() < 0.1);
+        assert!((rms(|flux| flux.zero_w_m2) / (0.88 * zero_w_m2) - 1.0).abs() < 0.1);
+        assert!((rms(|flux| flux.noise_w_m2) / noise_w_m2 - 1.0).abs() < 0.05);
     }
 }
 
