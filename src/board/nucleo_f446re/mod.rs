@@ -95,7 +95,7 @@ pub use trigger_input::TriggerInput;
 pub use trigger_output::TriggerOutput;
 pub use trip_cause_recorder::TripCauseRecorder;
 pub use window_watchdog::WindowWatchdog;
-pub use wiring::{FINGERS, FingerPowerStage};
+pub use wiring::{FINGERS, FingerPowerStage, FluxConverter};
 
 use super::{Console, ControlLoop};
 use reset_cause::ResetCause;
@@ -387,10 +387,17 @@ impl Board {
             &mut rcc,
         );
 
+        #[cfg(not(feature = "five-fingers"))]
+        let flux_converter =
+            FluxConverter::new(peripherals.ADC2, gpioc.pc5.into_analog(), &mut rcc);
+        #[cfg(feature = "five-fingers")]
+        let flux_converter = wiring::NoFluxConverter;
+
         Self {
             device,
             control_loop: ControlLoop {
                 sampler,
+                flux_converter,
                 stages,
                 comparator_side: ComparatorSide::new(gpiob.pb2),
                 emergency_stop: EmergencyStop::new(gpioc.pc13),

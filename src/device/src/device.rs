@@ -96,10 +96,22 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
         self.station_mut(finger).step(samples)
     }
 
+    /// Whether a finger has a sensor of the heat flux.
+    #[must_use]
+    pub fn finger_has_flux_sensor(&self, finger: FingerIndex<FINGERS>) -> bool {
+        self.station(finger).has_flux_sensor()
+    }
+
     /// Notes the code of a finger's heat-flux sensor, 0 to 4095, for its next tick. To be called before each tick of a finger with
     /// such a sensor, and for no other.
     pub fn note_flux_code(&mut self, finger: FingerIndex<FINGERS>, code: u16) {
         self.station_mut(finger).note_flux_code(code);
+    }
+
+    /// Whether the learner of a finger has something to work on.
+    #[must_use]
+    pub fn finger_has_learner_input(&self, finger: FingerIndex<FINGERS>) -> bool {
+        self.station(finger).has_learner_input()
     }
 
     /// What the learner of a finger must work on, once after every tenth tick with a flux code.

@@ -53,6 +53,9 @@ const OFF: BoardOutputs = BoardOutputs {
     trigger_output: false,
 };
 
+/// Code of an input that nothing is connected to: the middle of the range.
+const FLOATING_CODE: u16 = 0x800;
+
 /// Scans between the boundaries: four end the first step's tick, eight and four follow.
 const SCANS_BEFORE_START: usize = 4;
 const SCANS_IN_FIRST_HALF: usize = 8;
@@ -99,6 +102,8 @@ struct Finger {
     /// Whether the bridge has pulled its fault pin since the last tick, as the board's break flag records.
     fault: bool,
     outputs: BoardOutputs,
+    /// Code of the conversion that the last tick with a heat-flux sensor has started; 0 before the first.
+    flux_code: u16,
     /// Runs only with a heat-flux sensor.
     learner: Learner,
 }
@@ -127,6 +132,7 @@ impl Finger {
             settling_scans,
             fault: false,
             outputs: OFF,
+            flux_code: 0,
             learner: learner(),
         };
         finger.discard_scans(more_at_first);
@@ -277,8 +283,9 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         let finger = &mut self.fingers[index.index()];
         let needs_scatter = self.device.finger_needs_scatter(index);
         let samples = finger.samples(shared, needs_scatter);
-        let flux_code = finger.world.flux_code();
-        if let Some(code) = flux_code {
+        if self.device.finger_has_flux_sensor(index) {
+            let converted = finger.world.flux_code().unwrap_or(FLOATING_CODE);
+            let code = std::mem::replace(&mut finger.flux_code, converted);
             self.device.note_flux_code(index, code);
         }
         let outputs = self.device.step_finger(index, &samples);
@@ -375,7 +382,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         self.hung_ms = None;
         self.side_is_high = false;
         for finger in &mut self.fingers {
-            (finger.fault, finger.outputs) = (false, OFF);
+            (finger.fault, finger.outputs, finger.flux_code) = (false, OFF, 0);
             finger.learner = learner();
         }
         self.resets.push(DeviceReset {

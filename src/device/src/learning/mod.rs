@@ -180,6 +180,12 @@ impl FingerLearning {
         change
     }
 
+    /// Whether there is an input that the learner has not taken.
+    #[must_use]
+    pub const fn has_input(&self) -> bool {
+        self.input.is_some()
+    }
+
     /// The input of the last window, once.
     pub fn take_input(&mut self) -> Option<LearnerInput> {
         self.input.take()

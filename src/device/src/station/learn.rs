@@ -23,6 +23,17 @@ impl Station {
         self.due.add(DueWork::FLUX);
     }
 
+    /// [`crate::Device::finger_has_flux_sensor`].
+    pub(crate) const fn has_flux_sensor(&self) -> bool {
+        self.learning.is_some()
+    }
+
+    /// [`crate::Device::finger_has_learner_input`].
+    pub(crate) fn has_learner_input(&self) -> bool {
+        let learning = self.learning.as_ref();
+        learning.is_some_and(|learning| learning.has_input())
+    }
+
     /// [`crate::Device::take_learner_input`].
     pub(crate) fn take_learner_input(&mut self) -> Option<LearnerInput> {
         self.learning.as_mut()?.take_input()
