@@ -12,6 +12,8 @@ pub const CONVERTER: &str = "ADC";
 pub const RECEIVER: &str = "USART2";
 /// Transmission of the next line to the host.
 pub const REFILL: &str = "DMA1_STREAM6";
+/// The dispatcher of the task that learns the finger: the only one that may calculate with floating point.
+pub const LEARN: &str = "EXTI1";
 /// The dispatcher of the task that answers the host.
 pub const HOST: &str = "EXTI0";
 
