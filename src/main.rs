@@ -148,7 +148,7 @@ mod app {
         let _ = host::spawn();
     }
 
-    #[task(priority = 2, shared = [device], local = [learner: Option<Learner> = None])]
+    #[task(priority = 2, shared = [device], local = [learner: Learner = Learner::new()])]
     async fn learn(mut cx: learn::Context) {
         const FINGER: FingerIndex<FINGERS> = FingerIndex::FIRST;
         let device = &mut cx.shared.device;
@@ -156,19 +156,7 @@ mod app {
         let Some(input) = device.lock(|device| device.take_learner_input(FINGER)) else {
             return;
         };
-        let output = cx
-            .local
-            .learner
-            .get_or_insert_with(|| {
-                Learner::new(
-                    thermal_display::learner::FluxSensor::new(
-                        5000,
-                        thermal_display::learner::Resistance::from_bits(30 << 16),
-                    ),
-                    thermal_display::learner::Place::Air,
-                )
-            })
-            .advance(&input);
+        let output = cx.local.learner.advance(&input);
         device.lock(|device| device.put_learner_output(FINGER, &output));
     }
 

@@ -6,6 +6,7 @@ mod commissioning;
 mod course_refusals;
 mod courses;
 mod device;
+mod flux;
 mod line_queue;
 mod objects;
 mod station;

@@ -10,7 +10,7 @@ use embedded_storage::nor_flash::{
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 use thermal_display::settings::{
-    Calibration, Correction, RECORD_MAX_BYTES, SettingsStore, StoredSettings, Tile,
+    Calibration, Correction, FluxSensor, RECORD_MAX_BYTES, SettingsStore, StoredSettings, Tile,
     TriplicatedSealedFlash,
 };
 use thermal_sim::FlashCells;
@@ -103,7 +103,8 @@ impl NorFlash for Flash {
     }
 }
 
-/// Settings that differ from number to number in every value; for some numbers none, which stands for factory defaults.
+/// Settings that differ from number to number in every value, from 1000 on with heat-flux sensors; for some numbers none, which
+/// stands for factory defaults.
 #[must_use]
 pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[StoredSettings; FINGERS]> {
     if number % 50 == 17 {
@@ -124,6 +125,10 @@ pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[StoredSettings; FI
             tile: Tile::from_array_rounded(
                 [1.0, 0.0, 0.0, 0.1, 0.0].map(|base| base + of(finger + 28, 1e6)),
             ),
+            flux_sensor: (number >= 1000).then(|| {
+                let values = [0.1, 2000.0, 5.0, 30.0].map(|base| base + of(finger + 29, 1e5));
+                FluxSensor::from_array_rounded(values)
+            }),
         }
     }))
 }

@@ -9,10 +9,12 @@ use contact_model::fixed_point::{
 };
 use contact_model::material::{Material, SKIN, Surface};
 use fixed::types::U16F16;
+use thermal_learner::Flux;
 
 use crate::control::{ControlParameters, Law};
 use crate::events::EventKinds;
 use crate::identification::{AbortReason, NormalEquationRow};
+use crate::learning::{FingerKnowledge, FluxParameters, RestingCode};
 use crate::reference::ContactModel;
 use crate::safety::{Fault, PredictedDose, SelfTestReport, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, Samples, ThermistorAverage};
@@ -233,6 +235,15 @@ pub enum Command<'a> {
     /// still running ends without a result. Refused while an object is presented, because the finger would feel the
     /// change, and in the self-test, which a step of the readings would disturb.
     Calibrate(CalibrationTables),
+    /// Use this heat-flux sensor from the next tick on, or none, and learn anew with it. Refused while an object is presented,
+    /// because the finger would feel the change.
+    FluxSensor(Option<FluxParameters>),
+    /// Report the flux, and what is known of the finger by it. Never refused.
+    Flux,
+    /// Report the mean code of the heat-flux sensor over half a second without flux. Refused while an object is presented, without
+    /// a sensor, while a finger touches, while display and room differ by more than 0.3 K, with codes that cannot be right, and
+    /// less than half a second after the last contact.
+    FluxZero,
     /// Use these gains and this model of the tile from the next tick on; an identification of the tile ends. Refused
     /// while an object is presented, because the finger would feel the change.
     Retune(ControlParameters),
@@ -265,8 +276,21 @@ pub enum Reply {
     /// Answer to [`Command::Average`]: mean of one thermistor's sums of 16 conversions over 512 ticks of 1 ms, in
     /// converter counts before any calibration, and whether the thermistor was steady.
     Average(ThermistorAverage),
+    /// Answer to [`Command::Flux`]; `None` without a heat-flux sensor.
+    Flux(Option<FluxState>),
+    /// Answer to [`Command::FluxZero`].
+    FluxZero(RestingCode),
     /// Answer to [`Command::NormalEquation`]: one row of the normal equations of the tile's identification.
     NormalEquation(NormalEquationRow),
+}
+
+/// What a station knows by its heat-flux sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FluxState {
+    /// Flux out of the finger in the last tick, W/m²; `None` if the sensor's code cannot be right.
+    pub flux: Option<Flux>,
+    /// What is known of the finger.
+    pub knowledge: FingerKnowledge,
 }
 
 /// Why a station refuses a command. A refused command changes nothing, except for a `clear` that finds a second fault
@@ -288,11 +312,25 @@ pub enum Refused {
     /// `tune` was sent in a state that does not drive the display (in tripped the reply is [`Self::Tripped`]), while an object or
     /// a course is presented, or without a valid reading of the sink.
     TuneNeedsArmed,
-    /// The command was [`Command::Average`], [`Command::Calibrate`] or [`Command::Retune`], and an object or a course is presented:
+    /// The command was [`Command::Average`], [`Command::Calibrate`], [`Command::Retune`], [`Command::FluxSensor`] or
+    /// [`Command::FluxZero`], and an object or a course is presented:
     /// the finger would feel the change, or disturb the average.
     Presenting,
-    /// `tune` was sent while a finger touches the display; the finger's heat would distort the result.
-    Touched,
+    /// The command with this name, `tune` or `flux zero`, was sent while a finger touches the display; the finger's heat would
+    /// distort the result.
+    Touched(&'static str),
+    /// The command was [`Command::FluxZero`], and no heat-flux sensor is fitted.
+    NoFluxSensor,
+    /// The command was [`Command::FluxZero`], and the sensor's code cannot be right.
+    FluxSensorFault,
+    /// The command was [`Command::FluxZero`], and display and room, °C, given here unless their reading is invalid, differ by more
+    /// than 0.3 K, so that heat flows between display and air.
+    DisplayNotAtRoom {
+        /// Temperature of the display.
+        display: Option<Celsius>,
+        /// Temperature of the room.
+        room: Option<Celsius>,
+    },
     /// A row of the normal equations was requested, but no `tune` has been sent since the last `arm` or `hold`, or
     /// there is no row with this index.
     NotTuned,
@@ -301,7 +339,8 @@ pub enum Refused {
     /// A row of the normal equations was requested, but the identification of the tile has ended early, for this
     /// reason, and has no result.
     TuneAborted(AbortReason),
-    /// The mean of a thermistor was requested before 512 ticks (0.5 s) of samples had been added since the start of the
+    /// The zero of the heat-flux sensor was requested within half a second after a contact or the start of the sensor. Or the
+    /// mean of a thermistor was requested before 512 ticks (0.5 s) of samples had been added since the start of the
     /// program or, if later, since the last accepted `start`. Ticks in which an object is presented are not added,
     /// because a finger may touch the display then.
     TooEarly,

@@ -96,14 +96,14 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
         self.station_mut(finger).step(samples)
     }
 
-    /// Whether a finger has a sensor of the heat flux.
+    /// Whether a finger's station has a heat-flux sensor, by the settings.
     #[must_use]
     pub fn finger_has_flux_sensor(&self, finger: FingerIndex<FINGERS>) -> bool {
         self.station(finger).has_flux_sensor()
     }
 
-    /// Notes the code of a finger's heat-flux sensor, 0 to 4095, for its next tick. To be called before each tick of a finger with
-    /// such a sensor, and for no other.
+    /// Notes the code of a finger's heat-flux sensor, 0 to 4095, for its next tick. To be called before each tick of a finger
+    /// that [has such a sensor](Self::finger_has_flux_sensor), and for no other.
     pub fn note_flux_code(&mut self, finger: FingerIndex<FINGERS>, code: u16) {
         self.station_mut(finger).note_flux_code(code);
     }

@@ -22,16 +22,18 @@ pub struct Estimate {
 
 impl Estimate {
     /// What is known before the first contact.
-    pub fn prior() -> Self {
+    pub const PRIOR: Self = {
         let mut covariance = [[0.0; PARAMETERS]; PARAMETERS];
-        for (i, row) in covariance.iter_mut().enumerate() {
-            row[i] = 1.0;
+        let mut i = 0;
+        while i < PARAMETERS {
+            covariance[i][i] = 1.0;
+            i += 1;
         }
         Self {
             parameters: PRIOR,
             covariance,
         }
-    }
+    };
 
     /// Variances.
     pub fn variances(&self) -> Parameters {

@@ -6,7 +6,7 @@ use crate::parameters::{Place, RESISTANCE, Scale};
 use crate::regressors::{Lagged, Signals};
 use crate::sensor::FluxSensor;
 use crate::trust::{Distrust, Judge, Trust};
-use crate::window::{Contact, LearnerInput, Resistance};
+use crate::window::{Contact, LearnerInput, Resistance, Restart};
 
 /// Ticks after landing from which a contact is learnt from: the display's surface and the sensor have then settled.
 const LEARNT_FROM_TICKS: u32 = 20;
@@ -38,15 +38,28 @@ pub struct Learner {
     windows_in_contact: Option<u8>,
 }
 
+impl Default for Learner {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Learner {
-    /// A learner of a finger that is at `place` before its contacts.
+    /// A learner for an input with a [`Restart`], which must be its first.
     #[must_use]
-    pub fn new(sensor: FluxSensor, place: Place) -> Self {
+    pub const fn new() -> Self {
+        Self::begin(Restart {
+            place: Place::Air,
+            sensor: FluxSensor::new(0, Resistance::ZERO),
+        })
+    }
+
+    pub(crate) const fn begin(Restart { place, sensor }: Restart) -> Self {
         Self {
-            scale: Scale::new(place, sensor.lag_deviation),
+            scale: Scale::new(place, sensor.lag_deviation()),
             sensor,
-            signals: Signals::default(),
-            estimate: Estimate::prior(),
+            signals: Signals::NEW,
+            estimate: Estimate::PRIOR,
             judge: Judge::NEW,
             windows_in_contact: None,
         }
@@ -54,8 +67,8 @@ impl Learner {
 
     /// Takes one window's measurements, and returns what is known of the finger after it.
     pub fn advance(&mut self, input: &LearnerInput) -> LearnerOutput {
-        if let Some(place) = input.restart {
-            *self = Self::new(self.sensor, place);
+        if let Some(restart) = input.restart {
+            *self = Self::begin(restart);
         }
         let lagged = self.signals.advance(input, &self.sensor);
         match &input.contact {
@@ -90,7 +103,7 @@ impl Learner {
 
     fn land(&mut self) {
         if !self.judge.land() {
-            self.estimate = Estimate::prior();
+            self.estimate = Estimate::PRIOR;
         }
     }
 

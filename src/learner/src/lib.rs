@@ -21,7 +21,7 @@ pub use output::LearnerOutput;
 pub use parameters::{PARAMETERS, Place};
 pub use sensor::FluxSensor;
 pub use trust::{Distrust, Trust};
-pub use window::{Contact, Flux, LearnerInput, Resistance, WINDOW_TICKS};
+pub use window::{Contact, Flux, LearnerInput, Resistance, Restart, WINDOW_TICKS};
 
 #[cfg(test)]
 mod tests;

@@ -97,16 +97,18 @@ const LIMITS: [(f32, f32); PARAMETERS] = [
 
 impl Scale {
     /// For a finger at this place, and a sensor whose lag has this relative deviation.
-    pub fn new(place: Place, lag_deviation: f32) -> Self {
+    pub const fn new(place: Place, lag_deviation: f32) -> Self {
         let air = match place {
             Place::Air => 0.33,
             Place::Pad => 0.48,
         };
         let deviations = [1.0, 1.0, air, 0.05, 0.45, lag_deviation];
-        let (mut low, mut high) = (LIMITS.map(|(low, _)| low), LIMITS.map(|(_, high)| high));
-        for ((low, high), deviation) in low.iter_mut().zip(&mut high).zip(&deviations) {
-            *low /= deviation;
-            *high /= deviation;
+        let (mut low, mut high) = ([0.0; PARAMETERS], [0.0; PARAMETERS]);
+        let mut i = 0;
+        while i < PARAMETERS {
+            low[i] = LIMITS[i].0 / deviations[i];
+            high[i] = LIMITS[i].1 / deviations[i];
+            i += 1;
         }
         Self {
             deviations,

@@ -10,7 +10,7 @@ use crate::signals::{Bank, BankOutput, Lag, dot};
 use crate::window::{LearnerInput, WINDOW_TICKS};
 
 /// All signals that pass the sensor's lag, and the banks that they drive.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signals {
     skin_above_display: Lag,
     skin_above_display_twice: Lag,
@@ -41,6 +41,16 @@ fn to_float<T: Fixed<Bits = i32>>(value: T) -> f32 {
 }
 
 impl Signals {
+    /// Before the first window.
+    pub const NEW: Self = Self {
+        skin_above_display: Lag::ZERO,
+        skin_above_display_twice: Lag::ZERO,
+        air: Lag::ZERO,
+        touching: Lag::ZERO,
+        by_flux: Bank::ZERO,
+        by_air: Bank::ZERO,
+    };
+
     /// Advances by a window.
     pub fn advance(&mut self, input: &LearnerInput, sensor: &FluxSensor) -> Lagged {
         let (above, air, touching) = input.contact.as_ref().map_or((0.0, 0.0, 0.0), |contact| {
@@ -97,7 +107,7 @@ impl Lagged {
         let residual_k = self.above_k
             - dot(&self.by_flux, &MEAN_WEIGHTS)
             - contact_k
-            - sensor.resistance_m2k_w * self.flux_w_m2;
+            - sensor.resistance_m2k_w() * self.flux_w_m2;
         let mut regressors = [
             rise_k(&self.by_flux, first),
             rise_k(&self.by_flux, second),

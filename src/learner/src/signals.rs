@@ -11,14 +11,16 @@ use crate::window::WINDOW_S;
 pub const RATES: usize = WEIGHTS - 1;
 
 /// The flux sensor's lag, applied to another signal.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag(f32);
 
 impl Lag {
+    pub const ZERO: Self = Self(0.0);
+
     /// Mean of the lagged signal over a window in which the signal is constant.
     pub fn advance(&mut self, signal: f32, sensor: &FluxSensor) -> f32 {
-        let mean = signal + (self.0 - signal) * sensor.mean;
-        self.0 = signal + (self.0 - signal) * sensor.remaining;
+        let mean = signal + (self.0 - signal) * sensor.mean();
+        self.0 = signal + (self.0 - signal) * sensor.remaining();
         mean
     }
 }
@@ -58,7 +60,7 @@ const UNIT_RELAXATIONS: [UnitRelaxation; RATES] = {
 };
 
 /// Unit relaxations of the mean finger's rates, all driven by one flux.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bank([f32; RATES]);
 
 /// Window means of a bank's states, J/m², and the flux itself, W/m²: with the weights of a finger their sum is the rise of its
@@ -66,6 +68,8 @@ pub struct Bank([f32; RATES]);
 pub type BankOutput = [f32; WEIGHTS];
 
 impl Bank {
+    pub const ZERO: Self = Self([0.0; RATES]);
+
     /// Output of a window with this mean flux, W/m².
     pub fn advance(&mut self, flux_w_m2: f32) -> BankOutput {
         let mut output = [flux_w_m2; WEIGHTS];

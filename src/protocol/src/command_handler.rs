@@ -62,7 +62,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// A handler for a device whose fingers have the calibration and the tile that were loaded from flash, one element
+    /// A handler for a device whose fingers have the calibration, the tile and the heat-flux sensor that were loaded from flash, one element
     /// for each finger, and factory defaults for all other settings.
     #[must_use]
     pub fn from_stored(stored: &[StoredSettings; FINGERS]) -> Self {
@@ -302,7 +302,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     }
 
     /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. With
-    /// `None` on a device with several fingers, the queries `settings` and `margins` are answered by the first finger;
+    /// `None` on a device with several fingers, the queries `settings`, `margins` and `flux` are answered by the first finger;
     /// a new calibration point and `tune result`, which are computed for milliseconds, are rejected.
     fn execute_in_commissioning_sessions(
         &mut self,
@@ -314,6 +314,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             SessionRequest::CountSettingsLines
             | SessionRequest::SettingsLine(_)
             | SessionRequest::Margins
+            | SessionRequest::Flux
                 if FINGERS > 1 =>
             {
                 finger.or(Some(FingerIndex::FIRST))

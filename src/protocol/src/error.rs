@@ -3,7 +3,7 @@
 use core::fmt;
 
 use contact_model::decimal::{Rounded, Shortest};
-use contact_model::fixed_point::{BodyError, ContactPairError};
+use contact_model::fixed_point::{BodyError, Celsius, ContactPairError};
 use contact_model::material::MATERIALS;
 
 use thermal_commissioning::{
@@ -21,7 +21,7 @@ use thermal_device::stimulus::{
 };
 use thermal_settings::Range;
 
-use crate::calibrate_settings_set_commands::SET_COMMAND_TARGET_WORDS;
+use crate::calibrate_settings_set_commands::{FLUX_COMMAND_WORDS, SET_COMMAND_TARGET_WORDS};
 use crate::events::NO_EVENTS_WORD;
 use crate::line_checksum::TwoHexDigits;
 use crate::object::{BACK_WORDS, OBJECT_ARGUMENTS};
@@ -129,8 +129,10 @@ pub enum Error {
     Course(CourseError),
     /// The point of a course in the row with this index is refused, for this reason; the upload goes on.
     CoursePoint(usize, CourseError),
-    /// The word after `set`, quoted here, is none of `steps`, `correction` and `tile`.
+    /// The word after `set`, quoted here, is none of `steps`, `correction`, `tile` and `flux`.
     UnknownSetting(QuotedWordExcerpt),
+    /// The word after `flux`, quoted here, is none of `set`, `none` and `zero`.
+    UnknownFluxOrder(QuotedWordExcerpt),
     /// The line lacks the word with this name. The name is `command` if the line has no command, and
     /// `finger (as @0)` if the line must address a single finger but has no address.
     Missing(&'static str),
@@ -243,8 +245,11 @@ impl fmt::Display for Error {
             Self::UnknownSetting(word) => {
                 write_word_not_in_list(f, "setting", word, &SET_COMMAND_TARGET_WORDS)
             }
+            Self::UnknownFluxOrder(word) => {
+                write_word_not_in_list(f, "flux", word, &FLUX_COMMAND_WORDS)
+            }
             Self::UnknownEventKind(word) => {
-                let known = ["land", "lift", "start", "end", NO_EVENTS_WORD];
+                let known = ["land", "lift", "start", "end", "flux", NO_EVENTS_WORD];
                 write_word_not_in_list(f, "event", word, &known)
             }
             Self::UnknownTelemetryField(word) => {
@@ -451,7 +456,19 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         Refused::TuneNeedsArmed => "tune needs the state armed",
         Refused::Presenting => "not while an object or a course is presented: abort or arm first",
         Refused::NoCourse => "no course is loaded; upload begin course first",
-        Refused::Touched => "tune needs a display without a finger on it",
+        Refused::Touched(command) => {
+            return write!(f, "{command} needs a display without a finger on it");
+        }
+        Refused::NoFluxSensor => "flux zero needs a heat-flux sensor; flux set first",
+        Refused::FluxSensorFault => {
+            "the code of the heat-flux sensor is at a rail or does not change; look at its wires"
+        }
+        Refused::DisplayNotAtRoom { display, room } => {
+            f.write_str("flux zero needs the display within 0.3 C of the room; they have ")?;
+            write_celsius_or_dash(f, *display)?;
+            f.write_str(" and ")?;
+            return write_celsius_or_dash(f, *room);
+        }
         Refused::NotTuned => "nothing was tuned since arm; tune first",
         Refused::Tuning => "tuning goes on; ask again in a second",
         Refused::TuneAborted(why) => return write!(f, "tune was ended: {}", why.description()),
@@ -473,6 +490,13 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         }
         Refused::NothingToClear => "no fault to clear",
     })
+}
+
+fn write_celsius_or_dash(f: &mut fmt::Formatter<'_>, value: Option<Celsius>) -> fmt::Result {
+    match value {
+        Some(celsius) => write!(f, "{} C", Rounded(celsius.to_num(), 2)),
+        None => f.write_str("-"),
+    }
 }
 
 fn write_identification_error(

@@ -6,11 +6,11 @@ use contact_model::decimal::Rounded;
 use thermal_commissioning::{
     CONVERTER_STEPS_PER_LINE_MAX, SessionReply, Setting, StorageOrder, THERMISTOR_WORDS,
 };
-use thermal_device::command::{self, Status};
+use thermal_device::command::{self, FluxState, Status};
 use thermal_device::safety::{SelfTestReport, SideLine, TripCause};
 use thermal_device::sense::Samples;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
-use thermal_settings::{Calibration, Tile};
+use thermal_settings::{Calibration, FluxSensor, Tile};
 
 use crate::BoardStatus;
 use crate::line_buffer::LineBuffer;
@@ -19,7 +19,7 @@ use crate::request::CONTACT_MODEL_WORDS;
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
 const PROTOCOL_VERSION: u32 = 1;
 /// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
-const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course";
+const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course,flux";
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
@@ -76,13 +76,15 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
             pulse_test_answer_words(report).fmt(f)
         }
         command::Reply::Raw(samples) => raw_answer_line(samples).fmt(f),
-        // No line from the host requests averages and normal equations, which commissioning sessions evaluate.
         command::Reply::Finger(name) => write!(f, "ok finger={name}"),
         // No line from the host requests a material's properties.
         command::Reply::Material(_) => f.write_str("ok"),
-        command::Reply::Done | command::Reply::Average(_) | command::Reply::NormalEquation(_) => {
-            f.write_str("ok")
-        }
+        // No line from the host requests averages, normal equations and flux, which commissioning sessions evaluate.
+        command::Reply::Done
+        | command::Reply::Average(_)
+        | command::Reply::Flux(_)
+        | command::Reply::FluxZero(_)
+        | command::Reply::NormalEquation(_) => f.write_str("ok"),
     }
 }
 
@@ -102,9 +104,34 @@ fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt:
             let worst_mk = Rounded(*worst_mk, 2);
             write!(f, "ok points={points} worst_mk={worst_mk}")
         }
+        SessionReply::Flux(None) => f.write_str("ok flux=none"),
+        SessionReply::Flux(Some((sensor, state))) => write_flux_answer(f, sensor, state),
         SessionReply::SettingsLines(lines) => write!(f, "ok lines={lines}"),
         SessionReply::Setting(setting) => write_set_line(f, setting),
     }
+}
+
+fn write_flux_answer(
+    f: &mut fmt::Formatter<'_>,
+    sensor: &FluxSensor,
+    state: &FluxState,
+) -> fmt::Result {
+    f.write_str("ok flux=fitted")?;
+    let names = [
+        "counts_per_w_m2",
+        "zero_counts",
+        "lag_ms",
+        "resistance_mm2k_w",
+    ];
+    let values = sensor.to_array().into_iter().zip(FluxSensor::DECIMALS);
+    for (name, (value, decimals)) in names.into_iter().zip(values) {
+        write!(f, " {name}={}", Rounded(value, decimals as usize))?;
+    }
+    match state.flux {
+        Some(flux) => write!(f, " w_m2={}", Rounded(flux.to_num(), 1))?,
+        None => f.write_str(" w_m2=-")?,
+    }
+    write!(f, " finger={}", state.knowledge.name())
 }
 
 fn state_answer_line(status: &Status) -> LineBuffer {
@@ -256,6 +283,12 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
             )?;
             let decimals = Calibration::CORRECTION_DECIMALS.map(|decimals| decimals as usize);
             write_numbers(f, &correction.to_array(), &decimals)
+        }
+        Setting::FluxSensor(None) => f.write_str("flux none"),
+        Setting::FluxSensor(Some(sensor)) => {
+            f.write_str("flux")?;
+            let decimals = FluxSensor::DECIMALS.map(|decimals| decimals as usize);
+            write_numbers(f, &sensor.to_array(), &decimals)
         }
         Setting::Tile(tile) => {
             f.write_str("tile")?;

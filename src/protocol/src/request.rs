@@ -15,7 +15,7 @@ use crate::arguments::{
     skip_if_next_is, table_entry_for_word_or_none, word_or_empty,
 };
 use crate::calibrate_settings_set_commands::{
-    parse_calibration_point_or_clear, parse_set_arguments, parse_settings_query,
+    parse_calibration_point_or_clear, parse_flux, parse_set_arguments, parse_settings_query,
 };
 use crate::events::{parse_switch, parse_telemetry_fields, parse_trigger_output};
 use crate::object::parse_object;
@@ -49,7 +49,7 @@ pub enum Request {
     /// A line `upload`: begin, a row, or commit.
     Upload,
     /// A line about settings or calibration, which the commissioning sessions of the addressed fingers execute:
-    /// `calibrate`, `tune result`, `margins`, `settings` or `set`.
+    /// `calibrate`, `tune result`, `margins`, `settings`, `set` or `flux`.
     Commissioning(SessionRequest),
     /// The line `save` or `forget`: store the present settings of all fingers, or factory defaults, in flash.
     Storage(StorageOrder),
@@ -109,6 +109,7 @@ impl Request {
         "margins" => Self::Commissioning(SessionRequest::Margins),
         "settings" => Self::Commissioning(parse_settings_query(words)?),
         "set" => Self::Commissioning(SessionRequest::Set(parse_set_arguments(words)?)),
+        "flux" => Self::Commissioning(parse_flux(words)?),
         "save" => Self::Storage(StorageOrder::Save),
         "forget" => Self::Storage(StorageOrder::Forget),
     });

@@ -113,7 +113,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
         (
             "fly",
             "err unknown command 'fly'; known: id board state stream events trigger-out checksum material object finger upload mode law arm hold play pulse skin start abort clear cause self-test raw \
-             calibrate tune margins settings set save forget",
+             calibrate tune margins settings set flux save forget",
         ),
         (
             "material unobtainium-of-the-first-kind",
@@ -148,7 +148,29 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
             "calibrate",
             "err sensor missing; known: display check sink skin room",
         ),
-        ("set", "err setting missing; known: steps correction tile"),
+        (
+            "set",
+            "err setting missing; known: steps correction tile flux",
+        ),
+        ("flux fit", "err unknown flux 'fit'; known: set none zero"),
+        ("flux set", "err gain missing; 0.01 to 1 counts per W/m2"),
+        (
+            "flux set 1.1 2048 5 30",
+            "err gain '1.1' out of range; 0.01 to 1 counts per W/m2",
+        ),
+        (
+            "set flux 0.1 63 5 30",
+            "err zero '63' out of range; 64 to 4031 counts",
+        ),
+        (
+            "flux set 0.1 2048 0 30",
+            "err lag '0' out of range; 0.1 to 500 ms",
+        ),
+        (
+            "flux set 0.1 2048 5 3e3",
+            "err resistance '3e3' out of range; 0 to 1000 mm2 K/W",
+        ),
+        ("flux none 1", "err unexpected '1' after the command"),
         ("arm now", "err unexpected 'now' after the command"),
         ("object room 3", "err unexpected '3' after the command"),
         (

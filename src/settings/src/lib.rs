@@ -21,7 +21,7 @@ pub use calibration::{
 };
 pub use checksum::{CRC_32, Crc32Digest};
 pub use flux_sensor::FluxSensor;
-pub use range::{ADC_ERROR_STEP_RANGE, CORRECTION_RANGES, Range, TILE_RANGES};
+pub use range::{ADC_ERROR_STEP_RANGE, CORRECTION_RANGES, FLUX_SENSOR_RANGES, Range, TILE_RANGES};
 pub use settings_record::{
     RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode_settings_record,
     encode_settings_record,

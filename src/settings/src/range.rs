@@ -4,7 +4,7 @@ use core::fmt;
 
 use contact_model::decimal::Shortest;
 
-use super::{Calibration, Tile};
+use super::{Calibration, FluxSensor, Tile};
 
 /// Allowed range of a quantity in a line from the host or in the record in flash, with its name and unit for error
 /// messages. `Display` writes limits and unit, as in `15 to 42 C`.
@@ -102,6 +102,34 @@ pub static TILE_RANGES: [Range; 5] = [
         max: 1.0,
     },
 ];
+/// Allowed ranges of a heat-flux sensor's values, in the order of [`FluxSensor::to_array`]. The zeros are the codes that the
+/// sensor's amplifier can give without being at a rail.
+pub static FLUX_SENSOR_RANGES: [Range; 4] = [
+    Range {
+        name: "gain",
+        unit: "counts per W/m2",
+        min: 0.01,
+        max: 1.0,
+    },
+    Range {
+        name: "zero",
+        unit: "counts",
+        min: 64.0,
+        max: 4031.0,
+    },
+    Range {
+        name: "lag",
+        unit: "ms",
+        min: 0.1,
+        max: 500.0,
+    },
+    Range {
+        name: "resistance",
+        unit: "mm2 K/W",
+        min: 0.0,
+        max: 1000.0,
+    },
+];
 
 impl Calibration {
     /// The first value of this calibration that lies outside its allowed range, with that range; `None` if all values
@@ -125,6 +153,14 @@ impl Tile {
     #[must_use]
     pub fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
         first_value_out_of_range(TILE_RANGES.iter().zip(self.to_array()))
+    }
+}
+
+impl FluxSensor {
+    /// The first value of the sensor that is outside its allowed range, with that range; `None` if all are inside.
+    #[must_use]
+    pub fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
+        first_value_out_of_range(FLUX_SENSOR_RANGES.iter().zip(self.to_array()))
     }
 }
 

@@ -1,12 +1,14 @@
 //! The record of the stored settings, as bytes.
 //!
-//! | bytes | content                                                                             |
-//! |-------|-------------------------------------------------------------------------------------|
-//! | 2     | version of the layout                                                               |
-//! | 1     | kind: 0 for factory defaults, 1 for settings                                        |
-//! | 1     | number of fingers, 0 for factory defaults                                           |
-//! | 132   | each finger: 13 steps, 5 times offset, slope and curvature, 5 parameters of the tile |
-//! | 4     | CRC-32 (ISO-HDLC) of all bytes before it, in every version                          |
+//! | bytes      | content                                                                             |
+//! |------------|-------------------------------------------------------------------------------------|
+//! | 2          | version of the layout                                                               |
+//! | 1          | kind: 0 for factory defaults, 1 for settings                                        |
+//! | 1          | number of fingers, 0 for factory defaults                                           |
+//! | 132 or 148 | each finger: 13 steps, 5 times offset, slope and curvature, 5 parameters of the tile; in version 2 also 4 of the heat-flux sensor, all 0 for a finger without one |
+//! | 4          | CRC-32 (ISO-HDLC) of all bytes before it, in every version                          |
+//!
+//! Version 2 is written only if a finger has a heat-flux sensor, so that older firmware reads the record of a device without one.
 //!
 //! All fields are little-endian. Each value is an `i32` in units of its last decimal on a `set` line, so that a record
 //! holds exactly what the line does.
@@ -17,29 +19,33 @@ use contact_model::decimal::Shortest;
 use heapless::Vec;
 
 use super::calibration::power_of_ten;
-use super::{CALIBRATED_ADC_BORDER_COUNT, CRC_32, Calibration, Correction, Range, Settings, Tile};
+use super::{
+    CALIBRATED_ADC_BORDER_COUNT, CRC_32, Calibration, Correction, FluxSensor, Range, Settings, Tile,
+};
 
-const RECORD_LAYOUT_VERSION: u16 = 1;
+const VERSION_WITHOUT_FLUX_SENSORS: u16 = 1;
+const VERSION_WITH_FLUX_SENSORS: u16 = 2;
 const KIND_FACTORY_DEFAULTS: u8 = 0;
 const KIND_SETTINGS: u8 = 1;
 const HEADER_BYTES: usize = 4;
 const CHECKSUM_BYTES: usize = 4;
 const CORRECTIONS_PER_FINGER: usize = 5;
-const RECORD_INTEGERS_PER_FINGER: usize =
+const INTEGERS_WITHOUT_FLUX_SENSOR: usize =
     CALIBRATED_ADC_BORDER_COUNT + 3 * CORRECTIONS_PER_FINGER + 5;
-const RECORD_BYTES_PER_FINGER: usize = 4 * RECORD_INTEGERS_PER_FINGER;
+const INTEGERS_WITH_FLUX_SENSOR: usize = INTEGERS_WITHOUT_FLUX_SENSOR + FluxSensor::DECIMALS.len();
+const RECORD_BYTES_PER_FINGER_MAX: usize = 4 * INTEGERS_WITH_FLUX_SENSOR;
 /// Largest number of fingers that a device can have.
 const FINGERS_MAX: usize = 10;
-/// Length of the longest record, that of a device with ten fingers: 1328 bytes.
+/// Length of the longest record, that of a device with ten fingers: 1488 bytes.
 pub const RECORD_MAX_BYTES: usize =
-    HEADER_BYTES + FINGERS_MAX * RECORD_BYTES_PER_FINGER + CHECKSUM_BYTES;
+    HEADER_BYTES + FINGERS_MAX * RECORD_BYTES_PER_FINGER_MAX + CHECKSUM_BYTES;
 
 /// The bytes of one record as they are written to flash: the stored settings of all fingers, or the order to use
 /// factory defaults, between a header and a checksum.
 pub type SettingsRecord = Vec<u8, RECORD_MAX_BYTES>;
 
 /// The part of one finger's settings that is stored in flash, because commissioning determines it for each device:
-/// calibration and tile. All other settings always have their factory defaults.
+/// calibration, tile and heat-flux sensor. All other settings always have their factory defaults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredSettings {
     /// Calibration of the finger's sensors, from the commands `calibrate` and `set`: the jumps of the converter's error at
@@ -48,25 +54,29 @@ pub struct StoredSettings {
     pub calibration: Calibration,
     /// Thermal parameters of the finger's tile, from the commands `tune` and `set`.
     pub tile: Tile,
+    /// The finger's heat-flux sensor, from the command `flux`; `None` if it is not fitted.
+    pub flux_sensor: Option<FluxSensor>,
 }
 
 impl StoredSettings {
-    /// Takes calibration and tile, the part that is stored in flash, from a finger's complete `settings`.
+    /// Takes calibration, tile and heat-flux sensor, the part that is stored in flash, from a finger's complete `settings`.
     #[must_use]
     pub const fn from_settings(settings: &Settings) -> Self {
         Self {
             calibration: settings.calibration,
             tile: settings.tile,
+            flux_sensor: settings.flux_sensor,
         }
     }
 
-    /// Complete settings of the finger: the stored calibration and tile, the gains that follow from this tile, and
-    /// factory defaults for everything else.
+    /// Complete settings of the finger: the stored calibration, tile and heat-flux sensor, the gains that follow from this
+    /// tile, and factory defaults for everything else.
     #[must_use]
     #[inline(never)]
     pub fn to_settings_with_factory_defaults(&self) -> Settings {
         let mut settings = Settings {
             calibration: self.calibration,
+            flux_sensor: self.flux_sensor,
             ..Settings::default()
         };
         settings.set_tile(self.tile);
@@ -78,6 +88,7 @@ impl StoredSettings {
         let steps = self.calibration.steps_counts.into_iter();
         let corrections = self.calibration.corrections.into_iter();
         let tile = self.tile.to_array().into_iter();
+        let flux_sensor = (self.flux_sensor).map_or(NO_FLUX_SENSOR, |sensor| sensor.to_array());
         steps
             .map(|step| (step, Calibration::ADC_ERROR_STEP_DECIMALS))
             .chain(corrections.flat_map(|correction| {
@@ -85,11 +96,13 @@ impl StoredSettings {
                 values.zip(Calibration::CORRECTION_DECIMALS)
             }))
             .chain(tile.map(|value| (value, Tile::DECIMALS as i32)))
+            .chain(flux_sensor.into_iter().zip(FluxSensor::DECIMALS))
     }
 
-    /// Converts the 33 integers that a record holds for one finger to the stored settings of that finger. The integers
-    /// have the order of the record, and each is a value in units of its last decimal. A missing integer would count as
-    /// 0, but [`decode_settings_record`] has checked the length of the record.
+    /// Converts the 37 integers that a record holds for one finger to the stored settings of that finger. The integers
+    /// have the order of the record, and each is a value in units of its last decimal. A missing integer counts as 0:
+    /// [`decode_settings_record`] has checked the length of the record, so that only those of the heat-flux sensor can be
+    /// missing.
     fn from_record_integers(mut values: impl Iterator<Item = i32>) -> Self {
         let mut next =
             |decimals| f64::from(values.next().unwrap_or_default()) / power_of_ten(decimals);
@@ -101,17 +114,24 @@ impl StoredSettings {
                 }),
             },
             tile: Tile::from_array_rounded([(); 5].map(|()| next(Tile::DECIMALS as i32))),
+            flux_sensor: Some(FluxSensor::DECIMALS.map(&mut next))
+                .filter(|values| *values != NO_FLUX_SENSOR)
+                .map(FluxSensor::from_array_rounded),
         }
     }
 
-    /// The first value of calibration or tile that is outside its allowed range, with that range; `None` if all are
+    /// The first value of calibration, tile or heat-flux sensor that is outside its allowed range, with that range; `None` if all are
     /// inside.
     fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
         self.calibration
             .first_value_out_of_range()
             .or_else(|| self.tile.first_value_out_of_range())
+            .or_else(|| self.flux_sensor?.first_value_out_of_range())
     }
 }
+
+/// What a record holds in place of a heat-flux sensor that is not fitted; a sensor has a gain.
+const NO_FLUX_SENSOR: [f64; 4] = [0.0; 4];
 
 /// Why bytes from the flash are not a valid record of this device. The device then starts with factory defaults, and
 /// all fingers are tripped by the fault `settings-corrupt`.
@@ -122,7 +142,7 @@ pub enum RecordError {
     Length(usize),
     /// The CRC-32 at the end of the record does not match the bytes before it.
     Checksum,
-    /// The header of the record names this version of the layout, but this firmware reads only version 1.
+    /// The header of the record names this version of the layout, but this firmware reads only versions 1 and 2.
     Version(u16),
     /// The header of the record names this kind of content, which is neither 0 (factory defaults) nor 1 (settings).
     Kind(u8),
@@ -149,7 +169,7 @@ impl fmt::Display for RecordError {
             Self::Version(version) => {
                 write!(
                     f,
-                    "settings have the unknown version {version}; known: {RECORD_LAYOUT_VERSION}"
+                    "settings have the unknown version {version}; known: {VERSION_WITHOUT_FLUX_SENSORS} {VERSION_WITH_FLUX_SENSORS}"
                 )
             }
             Self::Kind(kind) => write!(f, "settings have the unknown kind {kind}; known: 0 1"),
@@ -182,16 +202,21 @@ pub fn encode_settings_record<const FINGERS: usize>(
     let mut append = |bytes: &[u8]| {
         let _fits = record.extend_from_slice(bytes);
     };
-    append(&RECORD_LAYOUT_VERSION.to_le_bytes());
+    let has_flux_sensor = (settings.into_iter().flatten()).any(|one| one.flux_sensor.is_some());
+    let (version, integers_per_finger) = if has_flux_sensor {
+        (VERSION_WITH_FLUX_SENSORS, INTEGERS_WITH_FLUX_SENSOR)
+    } else {
+        (VERSION_WITHOUT_FLUX_SENSORS, INTEGERS_WITHOUT_FLUX_SENSOR)
+    };
+    append(&version.to_le_bytes());
     append(&match settings {
         Some(_) => [KIND_SETTINGS, FINGERS as u8],
         None => [KIND_FACTORY_DEFAULTS, 0],
     });
-    for (value, decimals) in settings
-        .into_iter()
-        .flatten()
-        .flat_map(StoredSettings::values_and_decimals_to_encode)
-    {
+    for (value, decimals) in settings.into_iter().flatten().flat_map(|one| {
+        let values = one.values_and_decimals_to_encode();
+        values.take(integers_per_finger)
+    }) {
         append(&(libm::round(value * power_of_ten(decimals)) as i32).to_le_bytes());
     }
     let checksum = CRC_32.checksum(&record);
@@ -219,10 +244,11 @@ pub fn decode_settings_record<const FINGERS: usize>(
         return Err(RecordError::Checksum);
     }
     let [version_low, version_high, kind, fingers] = *header;
-    match u16::from_le_bytes([version_low, version_high]) {
-        RECORD_LAYOUT_VERSION => {}
+    let integers_per_finger = match u16::from_le_bytes([version_low, version_high]) {
+        VERSION_WITH_FLUX_SENSORS => INTEGERS_WITH_FLUX_SENSOR,
+        VERSION_WITHOUT_FLUX_SENSORS => INTEGERS_WITHOUT_FLUX_SENSOR,
         version => return Err(RecordError::Version(version)),
-    }
+    };
     let expected_fingers = match kind {
         KIND_FACTORY_DEFAULTS => 0,
         KIND_SETTINGS => FINGERS,
@@ -231,7 +257,7 @@ pub fn decode_settings_record<const FINGERS: usize>(
     if usize::from(fingers) != expected_fingers {
         return Err(RecordError::Fingers(fingers));
     }
-    if values.len() != expected_fingers * RECORD_BYTES_PER_FINGER {
+    if values.len() != expected_fingers * 4 * integers_per_finger {
         return Err(wrong_length);
     }
     if kind == KIND_FACTORY_DEFAULTS {
@@ -240,7 +266,7 @@ pub fn decode_settings_record<const FINGERS: usize>(
     let (words, _) = values.as_chunks::<4>();
     let mut words = words.iter().map(|word| i32::from_le_bytes(*word));
     let settings = core::array::from_fn(|_| {
-        StoredSettings::from_record_integers(words.by_ref().take(RECORD_INTEGERS_PER_FINGER))
+        StoredSettings::from_record_integers(words.by_ref().take(integers_per_finger))
     });
     for (finger, one) in (0..).zip(&settings) {
         if let Some((allowed, value)) = one.first_value_out_of_range() {

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use arbitrary::{Arbitrary, Unstructured};
 use system_tests::flash::{BYTES, Flash, append, numbered};
 use thermal_display::settings::{
-    Calibration, Correction, SettingsStore, StoreError, StoredSettings, Tile,
+    Calibration, Correction, FluxSensor, SettingsStore, StoreError, StoredSettings, Tile,
 };
 use thermal_sim::FlashCells;
 
@@ -14,9 +14,10 @@ const SAVES: [u32; 8] = [0, 1, 2, 3, 20, 37, 38, 80];
 /// Largest number of events of one input.
 const EVENTS: usize = 24;
 
-/// Stored values of a finger: smallest and largest stored integer, and stored integers per unit.
-const VALUES: [(i32, i32, f64); 33] = {
-    let mut values = [(-4_000, 4_000, 1e3); 33];
+/// Stored values of a finger: smallest and largest stored integer, and stored integers per unit. The last four are those of the
+/// heat-flux sensor.
+const VALUES: [(i32, i32, f64); 37] = {
+    let mut values = [(-4_000, 4_000, 1e3); 37];
     let mut sensor = 0;
     while sensor < 5 {
         values[13 + 3 * sensor] = (-1_200_000, 1_200_000, 1e6);
@@ -29,8 +30,14 @@ const VALUES: [(i32, i32, f64); 33] = {
     values[30] = (0, 5_000_000, 1e6);
     values[31] = (1_000, 5_000_000, 1e6);
     values[32] = (0, 1_000_000, 1e6);
+    values[33] = (10_000, 1_000_000, 1e6);
+    values[34] = (64_000, 4_031_000, 1e3);
+    values[35] = (100, 500_000, 1e3);
+    values[36] = (0, 1_000_000, 1e3);
     values
 };
+/// Values of a finger in records of version 1, which know no heat-flux sensor.
+const VALUES_IN_VERSION_1: usize = 33;
 
 #[derive(Arbitrary, Debug)]
 struct Input {
@@ -45,9 +52,10 @@ enum Event {
     Flip { at: u16, bits: u8 },
     /// Overwrites bytes.
     Bytes { at: u16, bytes: Vec<u8> },
-    /// Appends a record whose checksums are right: values as fractions of their ranges, any header, any length.
+    /// Appends a record whose checksums are right: values as fractions of their ranges, of both versions, any header, any length.
     Record {
-        values: [i16; 33],
+        values: [i16; 37],
+        is_version_1: bool,
         header: Option<[u8; 4]>,
         length: Option<u8>,
     },
@@ -143,9 +151,17 @@ impl<const FINGERS: usize> History<FINGERS> {
             }
             Event::Record {
                 values,
+                is_version_1,
                 header,
                 length,
-            } => self.append_record(values, *header, *length),
+            } => {
+                let count = if *is_version_1 {
+                    VALUES_IN_VERSION_1
+                } else {
+                    37
+                };
+                self.append_record(&values[..count], *header, *length);
+            }
             Event::Save { number, cut } => {
                 if let Some((nth, seed)) = cut {
                     self.cells
@@ -162,12 +178,7 @@ impl<const FINGERS: usize> History<FINGERS> {
     }
 
     /// Appends a record, which counts as written if it is valid.
-    fn append_record(
-        &mut self,
-        fractions: &[i16; 33],
-        header: Option<[u8; 4]>,
-        length: Option<u8>,
-    ) {
+    fn append_record(&mut self, fractions: &[i16], header: Option<[u8; 4]>, length: Option<u8>) {
         let units: Vec<_> = fractions
             .iter()
             .zip(VALUES)
@@ -177,37 +188,17 @@ impl<const FINGERS: usize> History<FINGERS> {
                 (0.5 * (min + max) + 0.6 * (max - min) * f64::from(*fraction) / 32768.0) as i32
             })
             .collect();
-        let valid = [1, 0, 1, FINGERS as u8];
-        let header = header.unwrap_or(valid);
+        let version = if units.len() == VALUES_IN_VERSION_1 {
+            1
+        } else {
+            2
+        };
+        let header = header.unwrap_or([version, 0, 1, FINGERS as u8]);
         let mut content = header.to_vec();
         (0..FINGERS).for_each(|_| content.extend(units.iter().flat_map(|unit| unit.to_le_bytes())));
-        let valid_length = content.len();
-        content.resize(length.map_or(valid_length, usize::from), 0);
-        let allowed = units
-            .iter()
-            .zip(VALUES)
-            .all(|(unit, (min, max, _))| (min..=max).contains(unit));
-        if content == [1, 0, 0, 0] {
-            self.written.push(None);
-        } else if header == valid && content.len() == valid_length && allowed {
-            let mut values = units
-                .iter()
-                .zip(VALUES)
-                .map(|(unit, (_, _, per_unit))| f64::from(*unit) / per_unit);
-            let mut next = || values.next().unwrap_or_default();
-            let settings = StoredSettings {
-                calibration: Calibration {
-                    steps_counts: std::array::from_fn(|_| next()),
-                    corrections: std::array::from_fn(|_| Correction {
-                        offset_k: next(),
-                        slope: next(),
-                        curvature_1_k: next(),
-                    }),
-                },
-                tile: Tile::from_array_rounded(std::array::from_fn(|_| next())),
-            };
-            self.written.push(Some([settings; FINGERS]));
-        }
+        let length = length.map_or(content.len(), usize::from);
+        content.resize(length, 0);
+        self.written.extend(settings_in(&content));
         let checksum = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&content);
         content.extend(checksum.to_le_bytes());
         let _ = append(&mut self.cells, &content);
@@ -227,4 +218,56 @@ impl<const FINGERS: usize> History<FINGERS> {
         assert!(done.is_ok(), "cannot be saved: {done:?}");
         assert_eq!(self.load().ok(), Some(settings), "stored, but not found");
     }
+}
+
+/// The settings that a record with this content before its checksum holds, if it is a valid one.
+fn settings_in<const FINGERS: usize>(content: &[u8]) -> Option<Option<[StoredSettings; FINGERS]>> {
+    let (header, values) = content.split_first_chunk::<4>()?;
+    let count = match header {
+        [1, 0, ..] => VALUES_IN_VERSION_1,
+        [2, 0, ..] => VALUES.len(),
+        _ => return None,
+    };
+    if header[2..] == [0, 0] && values.is_empty() {
+        return Some(None);
+    }
+    if header[2..] != [1, FINGERS as u8] || values.len() != 4 * count * FINGERS {
+        return None;
+    }
+    let (units, _) = values.as_chunks::<4>();
+    let units: Vec<_> = units.iter().map(|unit| i32::from_le_bytes(*unit)).collect();
+    let fingers: Option<Vec<_>> = units.chunks(count).map(finger_of).collect();
+    Some(fingers?.try_into().ok())
+}
+
+/// The settings of a finger with these stored integers, if all are within their ranges.
+fn finger_of(units: &[i32]) -> Option<StoredSettings> {
+    let has_flux_sensor = units[VALUES_IN_VERSION_1..].iter().any(|unit| *unit != 0);
+    let count = if has_flux_sensor {
+        VALUES.len()
+    } else {
+        VALUES_IN_VERSION_1
+    };
+    let mut values = Vec::new();
+    for (unit, (min, max, per_unit)) in units.iter().zip(VALUES).take(count) {
+        if !(min..=max).contains(unit) {
+            return None;
+        }
+        values.push(f64::from(*unit) / per_unit);
+    }
+    let mut values = values.into_iter();
+    let mut next = || values.next().unwrap_or_default();
+    Some(StoredSettings {
+        calibration: Calibration {
+            steps_counts: std::array::from_fn(|_| next()),
+            corrections: std::array::from_fn(|_| Correction {
+                offset_k: next(),
+                slope: next(),
+                curvature_1_k: next(),
+            }),
+        },
+        tile: Tile::from_array_rounded(std::array::from_fn(|_| next())),
+        flux_sensor: has_flux_sensor
+            .then(|| FluxSensor::from_array_rounded(std::array::from_fn(|_| next()))),
+    })
 }

@@ -76,6 +76,16 @@ fn settings_of_five_fingers_survive_a_power_cut_in_any_flash_operation() {
 }
 
 #[test]
+fn settings_of_ten_fingers_with_heat_flux_sensors_can_be_stored() {
+    let mut cells = erased();
+    for number in 1000..1010 {
+        let settings = numbered::<10>(number);
+        cells = saved(&cells, settings.as_ref(), None);
+        assert_eq!(loaded(&cells), settings, "save {number}");
+    }
+}
+
+#[test]
 fn settings_can_be_stored_after_damage_to_any_byte_of_the_flash() {
     // After 40 saves a sector is full and closed, the next is in use, and the third is empty.
     let cells = (0..40).fold(erased(), |cells, number| {

@@ -2,15 +2,14 @@
 
 use fixed::types::I20F12;
 use thermal_learner::Flux;
-use thermal_settings::FluxSensor;
+
+use super::flux_parameters::{CODE_PLACES, FluxParameters};
 
 /// Codes beyond which the amplifier is at a rail, as with a broken wire.
 const CODES: core::ops::RangeInclusive<u16> = 64..=4031;
 /// Ticks after which a code that has not changed is that of a converter which does not convert: noise alone changes it in
 /// almost every tick.
 const UNCHANGED_TICKS_MAX: u8 = 100;
-/// Binary places of codes before they are scaled.
-const CODE_PLACES: u32 = 4;
 
 /// Converts codes of the sensor to a flux, and finds codes that cannot be right.
 #[derive(Clone, Debug)]
@@ -25,15 +24,15 @@ pub struct FluxReading {
 }
 
 impl FluxReading {
-    /// Readings of this sensor. Converts from `f64`.
+    /// Readings of this sensor, none yet.
     #[must_use]
-    pub fn new(sensor: &FluxSensor) -> Self {
+    pub const fn new(parameters: &FluxParameters) -> Self {
         Self {
-            zero: libm::round(libm::ldexp(sensor.zero_counts, CODE_PLACES as i32)) as i32,
-            w_m2_per_count: I20F12::saturating_from_num(1.0 / sensor.counts_per_w_m2),
+            zero: parameters.zero,
+            w_m2_per_count: parameters.w_m2_per_count,
             last_code: 0,
             unchanged_ticks: 0,
-            is_faulty: false,
+            is_faulty: true,
         }
     }
 
@@ -46,14 +45,20 @@ impl FluxReading {
         };
         self.last_code = code;
         self.is_faulty = !CODES.contains(&code) || self.unchanged_ticks >= UNCHANGED_TICKS_MAX;
-        let above_zero = (i32::from(code) << CODE_PLACES) - self.zero;
+        self.last()
+    }
+
+    /// The last flux, W/m²; `None` before the first code, and if the last one cannot be right.
+    #[must_use]
+    pub fn last(&self) -> Option<Flux> {
+        let above_zero = (i32::from(self.last_code) << CODE_PLACES) - self.zero;
         let bits = i64::from(above_zero) * i64::from(self.w_m2_per_count.to_bits());
         // A code has 12 bits, so the flux is within ±2^16 counts of at most 2^19 W/m².
         let bits = (bits >> CODE_PLACES).clamp(i32::MIN.into(), i32::MAX.into());
         (!self.is_faulty).then_some(Flux::from_bits(bits as i32))
     }
 
-    /// Whether the last code cannot be right.
+    /// Whether the last code cannot be right, or there was none yet.
     #[must_use]
     pub const fn is_faulty(&self) -> bool {
         self.is_faulty
@@ -63,6 +68,7 @@ impl FluxReading {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+    use thermal_settings::FluxSensor;
 
     use super::*;
 
@@ -74,7 +80,7 @@ mod tests {
             gain in prop_oneof![Just(0.1192), 0.01..10.0],
         ) {
             let sensor = FluxSensor { counts_per_w_m2: gain, zero_counts: zero, ..FluxSensor::DESIGNED };
-            let flux = FluxReading::new(&sensor).convert(code).expect("a valid code");
+            let flux = FluxReading::new(&FluxParameters::new(&sensor)).convert(code).expect("a valid code");
             let exact = (f64::from(code) - zero) / gain;
             // Rounded are the zero, to a sixteenth of a count, and the reciprocal of the gain.
             let error = 0.5 / f64::from(1 << CODE_PLACES) / gain + exact.abs() * gain / 4096.0 + 1e-3;
@@ -84,7 +90,7 @@ mod tests {
 
     #[test]
     fn codes_at_the_rails_and_one_that_stays_are_faults() {
-        let mut reading = FluxReading::new(&FluxSensor::DESIGNED);
+        let mut reading = FluxReading::new(&FluxParameters::new(&FluxSensor::DESIGNED));
         for (code, is_valid) in [
             (63, false),
             (64, true),

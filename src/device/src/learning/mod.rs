@@ -9,20 +9,21 @@
 //! The learner runs outside of the control path. What it has found is applied ten ticks after its input was taken, however
 //! soon it was there, so that its computing time changes nothing.
 
+mod flux_parameters;
 mod flux_reading;
+mod resting_code;
 mod window_sums;
 
 use contact_model::fixed_point::Celsius;
-use thermal_learner::{Flux, LearnerInput, LearnerOutput, Place, Trust};
-use thermal_settings::FluxSensor;
+use thermal_learner::{Distrust, Flux, LearnerInput, LearnerOutput, Place, Restart, Trust};
 
 use crate::estimate::filter_change;
+pub use flux_parameters::FluxParameters;
 use flux_reading::FluxReading;
+pub use resting_code::RestingCode;
+use resting_code::RestingCodes;
 use window_sums::WindowSums;
 pub use window_sums::{StateAtEnd, TickOfContact};
-
-/// How many lags of the sensor its flux counts after the finger has lifted: what is left of the contact's is then below 1 %.
-const LAGS_AFTER_LIFTING: f64 = 5.0;
 
 /// What the host is told about the finger that is learnt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,12 +38,55 @@ pub enum FingerKnowledge {
     Learnt(Trust),
 }
 
+impl FingerKnowledge {
+    /// All with their words in the protocol. Those with a reason are on the way to the assumed finger, or there.
+    pub const PROTOCOL_WORDS: [(&'static str, Self); 11] = [
+        ("assumed", Self::NoSensor),
+        ("learning", Self::Learnt(Trust::Learning)),
+        ("trusted", Self::Learnt(Trust::Trusted)),
+        ("sensor-range", Self::SensorFault),
+        ("sensor", Self::Learnt(Trust::Mean(Distrust::Sensor))),
+        ("between", Self::Learnt(Trust::Mean(Distrust::Between))),
+        ("wet", Self::Learnt(Trust::Mean(Distrust::Wet))),
+        ("contact", Self::Learnt(Trust::Mean(Distrust::Contact))),
+        (
+            "unexplained",
+            Self::Learnt(Trust::Mean(Distrust::Unexplained)),
+        ),
+        (
+            "arithmetic",
+            Self::Learnt(Trust::Mean(Distrust::Arithmetic)),
+        ),
+        ("late", Self::Late),
+    ];
+
+    /// Its word in the protocol.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::NoSensor => "assumed",
+            Self::SensorFault => "sensor-range",
+            Self::Late => "late",
+            Self::Learnt(Trust::Learning) => "learning",
+            Self::Learnt(Trust::Trusted) => "trusted",
+            Self::Learnt(Trust::Mean(why)) => match why {
+                Distrust::Sensor => "sensor",
+                Distrust::Between => "between",
+                Distrust::Wet => "wet",
+                Distrust::Contact => "contact",
+                Distrust::Unexplained => "unexplained",
+                Distrust::Arithmetic => "arithmetic",
+            },
+        }
+    }
+}
+
 /// Learning of one finger: the sensor, the present window, and what was asked and answered.
 #[derive(Clone, Debug)]
 pub struct FingerLearning {
+    parameters: FluxParameters,
     reading: FluxReading,
-    /// Ticks after lifting in which the flux still counts.
-    ticks_after_lifting: u32,
+    resting: RestingCodes,
     /// Ticks since the finger has lifted.
     lifted_ticks: u32,
     sums: WindowSums,
@@ -66,13 +110,13 @@ pub struct FingerLearning {
 }
 
 impl FingerLearning {
-    /// Learning with this sensor of a finger that is at `place` before its contacts. Converts from `f64`, so it is for set-up
-    /// only.
+    /// Learning with this sensor of a finger that is at `place` before its contacts.
     #[must_use]
-    pub fn new(sensor: &FluxSensor, place: Place) -> Self {
+    pub fn new(parameters: &FluxParameters, place: Place) -> Self {
         Self {
-            reading: FluxReading::new(sensor),
-            ticks_after_lifting: (LAGS_AFTER_LIFTING * sensor.lag_s / crate::TICK_S) as u32,
+            parameters: *parameters,
+            reading: FluxReading::new(parameters),
+            resting: RestingCodes::default(),
             lifted_ticks: u32::MAX,
             sums: WindowSums::default(),
             sequence: 0,
@@ -129,8 +173,10 @@ impl FingerLearning {
             Some(_) => 0,
             None => self.lifted_ticks.saturating_add(1),
         };
-        let counts = self.lifted_ticks <= self.ticks_after_lifting;
+        let counts = self.lifted_ticks <= self.parameters.ticks_after_lifting;
         let flux = self.reading.convert(code);
+        let rests = flux.is_some() && !counts;
+        self.resting.add(rests.then_some(code));
         let flux = flux.map(|flux| if counts { flux } else { Flux::ZERO });
         self.sums.add(flux, contact);
         self.sums.is_complete()
@@ -138,7 +184,7 @@ impl FingerLearning {
 
     /// Ends a complete window: offers the next input, and returns the finger to be applied now, if it is not the one that was
     /// applied last. That is the answer to the input before; if it is missing, one that is nearer to the assumed finger, until
-    /// a window without contact.
+    /// a window without contact. So it is while the sensor's code cannot be right.
     pub fn end_window(&mut self, state: &StateAtEnd) -> Option<LearnerOutput> {
         let answer = self.output.take();
         let sums = core::mem::take(&mut self.sums);
@@ -155,12 +201,15 @@ impl FingerLearning {
         self.is_asked = true;
         self.input = Some(LearnerInput {
             sequence: self.sequence,
-            restart: self.restart.take(),
+            restart: (self.restart.take()).map(|place| Restart {
+                place,
+                sensor: self.parameters.sensor,
+            }),
             flux_w_m2: sums.mean_flux(),
             contact,
         });
         let before = self.applied;
-        if self.was_late {
+        if self.was_late || self.reading.is_faulty() {
             self.applied = self.applied.map(|applied| applied.nearer_to_mean());
         } else if answer.is_some() {
             self.applied = answer;
@@ -197,6 +246,24 @@ impl FingerLearning {
         if output.sequence == self.sequence && self.is_asked {
             self.output = Some(*output);
         }
+    }
+
+    /// How much of the learnt skin offset the filtered temperature of the skin contains, K.
+    #[must_use]
+    pub const fn included_offset(&self) -> Celsius {
+        self.included_offset
+    }
+
+    /// The last flux, W/m²; `None` if the sensor's code cannot be right.
+    #[must_use]
+    pub fn flux(&self) -> Option<Flux> {
+        self.reading.last()
+    }
+
+    /// Mean code of the last half second without contact.
+    #[must_use]
+    pub const fn resting_code(&self) -> Option<RestingCode> {
+        self.resting.last()
     }
 
     /// What is known of the finger.

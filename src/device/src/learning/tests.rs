@@ -2,7 +2,8 @@
 
 use contact_model::fixed_point::to_fixed;
 use fixed::types::{I2F30, I4F28};
-use thermal_learner::{FluxSensor as LearnerSensor, Learner, Resistance, WINDOW_TICKS};
+use thermal_learner::{Learner, WINDOW_TICKS};
+use thermal_settings::FluxSensor;
 
 use super::*;
 
@@ -23,13 +24,12 @@ fn code(tick: u32) -> u16 {
 }
 
 fn learning() -> FingerLearning {
-    FingerLearning::new(&FluxSensor::DESIGNED, Place::Air)
+    FingerLearning::new(&FluxParameters::new(&FluxSensor::DESIGNED), Place::Air)
 }
 
 /// An answer to the last input with another finger than the mean one.
 fn answer(input: &LearnerInput) -> LearnerOutput {
-    let sensor = LearnerSensor::new(5000, Resistance::lit("30"));
-    let mean = Learner::new(sensor, Place::Air).advance(input);
+    let mean = Learner::new().advance(input);
     LearnerOutput {
         weights: [I2F30::lit("0.9"); 9],
         air_change: I4F28::lit("0.5"),
@@ -154,7 +154,8 @@ fn an_answer_from_before_a_restart_is_void_and_nothing_is_late() {
         FingerKnowledge::Learnt(Trust::Learning)
     );
     let input = learning.take_input().expect("an input");
-    assert_eq!(input.restart, Some(Place::Pad));
+    let place = input.restart.map(|restart| restart.place);
+    assert_eq!(place, Some(Place::Pad));
 }
 
 #[test]

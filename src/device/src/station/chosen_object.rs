@@ -1,11 +1,10 @@
 //! The object that the host has chosen to present.
 
 use contact_model::fixed_point::{
-    Body, Celsius, ContactPair, FingerBody, Fraction, OwnResistances, ScaledBody, to_fixed,
+    Body, Celsius, ContactPair, FingerBody, Fraction, OwnResistances, ScaledBody,
 };
 use contact_model::material::{MATERIALS, SKIN, Surface};
 use fixed::types::{I4F28, U16F16};
-use thermal_settings::FluxSensor;
 
 use crate::TICK_S;
 use crate::command::{AssumedFinger, ChosenMaterial, ObjectBody};
@@ -42,7 +41,7 @@ impl ChosenObject {
     /// resistance.
     /// Computes the default contact constants for the display's surface in `f64`, so it is for the start only.
     #[must_use]
-    pub fn new(display: &Surface, flux_sensor: Option<&FluxSensor>) -> Self {
+    pub fn new(display: &Surface) -> Self {
         let [(_, any), ..] = &MATERIALS;
         let mut chosen = Self {
             material: None,
@@ -54,10 +53,6 @@ impl ChosenObject {
             mode: ContactModel::default(),
             default_pair: ContactPair::new(&SKIN, any, display, TICK_S).ok(),
         };
-        if let Some(sensor) = flux_sensor {
-            chosen.bodies.resistances.display_layer =
-                to_fixed(sensor.resistance_m2k_w * SKIN.effusivity() / libm::sqrt(TICK_S));
-        }
         chosen.choose_finger(AssumedFinger::default());
         chosen
     }
@@ -99,6 +94,11 @@ impl ChosenObject {
         }
         self.is_half_space = body.is_none();
         self.bodies.are_half_spaces = self.is_half_space && self.finger == AssumedFinger::Thesis;
+    }
+
+    /// The display has a layer of this resistance on its face: its temperature difference per kelvin of scaled flux.
+    pub const fn set_display_layer(&mut self, resistance: U16F16) {
+        self.bodies.resistances.display_layer = resistance;
     }
 
     /// Assumes this finger from now on.

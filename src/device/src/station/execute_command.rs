@@ -53,6 +53,15 @@ impl Station {
                     self.due.add(DueWork::CONTACT_RESTART);
                 }
             }
+            Command::Flux => return Ok(Reply::Flux(self.flux_state())),
+            Command::FluxZero => {
+                self.require_no_object_presented()?;
+                return Ok(Reply::FluxZero(self.flux_zero()?));
+            }
+            Command::FluxSensor(ref sensor) => {
+                self.require_no_object_presented()?;
+                self.replace_flux_sensor(sensor.as_ref());
+            }
             Command::Material(ref material) => {
                 self.object.choose_material(material);
                 self.due.add(DueWork::CONTACT_RESTART);
@@ -230,7 +239,7 @@ impl Station {
             _ => return Err(Refused::TuneNeedsArmed),
         }
         if self.contact.touching() {
-            return Err(Refused::Touched);
+            return Err(Refused::Touched("tune"));
         }
         let sink = self
             .last

@@ -1,12 +1,19 @@
 //! Learning of the finger that touches: between the station's estimates and its learner.
 
 use contact_model::fixed_point::{Celsius, TissueStateFactors, TissueWeights, product};
+use fixed::types::U16F16;
 use thermal_learner::{LearnerInput, LearnerOutput, Place};
 
 use super::{DueWork, Station};
-use crate::command::AssumedFinger;
+use crate::command::{AssumedFinger, FluxState, Refused};
 use crate::estimate::ForceChange;
-use crate::learning::{FingerKnowledge, StateAtEnd, TickOfContact};
+use crate::events::DeviceEventKind;
+use crate::learning::{
+    FingerKnowledge, FingerLearning, FluxParameters, RestingCode, StateAtEnd, TickOfContact,
+};
+
+/// Largest difference of display and room at which the flux from display to air counts as none, K: some 3 W/m².
+const ZERO_DIFFERENCE_MAX: Celsius = Celsius::lit("0.3");
 
 /// Where the assumed finger is before its contacts.
 const fn place(finger: AssumedFinger) -> Place {
@@ -17,15 +24,63 @@ const fn place(finger: AssumedFinger) -> Place {
 }
 
 impl Station {
-    /// [`crate::Device::note_flux_code`].
-    pub(crate) const fn note_flux_code(&mut self, code: u16) {
-        self.flux_code = code;
-        self.due.add(DueWork::FLUX);
+    /// Uses this heat-flux sensor from now on, or none, and forgets what was learnt. A finger that touches begins a new contact.
+    pub(super) fn replace_flux_sensor(&mut self, sensor: Option<&FluxParameters>) {
+        let before = self.learning.take();
+        if before.is_none() && sensor.is_none() {
+            return;
+        }
+        let finger = self.object.assumed_finger();
+        self.learning = sensor.map(|sensor| FingerLearning::new(sensor, place(finger)));
+        (self.object).set_display_layer(sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer));
+        self.object.choose_finger(finger);
+        let included = before.map_or(Celsius::ZERO, |before| before.included_offset());
+        let estimate = &mut self.estimator.finger;
+        estimate.shift_sensed_skin(Celsius::ZERO.saturating_sub(included));
+        estimate.forget_tissue_history();
+        estimate.forget_conductances();
+        self.due.add(DueWork::CONTACT_RESTART);
     }
 
     /// [`crate::Device::finger_has_flux_sensor`].
     pub(crate) const fn has_flux_sensor(&self) -> bool {
         self.learning.is_some()
+    }
+
+    /// Flux and knowledge; `None` without a heat-flux sensor.
+    pub(super) fn flux_state(&self) -> Option<FluxState> {
+        let learning = self.learning.as_ref()?;
+        Some(FluxState {
+            flux: learning.flux(),
+            knowledge: learning.knowledge(),
+        })
+    }
+
+    /// Mean code of the heat-flux sensor, at a time at which no flux is expected.
+    pub(super) fn flux_zero(&self) -> Result<RestingCode, Refused> {
+        let learning = self.learning.as_ref().ok_or(Refused::NoFluxSensor)?;
+        if self.contact.touching() {
+            return Err(Refused::Touched("flux zero"));
+        }
+        let readings = &self.last.readings;
+        let (display, room) = (readings.display.ok(), readings.room.ok());
+        let difference = display
+            .zip(room)
+            .map(|(display, room)| display.saturating_sub(room));
+        let allowed = Celsius::ZERO.saturating_sub(ZERO_DIFFERENCE_MAX)..=ZERO_DIFFERENCE_MAX;
+        if !difference.is_some_and(|difference| allowed.contains(&difference)) {
+            return Err(Refused::DisplayNotAtRoom { display, room });
+        }
+        if learning.flux().is_none() {
+            return Err(Refused::FluxSensorFault);
+        }
+        learning.resting_code().ok_or(Refused::TooEarly)
+    }
+
+    /// [`crate::Device::note_flux_code`].
+    pub(crate) const fn note_flux_code(&mut self, code: u16) {
+        self.flux_code = code;
+        self.due.add(DueWork::FLUX);
     }
 
     /// [`crate::Device::finger_has_learner_input`].
@@ -96,7 +151,11 @@ impl Station {
             resistance: conductances.map(|both| both.average_display_resistance()),
             ticks_since_landing: contact.map_or(0, |contact| contact.ticks_since_landing()),
         };
+        let before = learning.knowledge();
         let learnt = learning.end_window(&state);
+        if learning.knowledge() != before {
+            (self.events).note(DeviceEventKind::FingerKnowledge, self.tick, 0);
+        }
         if let Some(learnt) = learnt.filter(|_| assumed.is_layered()) {
             self.apply_learnt(&learnt);
         }

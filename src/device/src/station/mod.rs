@@ -19,7 +19,6 @@ mod learn;
 mod state;
 
 use contact_model::fixed_point::to_fixed;
-use thermal_learner::Place;
 use thermal_settings::Settings;
 
 pub use state::{ArmedTask, Event, State};
@@ -31,7 +30,7 @@ use crate::estimate::{
 };
 use crate::events::{DeviceEvent, EventReporter};
 use crate::identification::{AbortReason, NormalEquationAccumulator};
-use crate::learning::FingerLearning;
+use crate::learning::{FingerLearning, FluxParameters};
 use crate::reference::{Reference, ReferenceGenerator};
 use crate::safety::{
     self, Fault, FaultDetectors, FaultLatch, PreviousDemandAndResidual, SelfTestReport,
@@ -150,7 +149,7 @@ impl Station {
     pub fn new(settings: &Settings) -> Self {
         let parameters = ControlParameters::new(settings);
         let limit = to_fixed(settings.module.current_limit_a);
-        Self {
+        let mut station = Self {
             sensors: SampleConverter::new(settings),
             averages: ThermistorAverages::default(),
             contact: ContactDetector::default(),
@@ -160,9 +159,8 @@ impl Station {
                 plate: PlateObserver::new(&parameters.observer, limit),
                 finger: FingerEstimator::default(),
             },
-            object: ChosenObject::new(&settings.display, settings.flux_sensor.as_ref()),
-            learning: (settings.flux_sensor.as_ref())
-                .map(|sensor| FingerLearning::new(sensor, Place::Air)),
+            object: ChosenObject::new(&settings.display),
+            learning: None,
             flux_code: 0,
             reference: ReferenceGenerator::default(),
             due: DueWork::default(),
@@ -183,7 +181,10 @@ impl Station {
                 reference: None,
                 demanded: Current::ZERO,
             },
-        }
+        };
+        let flux_sensor = settings.flux_sensor.as_ref().map(FluxParameters::new);
+        station.replace_flux_sensor(flux_sensor.as_ref());
+        station
     }
 
     /// A station as [`Station::new`] makes it, tripped by `cause` if there is one.
@@ -196,13 +197,15 @@ impl Station {
         station
     }
 
-    /// Replaces the thermistor calibration, the gains and the tile's model by those of `settings`, converted from
-    /// `f64`; everything else stays as [`Station::new`] has made it. Called at the start, with the finger's stored
+    /// Replaces the thermistor calibration, the gains, the tile's model and the heat-flux sensor by those of `settings`,
+    /// converted from `f64`; everything else stays as [`Station::new`] has made it. Called at the start, with the finger's stored
     /// settings.
     pub(crate) fn apply_settings(&mut self, settings: &Settings) {
         self.sensors
             .replace_calibration_tables(&CalibrationTables::new(settings));
         self.set_control_parameters(&ControlParameters::new(settings));
+        let flux_sensor = settings.flux_sensor.as_ref().map(FluxParameters::new);
+        self.replace_flux_sensor(flux_sensor.as_ref());
     }
 
     fn set_control_parameters(&mut self, parameters: &ControlParameters) {

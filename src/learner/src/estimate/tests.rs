@@ -35,7 +35,7 @@ fn covariance_stays_positive_over_a_million_updates() {
     let mut random = Random(1);
     let finger = Finger::drawn(&mut random);
     let (sensor, force_n) = (sensor(), 2.0);
-    let scale = Scale::new(finger.place, sensor.lag_deviation);
+    let scale = Scale::new(finger.place, sensor.lag_deviation());
     let mut measurements = Vec::new();
     for object in OBJECTS {
         let errors = Errors::drawn(&mut random);
@@ -47,14 +47,14 @@ fn covariance_stays_positive_over_a_million_updates() {
             errors,
             reported: &sound,
         };
-        let mut signals = Signals::default();
+        let mut signals = Signals::NEW;
         for input in scene.inputs(&mut random, 0) {
             let lagged = signals.advance(&input, &sensor);
             let resistance = display_resistance_m2k_w(force_n) as f32;
             measurements.push(lagged.measurement(resistance, &sensor, &scale, &PRIOR));
         }
     }
-    let mut estimate = Estimate::prior();
+    let mut estimate = Estimate::PRIOR;
     let mut least = f64::INFINITY;
     for (update, measurement) in measurements.iter().cycle().take(UPDATES).enumerate() {
         estimate
@@ -88,7 +88,7 @@ fn measurements_that_are_no_numbers_are_refused() {
             } else {
                 measurement.residual_k = value;
             }
-            let mut estimate = Estimate::prior();
+            let mut estimate = Estimate::PRIOR;
             assert_eq!(estimate.update(&measurement, 1e-4, &scale), None, "{value}");
             for (parameter, limits) in
                 (estimate.parameters.iter()).zip(scale.low.iter().zip(&scale.high))

@@ -10,7 +10,7 @@ use relaxation_fit::{Back, impedance};
 
 use super::random::Random;
 use super::simulation::*;
-use crate::{Distrust, FluxSensor, Learner, LearnerOutput, Resistance, Trust};
+use crate::{Distrust, FluxSensor, Learner, LearnerOutput, Place, Resistance, Restart, Trust};
 
 const FINGERS: u64 = 40;
 
@@ -21,8 +21,14 @@ pub fn sensor() -> FluxSensor {
     )
 }
 
+/// A learner with that sensor of a finger at this place.
+pub fn new_learner(place: Place) -> Learner {
+    let sensor = sensor();
+    Learner::begin(Restart { place, sensor })
+}
+
 pub fn learnt(scene: &Scene<'_>, random: &mut Random, phase: usize) -> Vec<LearnerOutput> {
-    let mut learner = Learner::new(sensor(), scene.finger.place);
+    let mut learner = new_learner(scene.finger.place);
     let inputs = scene.inputs(random, phase);
     inputs.iter().map(|input| learner.advance(input)).collect()
 }

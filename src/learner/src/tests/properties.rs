@@ -5,12 +5,12 @@ use std::vec::Vec;
 use contact_model::fixed_point::{Celsius, WEIGHTS};
 use proptest::prelude::*;
 
-use super::contacts::{learnt, sensor};
+use super::contacts::{learnt, new_learner, sensor};
 use super::random::Random;
 use super::simulation::*;
 use crate::{
     Contact, Distrust, Flux, FluxSensor, Learner, LearnerInput, LearnerOutput, Place, Resistance,
-    Trust,
+    Restart, Trust,
 };
 
 fn place() -> impl Strategy<Value = Place> {
@@ -50,7 +50,11 @@ fn contact() -> impl Strategy<Value = Contact> {
 }
 
 fn input() -> impl Strategy<Value = LearnerInput> {
-    let restart = prop::option::weighted(0.02, place());
+    let restart = place().prop_map(|place| Restart {
+        place,
+        sensor: sensor(),
+    });
+    let restart = prop::option::weighted(0.02, restart);
     (
         any::<u16>(),
         restart,
@@ -90,7 +94,8 @@ proptest! {
         place in place(),
         inputs in prop::collection::vec(input(), 1..300),
     ) {
-        let mut learner = Learner::new(FluxSensor::new(lag_us, Resistance::from_bits(resistance)), place);
+        let sensor = FluxSensor::new(lag_us, Resistance::from_bits(resistance));
+        let mut learner = Learner::begin(Restart { place, sensor });
         for input in inputs {
             let output = learner.advance(&input);
             prop_assert_eq!(output.sequence, input.sequence);
@@ -123,7 +128,7 @@ const LIFTED: LearnerInput = LearnerInput {
 
 #[test]
 fn distrusted_finger_becomes_the_mean_one_until_the_next_landing() {
-    let mut learner = Learner::new(sensor(), Place::Air);
+    let mut learner = new_learner(Place::Air);
     let outputs: Vec<_> = inputs(false)
         .iter()
         .map(|input| learner.advance(input))
@@ -152,7 +157,7 @@ fn distrusted_finger_becomes_the_mean_one_until_the_next_landing() {
         .map(|input| learner.advance(input))
         .collect();
     // Before the new contact is learnt from, all is as before the first.
-    let new = Learner::new(sensor(), Place::Air).advance(&LIFTED);
+    let new = new_learner(Place::Air).advance(&LIFTED);
     assert_eq!(again[2].trust, Trust::Learning);
     assert_eq!(
         (again[2].parameters, again[2].variances),
@@ -166,7 +171,7 @@ fn distrusted_finger_becomes_the_mean_one_until_the_next_landing() {
 
 #[test]
 fn finger_is_kept_between_contacts_with_wider_deviations_until_a_restart() {
-    let mut learner = Learner::new(sensor(), Place::Air);
+    let mut learner = new_learner(Place::Air);
     let new = learner.clone().advance(&LIFTED);
     let last = (inputs(true).iter()).fold(new, |_, input| learner.advance(input));
     let lifted = learner.advance(&LIFTED);
@@ -183,7 +188,10 @@ fn finger_is_kept_between_contacts_with_wider_deviations_until_a_restart() {
     );
     assert_eq!(learner.advance(&LIFTED).variances, lifted.variances);
     let restart = LearnerInput {
-        restart: Some(Place::Air),
+        restart: Some(Restart {
+            place: Place::Air,
+            sensor: sensor(),
+        }),
         ..LIFTED
     };
     assert_eq!(learner.advance(&restart), new);
@@ -191,7 +199,7 @@ fn finger_is_kept_between_contacts_with_wider_deviations_until_a_restart() {
 
 #[test]
 fn windows_that_are_not_steady_change_nothing_that_is_learnt() {
-    let mut learner = Learner::new(sensor(), Place::Air);
+    let mut learner = new_learner(Place::Air);
     let first = learner.advance(&LIFTED);
     for mut input in inputs(false) {
         if let Some(contact) = &mut input.contact {
@@ -209,7 +217,7 @@ fn windows_that_are_not_steady_change_nothing_that_is_learnt() {
 /// The flux is unknown in one window of a contact: from then on the banks are wrong.
 #[test]
 fn contact_with_an_unknown_flux_ends_in_the_mean_finger() {
-    let mut learner = Learner::new(sensor(), Place::Air);
+    let mut learner = new_learner(Place::Air);
     for (window, input) in inputs(true).iter().enumerate() {
         let flux_w_m2 = input.flux_w_m2.filter(|_| window != 40);
         let trust = learner

@@ -18,8 +18,20 @@ fn stored_settings() -> impl Strategy<Value = StoredSettings> {
         1000..=5_000_000,
         0..=1_000_000,
     );
+    let flux_sensor = proptest::option::of((
+        10_000..=1_000_000,
+        64_000..=4_031_000,
+        100..=500_000,
+        0..=1_000_000,
+    ));
     let steps = proptest::array::uniform13(-4000..=4000);
-    (steps, proptest::array::uniform5(correction), tile).prop_map(|(steps, corrections, tile)| {
+    let all = (
+        steps,
+        proptest::array::uniform5(correction),
+        tile,
+        flux_sensor,
+    );
+    all.prop_map(|(steps, corrections, tile, flux_sensor)| {
         let scaled = |units: i32, per: f64| f64::from(units) / per;
         StoredSettings {
             calibration: Calibration {
@@ -33,6 +45,12 @@ fn stored_settings() -> impl Strategy<Value = StoredSettings> {
             tile: Tile::from_array_rounded(
                 [tile.0, tile.1, tile.2, tile.3, tile.4].map(|value| scaled(value, 1e6)),
             ),
+            flux_sensor: flux_sensor.map(|(gain, zero, lag, resistance)| FluxSensor {
+                counts_per_w_m2: scaled(gain, 1e6),
+                zero_counts: scaled(zero, 1e3),
+                lag_ms: scaled(lag, 1e3),
+                resistance_mm2k_w: scaled(resistance, 1e3),
+            }),
         }
     })
 }
@@ -59,16 +77,19 @@ proptest! {
         prop_assert!(decode_settings_record::<1>(&bytes).is_err());
         // Bytes with a valid checksum, then with a valid header too.
         let _any_content = decode_settings_record::<1>(&with_checksum(&bytes));
-        let mut content = std::vec![1, 0, 1, 1];
-        content.extend(bytes.iter().cycle().take(if bytes.is_empty() { 0 } else { RECORD_BYTES_PER_FINGER }));
-        if let Ok(Some([stored])) = decode_settings_record::<1>(&with_checksum(&content)) {
-            prop_assert_eq!(stored.first_value_out_of_range(), None);
+        for (version, length) in [(1, 132), (2, 148)] {
+            let mut content = std::vec![version, 0, 1, 1];
+            content.extend(bytes.iter().cycle().take(if bytes.is_empty() { 0 } else { length }));
+            if let Ok(Some([stored])) = decode_settings_record::<1>(&with_checksum(&content)) {
+                prop_assert_eq!(stored.first_value_out_of_range(), None);
+            }
         }
     }
 
     #[test]
-    fn the_checksum_detects_any_flipped_bit(stored in stored_settings(), bit in 0..8 * (HEADER_BYTES + RECORD_BYTES_PER_FINGER + CHECKSUM_BYTES)) {
+    fn the_checksum_detects_any_flipped_bit(stored in stored_settings(), bit in any::<proptest::sample::Index>()) {
         let mut bytes = encode_settings_record(Some(&[stored]));
+        let bit = bit.index(8 * bytes.len());
         bytes[bit / 8] ^= 1 << (bit % 8);
         prop_assert_eq!(decode_settings_record::<1>(&bytes), Err(RecordError::Checksum));
     }
@@ -93,15 +114,52 @@ fn the_record_has_the_documented_layout() {
         encode_settings_record::<1>(None)[..],
         with_checksum(&[1, 0, 0, 0])[..]
     );
-    assert_eq!(
-        decode_settings_record::<1>(&with_checksum(&[1, 0, 0, 0])),
-        Ok(None)
-    );
+    for version in [1, 2] {
+        let defaults = with_checksum(&[version, 0, 0, 0]);
+        assert_eq!(decode_settings_record::<1>(&defaults), Ok(None));
+    }
+}
+
+#[test]
+fn the_record_of_a_device_with_a_heat_flux_sensor_has_the_documented_layout() {
+    let without = StoredSettings::from_settings(&Settings::default());
+    let with = StoredSettings {
+        flux_sensor: Some(FluxSensor::DESIGNED),
+        ..without
+    };
+    let tile = [2_957_000, 58_500, 103_000, 100_000, 16_000].map(i32::to_le_bytes);
+    let finger = [&[0; 112][..], &tile.concat()].concat();
+    let sensor = [119_200, 2_048_000, 5000, 30_000].map(i32::to_le_bytes);
+    let content = [
+        &[2, 0, 1, 2],
+        &finger[..],
+        &sensor.concat(),
+        &finger,
+        &[0; 16],
+    ]
+    .concat();
+    let bytes = encode_settings_record(Some(&[with, without]));
+    assert_eq!(bytes[..], with_checksum(&content)[..]);
+    assert_eq!(bytes.len(), 4 + 2 * 148 + 4);
+    let decoded = decode_settings_record::<2>(&bytes);
+    assert_eq!(decoded, Ok(Some([with, without])));
+    // Each version has its length.
+    let long = [&[1, 0, 1, 1], &finger[..], &[0; 16]].concat();
+    let short = [&[2, 0, 1, 1], &finger[..]].concat();
+    for content in [long, short] {
+        let bytes = with_checksum(&content);
+        let wrong = Err(RecordError::Length(bytes.len()));
+        assert_eq!(decode_settings_record::<1>(&bytes), wrong);
+    }
 }
 
 #[test]
 fn each_invalid_record_has_its_error_message() {
-    let good = encode_settings_record(Some(&[StoredSettings::from_settings(&Settings::default())]));
+    let stored = StoredSettings {
+        flux_sensor: Some(FluxSensor::DESIGNED),
+        ..StoredSettings::from_settings(&Settings::default())
+    };
+    let good = encode_settings_record(Some(&[stored]));
     let content = &good[..good.len() - CHECKSUM_BYTES];
     let changed = |at: usize, value: &[u8]| {
         let mut content = content.to_vec();
@@ -111,8 +169,8 @@ fn each_invalid_record_has_its_error_message() {
             .to_string()
     };
     assert_eq!(
-        changed(0, &[2]),
-        "stored settings have the unknown version 2; known: 1"
+        changed(0, &[3]),
+        "stored settings have the unknown version 3; known: 1 2"
     );
     assert_eq!(
         changed(2, &[9]),
@@ -131,6 +189,15 @@ fn each_invalid_record_has_its_error_message() {
     assert_eq!(
         changed(4 + 4 * 28, &99_999i32.to_le_bytes()),
         "stored gain 0.099999 of finger 0 out of range; 0.1 to 15 K/s/A"
+    );
+    // The gain of the heat-flux sensor, counts per W/m2, also of one that has the other values.
+    assert_eq!(
+        changed(4 + 4 * 33, &9_999i32.to_le_bytes()),
+        "stored gain 0.009999 of finger 0 out of range; 0.01 to 1 counts per W/m2"
+    );
+    assert_eq!(
+        changed(4 + 4 * 33, &[0; 4]),
+        "stored gain 0 of finger 0 out of range; 0.01 to 1 counts per W/m2"
     );
     assert_eq!(
         decode_settings_record::<1>(&with_checksum(&content[..100])),
@@ -153,6 +220,7 @@ fn stored_settings_determine_the_gains() {
     let stored = StoredSettings {
         calibration: Calibration::default(),
         tile,
+        flux_sensor: Some(FluxSensor::DESIGNED),
     };
     let settings = stored.to_settings_with_factory_defaults();
     assert_eq!(StoredSettings::from_settings(&settings), stored);

@@ -17,7 +17,7 @@ pub fn lines(kept: Option<&[StoredSettings; 1]>) -> Vec<String> {
         || CommandHandler::new(Default::default()),
         CommandHandler::from_stored,
     );
-    (1..=8)
+    (1..=9)
         .map(|line| {
             let answer = handler.answer(&format!("settings {line}"), |_, _| {
                 unreachable!("the station executes nothing")
@@ -76,7 +76,7 @@ fn corrupt_settings_trip_the_device_until_others_are_saved() {
         encode_settings_record(Some(&[StoredSettings::from_settings(&Default::default())]));
     assert!(record.len() < RECORD_MAX_BYTES);
     let mut content = record[..record.len() - 4].to_vec();
-    content[0] = 2;
+    content[0] = 3;
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&content);
     content.extend(crc.to_le_bytes());
     assert!(append(&mut cells, &content));
