@@ -246,13 +246,12 @@ impl Pins {
 impl Wiring for Pins {
     fn adc(&mut self, channel: u8, now: u64) -> u16 {
         self.first_conversion.get_or_insert(now);
+        if channel == FLUX_INPUT {
+            return self.world.flux_code();
+        }
         let input = ADC_INPUTS.iter().position(|input| *input == channel);
-        let code = match input {
-            Some(index) => Some(self.world.convert(Channel::ALL[index])),
-            None => (self.world.flux_code()).filter(|_| channel == FLUX_INPUT),
-        };
         // An unconnected input floats; it reads as the middle of the range.
-        code.unwrap_or(0x800)
+        input.map_or(0x800, |index| self.world.convert(Channel::ALL[index]))
     }
 
     fn pin(&self, port: u8, bit: u8) -> Option<bool> {

@@ -11,8 +11,10 @@ mod surroundings;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
+use thermal_client::client::PlainCommand;
 use thermal_client::commissioning::SurroundingsError;
 use thermal_plant::{ConfigError, Params};
+use thermal_settings::FluxSensor;
 
 use crate::engine::NativeEngine;
 use crate::scene::Scene;
@@ -30,16 +32,26 @@ pub use surroundings::{SimulatedOperator, SimulatedSurroundings, SurroundingsAct
 /// Lines of settings, or why commissioning failed; computed once.
 type SharedSettings = Arc<OnceLock<Result<Vec<String>, CommissionError>>>;
 
-/// The settings of a scene's device as lines; none if it is not commissioned. Computed by the native engine, once per
-/// process for each device.
+/// The settings of a scene's device as lines: those of commissioning, none if it is not commissioned, and its heat-flux sensor
+/// if it is fitted. Computed by the native engine, once per process for each device.
 ///
 /// # Errors
 /// The device cannot be commissioned.
 pub fn settings_for_scene(scene: &Scene) -> Result<Vec<String>, CommissionError> {
-    if !scene.commissioned {
-        return Ok(Vec::new());
+    let mut lines = if scene.commissioned {
+        settings_for_device(&scene.params, scene.room_c, scene.seed)?
+    } else {
+        Vec::new()
+    };
+    // Its errors in the plant are those that are left after its gain was calibrated and its zero taken.
+    if let Some(flux) = &scene.params.flux {
+        let sensor = FluxSensor {
+            counts_per_w_m2: flux.counts_per_w_m2,
+            ..FluxSensor::DESIGNED
+        };
+        lines.push(PlainCommand::FluxSensor(Some(sensor)).to_string());
     }
-    settings_for_device(&scene.params, scene.room_c, scene.seed)
+    Ok(lines)
 }
 
 /// The settings of a device with these parameters and this seed of its converter, in a room, deg C.

@@ -13,13 +13,13 @@ use thermal_device::{
     Device, FingerIndex, PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_PERIOD_STEPS_OF_ONE_FINGER,
     TriggerEdge,
 };
-use thermal_learner::{FluxSensor as LearnerSensor, Learner, Place, Resistance};
+use thermal_learner::Learner;
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::comparator::ComparatorTest as PlantTest;
 use thermal_protocol::{
     CommandHandler, Error, LineReader, OutgoingLine, Reply, UnsolicitedLine, wrap_as_telemetry_line,
 };
-use thermal_settings::{FluxSensor, Settings, StoredSettings, decode_settings_record};
+use thermal_settings::{Settings, StoredSettings, decode_settings_record};
 
 use super::{BAUD, DeviceReset, Engine};
 use crate::World;
@@ -52,9 +52,6 @@ const OFF: BoardOutputs = BoardOutputs {
     comparator_test: ComparatorTest::None,
     trigger_output: false,
 };
-
-/// Code of an input that nothing is connected to: the middle of the range.
-const FLOATING_CODE: u16 = 0x800;
 
 /// Scans between the boundaries: four end the first step's tick, eight and four follow.
 const SCANS_BEFORE_START: usize = 4;
@@ -108,18 +105,6 @@ struct Finger {
     learner: Learner,
 }
 
-/// A learner for the heat-flux sensor as it was designed; the device says of which finger.
-fn learner() -> Learner {
-    let FluxSensor {
-        lag_s,
-        resistance_m2k_w,
-        ..
-    } = FluxSensor::DESIGNED;
-    let resistance_mm2k_w = Resistance::from_num(1e6 * resistance_m2k_w);
-    let sensor = LearnerSensor::new((1e6 * lag_s) as u32, resistance_mm2k_w);
-    Learner::new(sensor, Place::Air)
-}
-
 impl Finger {
     /// A finger whose first tick has just started. On a device with several, which share the converter through multiplexers,
     /// one scan is discarded before those of each tick. For the finger that the multiplexers select at power-up, two scans are
@@ -133,7 +118,7 @@ impl Finger {
             fault: false,
             outputs: OFF,
             flux_code: 0,
-            learner: learner(),
+            learner: Learner::new(),
         };
         finger.discard_scans(more_at_first);
         finger.start_tick();
@@ -197,17 +182,6 @@ impl Finger {
     }
 }
 
-/// Factory defaults of a device with these fingers. It has heat-flux sensors if each finger has one.
-fn settings(fingers: &[Finger]) -> Settings {
-    let mut codes = fingers.iter().map(|finger| finger.world.flux_code());
-    Settings {
-        flux_sensor: codes
-            .all(|code| code.is_some())
-            .then_some(FluxSensor::DESIGNED),
-        ..Settings::default()
-    }
-}
-
 impl NativeEngine {
     /// A device that has just started its first tick.
     #[must_use]
@@ -245,7 +219,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
     }
 
     fn with_fingers(fingers: [Finger; FINGERS], pwm_period_steps: u16) -> Self {
-        let settings = settings(&fingers);
+        let settings = Settings::default();
         let mut native = Self {
             fingers,
             handler: CommandHandler::new(settings),
@@ -284,8 +258,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         let needs_scatter = self.device.finger_needs_scatter(index);
         let samples = finger.samples(shared, needs_scatter);
         if self.device.finger_has_flux_sensor(index) {
-            let converted = finger.world.flux_code().unwrap_or(FLOATING_CODE);
-            let code = std::mem::replace(&mut finger.flux_code, converted);
+            let code = std::mem::replace(&mut finger.flux_code, finger.world.flux_code());
             self.device.note_flux_code(index, code);
         }
         let outputs = self.device.step_finger(index, &samples);
@@ -359,7 +332,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         };
         let before = std::mem::replace(
             &mut self.device,
-            Device::new_optionally_tripped(cause_retained, &settings(&self.fingers)),
+            Device::new_optionally_tripped(cause_retained, &Settings::default()),
         );
         for finger in FingerIndex::all() {
             let dose = match cause {
@@ -383,7 +356,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         self.side_is_high = false;
         for finger in &mut self.fingers {
             (finger.fault, finger.outputs, finger.flux_code) = (false, OFF, 0);
-            finger.learner = learner();
+            finger.learner = Learner::new();
         }
         self.resets.push(DeviceReset {
             t_s: self.now_ns as f64 * 1e-9,

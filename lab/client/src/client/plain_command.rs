@@ -14,7 +14,7 @@ use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_device::stimulus::{CourseEnd, PlayOrder, TemperatureKind};
 use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
-use thermal_settings::CRC_32;
+use thermal_settings::{CRC_32, FluxSensor};
 
 use super::reply::SettingsLine;
 use super::{Command, Fields};
@@ -89,6 +89,10 @@ pub enum PlainCommand {
     ClearCalibration(ThermistorId),
     /// Replace settings.
     Set(SettingsLine),
+    /// Use this heat-flux sensor, or none.
+    FluxSensor(Option<FluxSensor>),
+    /// Take the zero of the heat-flux sensor.
+    FluxZero,
     /// Restart, and store the settings or the factory defaults.
     Store(StorageOrder),
     /// Begin an upload: number of rows, direct term in m² K/W.
@@ -219,6 +223,13 @@ impl fmt::Display for PlainCommand {
                 write!(f, "calibrate {} clear", thermistor_word(*thermistor))
             }
             Self::Set(line) => line.fmt(f),
+            Self::FluxSensor(None) => f.write_str("flux none"),
+            Self::FluxSensor(Some(sensor)) => {
+                f.write_str("flux set")?;
+                let mut values = sensor.to_array().into_iter();
+                values.try_for_each(|value| write!(f, " {value}"))
+            }
+            Self::FluxZero => f.write_str("flux zero"),
             Self::Store(order) => f.write_str(order.name()),
             Self::UploadBegin(rows, direct_m2k_w) => {
                 write!(

@@ -9,8 +9,8 @@ use thermal_device::safety::ThermistorId;
 use super::fields::in_table;
 use super::plain_command::thermistor_word;
 use super::reply::{
-    BoardReport, CalibrationFit, Cause, IdentifiedTile, Identity, RawReadings, SelfTestReport,
-    SettingsLine, Status,
+    BoardReport, CalibrationFit, Cause, FluxReport, IdentifiedTile, Identity, RawReadings,
+    SelfTestReport, SettingsLine, Status,
 };
 use super::{Command, Fields};
 
@@ -60,6 +60,8 @@ queries! {
     QuerySelfTest = "self-test" => SelfTestReport, SelfTestReport::read;
     /// The converter's counts and the fault inputs.
     QueryRaw = "raw" => RawReadings, RawReadings::read;
+    /// Heat-flux sensor, its flux, and what is known of the finger by it; `None` without one.
+    QueryFlux = "flux" => Option<FluxReport>, FluxReport::read;
     /// State of the board.
     QueryBoard = "board" => BoardReport, BoardReport::read;
 }
