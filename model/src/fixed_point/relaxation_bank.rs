@@ -117,6 +117,7 @@ impl<const FAST: usize, const SLOW: usize> StateFactors<FAST, SLOW> {
 }
 
 /// A state times a factor; saturates.
+#[inline(never)]
 fn rescaled(state: I10F54, factor: I32F32) -> I10F54 {
     let bits = (i128::from(state.to_bits()) * i128::from(factor.to_bits())) >> I32F32::FRAC_NBITS;
     let limit = if bits < 0 { i64::MIN } else { i64::MAX };

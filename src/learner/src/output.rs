@@ -2,10 +2,16 @@
 
 use contact_model::fixed_point::{Celsius, WEIGHTS};
 use fixed::traits::Fixed;
-use fixed::types::{I2F30, I4F28};
+use fixed::types::{I2F30, I4F28, U2F30, U4F28, U10F22};
 
 use crate::parameters::{AIR, PARAMETERS, Parameters, RESISTANCE, SKIN, Scale, relative_weights};
 use crate::trust::Trust;
+
+/// Differences of a finger from the applied one that are not worth the device's time.
+const WEIGHT_TOLERANCE: U2F30 = U2F30::lit("0x.002");
+const AIR_TOLERANCE: U4F28 = U4F28::lit("0x.008");
+const SKIN_TOLERANCE_K: U10F22 = U10F22::lit("0.0005");
+const RESISTANCE_TOLERANCE: U4F28 = U4F28::lit("0x.002");
 
 /// The finger, to be applied ten ticks after its input was taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,13 +61,14 @@ impl LearnerOutput {
         }
     }
 
-    /// Whether the same finger is to be applied.
+    /// Whether the finger differs too little to be applied anew: by at most some 2 mK of the set-point.
     #[must_use]
-    pub fn is_same_finger(&self, other: &Self) -> bool {
-        self.weights == other.weights
-            && self.air_change == other.air_change
-            && self.skin_offset_k == other.skin_offset_k
-            && self.resistance_factor == other.resistance_factor
+    pub fn is_nearly(&self, other: &Self) -> bool {
+        let weights = self.weights.iter().zip(&other.weights);
+        weights.fold(true, |near, (own, other)| near & (own.abs_diff(*other) <= WEIGHT_TOLERANCE))
+            && self.air_change.abs_diff(other.air_change) <= AIR_TOLERANCE
+            && self.skin_offset_k.abs_diff(other.skin_offset_k) <= SKIN_TOLERANCE_K
+            && self.resistance_factor.abs_diff(other.resistance_factor) <= RESISTANCE_TOLERANCE
     }
 
     /// The next output on the way to the mean finger if the learner does not answer: to a twentieth in ten windows, as the learner

@@ -185,6 +185,8 @@ impl FingerLearning {
     /// Ends a complete window: offers the next input, and returns the finger to be applied now, if it is not the one that was
     /// applied last. That is the answer to the input before; if it is missing, one that is nearer to the assumed finger, until
     /// a window without contact. So it is while the sensor's code cannot be right.
+    #[cold]
+    #[inline(never)]
     pub fn end_window(&mut self, state: &StateAtEnd) -> Option<LearnerOutput> {
         let answer = self.output.take();
         let sums = core::mem::take(&mut self.sums);
@@ -208,14 +210,16 @@ impl FingerLearning {
             flux_w_m2: sums.mean_flux(),
             contact,
         });
-        let before = self.applied;
-        if self.was_late || self.reading.is_faulty() {
-            self.applied = self.applied.map(|applied| applied.nearer_to_mean());
-        } else if answer.is_some() {
-            self.applied = answer;
+        let next = if self.was_late || self.reading.is_faulty() {
+            self.applied.map(|applied| applied.nearer_to_mean())
+        } else {
+            answer
+        };
+        let next = next.filter(|next| !self.applied.is_some_and(|applied| applied.is_nearly(next)));
+        if next.is_some() {
+            self.applied = next;
         }
-        self.applied
-            .filter(|now| before.is_none_or(|before| !before.is_same_finger(now)))
+        next
     }
 
     /// Notes the change of the skin before contact that the learnt offset makes now, K.

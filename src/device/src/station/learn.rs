@@ -116,6 +116,7 @@ impl Station {
 
     /// Adds the last tick to the learner's window, with the sensor's code at its end. At a window's end, takes over what was learnt
     /// up to the window before. A finger that is the thesis's half-space is not learnt.
+    #[inline(never)]
     pub(super) fn learn_from_flux(&mut self) {
         let Some(learning) = &mut self.learning else {
             return;
@@ -162,6 +163,8 @@ impl Station {
     }
 
     /// Goes on with the finger that was learnt, as if it had been known since landing.
+    #[cold]
+    #[inline(never)]
     fn apply_learnt(&mut self, learnt: &LearnerOutput) {
         let from = self.object.bodies().finger.tissue;
         let to = TissueWeights::at_least_min(learnt.weights).tissue();
