@@ -116,8 +116,8 @@ fn an_exact_current_is_no_flux_sensor() {
 fn the_sensor_that_the_device_is_told_of_is_the_plants() {
     let (device, plant) = (FluxSensor::DESIGNED, FluxParams::NOMINAL);
     assert_eq!(device.counts_per_w_m2, plant.counts_per_w_m2);
-    assert_eq!(device.lag_s, plant.lag_s);
-    assert_eq!(device.resistance_m2k_w, plant.resistance_m2k_w);
+    assert_eq!(device.lag_ms, 1e3 * plant.lag_s);
+    assert_eq!(device.resistance_mm2k_w, 1e6 * plant.resistance_m2k_w);
     assert_eq!(FluxParams::read_w_m2(device.zero_counts as u16), 0.0);
     assert_eq!((plant.gain_error, plant.zero_w_m2), (0.0, 0.0));
 }

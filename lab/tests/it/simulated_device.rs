@@ -14,8 +14,8 @@ use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_lab::client::{
     Calibrate, Client, CountSettings, PlainCommand, QueryAssumedFinger, QueryBoard, QueryCause,
-    QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState,
-    upload,
+    QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings,
+    QueryState, upload,
 };
 use thermal_lab::commissioning::{arm, clear_calibration};
 use thermal_lab::link::{Link, SimulatedLink};
@@ -106,7 +106,10 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     let refused = client.ask(&PlainCommand::FluxZero).unwrap_err();
     assert!(refused.refusal().unwrap().contains("look at its wires"));
     let flux = client.ask(&QueryFlux).unwrap().unwrap();
-    assert_eq!((flux.w_m2, flux.finger), (None, FingerKnowledge::SensorFault));
+    assert_eq!(
+        (flux.w_m2, flux.finger),
+        (None, FingerKnowledge::SensorFault)
+    );
     arm(&mut client, None).unwrap();
     client.ask(&PlainCommand::Start).unwrap();
     client.ask(&PlainCommand::Arm).unwrap();

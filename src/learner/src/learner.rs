@@ -50,7 +50,7 @@ impl Learner {
     pub const fn new() -> Self {
         Self::begin(Restart {
             place: Place::Air,
-            sensor: FluxSensor::new(0, Resistance::ZERO),
+            sensor: FluxSensor::UNKNOWN,
         })
     }
 

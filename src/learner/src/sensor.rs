@@ -1,8 +1,8 @@
 //! The flux sensor.
 
+use contact_model::fixed_point::to_fixed;
 use fixed::types::{U0F32, U16F16};
 
-use crate::decay::WindowDecay;
 use crate::window::{Resistance, WINDOW_S};
 
 /// Shortest lag that is distinguished from none, s.
@@ -21,21 +21,26 @@ pub struct FluxSensor {
 }
 
 impl FluxSensor {
+    /// Before the sensor is known.
+    pub(crate) const UNKNOWN: Self = Self {
+        remaining: U0F32::ZERO,
+        mean: U0F32::ZERO,
+        lag_deviation: U16F16::ONE,
+        resistance_mm2k_w: Resistance::ZERO,
+    };
+
     /// A sensor of this lag, µs (lags below 100 µs count as 100 µs), whose layer has this resistance. In `f64`, so for set-up
     /// only.
     #[must_use]
-    pub const fn new(lag_us: u32, resistance_mm2k_w: Resistance) -> Self {
-        let mut lag_s = lag_us as f64 * 1e-6;
-        if lag_s < LAG_MIN_S {
-            lag_s = LAG_MIN_S;
-        }
-        let decay = WindowDecay::new(1.0 / lag_s);
+    pub fn new(lag_us: u32, resistance_mm2k_w: Resistance) -> Self {
+        let lag_s = f64::from(lag_us) * 1e-6;
+        let lag_s = if lag_s < LAG_MIN_S { LAG_MIN_S } else { lag_s };
+        let windows = WINDOW_S / lag_s;
+        let remaining = libm::exp(-windows);
         Self {
-            remaining: fraction(decay.remaining),
-            mean: fraction(decay.mean),
-            lag_deviation: U16F16::from_bits(
-                ((0.1 + 1e-3 / lag_s) * (1u32 << U16F16::FRAC_NBITS) as f64) as u32,
-            ),
+            remaining: to_fixed(remaining),
+            mean: to_fixed((1.0 - remaining) / windows),
+            lag_deviation: to_fixed(0.1 + 1e-3 / lag_s),
             resistance_mm2k_w,
         }
     }
@@ -59,10 +64,3 @@ impl FluxSensor {
 }
 
 const FRACTION_ONE: u64 = 1 << U0F32::FRAC_NBITS;
-
-/// Saturates.
-const fn fraction(value: f64) -> U0F32 {
-    U0F32::from_bits((value * FRACTION_ONE as f64) as u32)
-}
-
-const _: () = assert!(1.0 / LAG_MIN_S * WINDOW_S < 1e4);

@@ -2,22 +2,19 @@
 
 use contact_model::fixed_point::to_fixed;
 use contact_model::material::SKIN;
-use fixed::types::{I20F12, U16F16};
-use thermal_learner::Resistance;
+use fixed::types::{I20F12, I28F4, U16F16};
 use thermal_settings::FluxSensor;
 
 use crate::TICK_S;
 
 /// How many lags of the sensor its flux counts after the finger has lifted: what is left of the contact's is then below 1 %.
 const LAGS_AFTER_LIFTING: f64 = 5.0;
-/// Binary places of codes before they are scaled.
-pub(super) const CODE_PLACES: u32 = 4;
 
 /// What ticks and learner need of the sensor's settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FluxParameters {
-    /// Code without flux, in 2^-[`CODE_PLACES`].
-    pub(super) zero: i32,
+    /// Code without flux.
+    pub(super) zero: I28F4,
     /// W/m² per count.
     pub(super) w_m2_per_count: I20F12,
     /// Ticks after lifting in which the flux still counts.
@@ -34,12 +31,12 @@ impl FluxParameters {
     pub fn new(sensor: &FluxSensor) -> Self {
         let resistance_m2k_w = 1e-6 * sensor.resistance_mm2k_w;
         Self {
-            zero: libm::round(libm::ldexp(sensor.zero_counts, CODE_PLACES as i32)) as i32,
-            w_m2_per_count: I20F12::saturating_from_num(1.0 / sensor.counts_per_w_m2),
+            zero: to_fixed(sensor.zero_counts),
+            w_m2_per_count: to_fixed(1.0 / sensor.counts_per_w_m2),
             ticks_after_lifting: (LAGS_AFTER_LIFTING * sensor.lag_ms * 1e-3 / TICK_S) as u32,
             sensor: thermal_learner::FluxSensor::new(
                 (1e3 * sensor.lag_ms) as u32,
-                Resistance::saturating_from_num(sensor.resistance_mm2k_w),
+                to_fixed(sensor.resistance_mm2k_w),
             ),
             display_layer: to_fixed(resistance_m2k_w * SKIN.effusivity() / libm::sqrt(TICK_S)),
         }

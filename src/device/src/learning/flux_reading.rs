@@ -1,9 +1,9 @@
 //! Readings of the heat-flux sensor.
 
-use fixed::types::I20F12;
+use fixed::types::{I20F12, I28F4};
 use thermal_learner::Flux;
 
-use super::flux_parameters::{CODE_PLACES, FluxParameters};
+use super::flux_parameters::FluxParameters;
 
 /// Codes beyond which the amplifier is at a rail, as with a broken wire.
 const CODES: core::ops::RangeInclusive<u16> = 64..=4031;
@@ -14,8 +14,8 @@ const UNCHANGED_TICKS_MAX: u8 = 100;
 /// Converts codes of the sensor to a flux, and finds codes that cannot be right.
 #[derive(Clone, Debug)]
 pub struct FluxReading {
-    /// Code without flux, in 2^-[`CODE_PLACES`].
-    zero: i32,
+    /// Code without flux.
+    zero: I28F4,
     /// W/m² per count.
     w_m2_per_count: I20F12,
     last_code: u16,
@@ -51,10 +51,10 @@ impl FluxReading {
     /// The last flux, W/m²; `None` before the first code, and if the last one cannot be right.
     #[must_use]
     pub fn last(&self) -> Option<Flux> {
-        let above_zero = (i32::from(self.last_code) << CODE_PLACES) - self.zero;
-        let bits = i64::from(above_zero) * i64::from(self.w_m2_per_count.to_bits());
+        let above_zero = I28F4::from(self.last_code).saturating_sub(self.zero);
+        let bits = i64::from(above_zero.to_bits()) * i64::from(self.w_m2_per_count.to_bits());
         // A code has 12 bits, so the flux is within ±2^16 counts of at most 2^19 W/m².
-        let bits = (bits >> CODE_PLACES).clamp(i32::MIN.into(), i32::MAX.into());
+        let bits = (bits >> I28F4::FRAC_NBITS).clamp(i32::MIN.into(), i32::MAX.into());
         (!self.is_faulty).then_some(Flux::from_bits(bits as i32))
     }
 
@@ -83,7 +83,7 @@ mod tests {
             let flux = FluxReading::new(&FluxParameters::new(&sensor)).convert(code).expect("a valid code");
             let exact = (f64::from(code) - zero) / gain;
             // Rounded are the zero, to a sixteenth of a count, and the reciprocal of the gain.
-            let error = 0.5 / f64::from(1 << CODE_PLACES) / gain + exact.abs() * gain / 4096.0 + 1e-3;
+            let error = 0.5 / f64::from(1 << I28F4::FRAC_NBITS) / gain + exact.abs() * gain / 4096.0 + 1e-3;
             prop_assert!((flux.to_num::<f64>() - exact).abs() <= error, "{flux} for {exact}");
         }
     }

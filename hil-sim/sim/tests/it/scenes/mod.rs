@@ -3,6 +3,7 @@
 mod display_error;
 mod documented;
 mod examples;
+mod flux;
 mod keys;
 mod objects_page;
 mod refused;

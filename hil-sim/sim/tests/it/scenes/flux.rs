@@ -1,0 +1,75 @@
+//! The heat-flux sensor that a scene's device has, or believes to have.
+
+use thermal_sim::World;
+use thermal_sim::engine::NativeEngine;
+use thermal_sim::run::{Outcome, run};
+use thermal_sim::trace::TraceRow;
+
+use super::scene;
+
+/// A layered finger on granite, to which the device is told something before the object appears.
+fn outcome(device: &str, told: &str) -> Outcome {
+    let text = format!(
+        "duration_s = 4\nskin_c = 34\nroom_c = 24\n[device]\n{device}\n[finger]\ntissue = \"layered\"\n\
+         [object]\nmaterial = \"granite\"\nappears_t_s = 0.2\n[[force]]\nt_s = 0.7\nforce_n = 2\n\
+         [[host]]\nt_s = 0.05\nline = \"{told}\"\n[[host]]\nt_s = 0.1\nline = \"events on\"\n\
+         [[host]]\nt_s = 3.9\nline = \"flux\"\n"
+    );
+    let scene = scene(&text);
+    let mut engine = NativeEngine::new(World::new(&scene).expect("a plant for the scene"));
+    run(&scene, &mut engine, |_| ()).expect("the device takes the scene")
+}
+
+/// The last word of the answer to the last `flux`.
+fn word(outcome: &Outcome) -> &str {
+    let (_, answer) = outcome.answers.last().expect("answers");
+    answer.rsplit_once(' ').map_or("", |(_, word)| word)
+}
+
+/// Reported events of the learnt finger.
+fn flux_events(outcome: &Outcome) -> usize {
+    let events = outcome.events.iter();
+    events.filter(|(_, line)| line.ends_with(" flux")).count()
+}
+
+fn setpoints(outcome: &Outcome) -> Vec<f64> {
+    let row = |row: &TraceRow| row.device.as_ref().and_then(|one| one.setpoint_c);
+    outcome.trace.rows().iter().filter_map(row).collect()
+}
+
+#[test]
+fn the_operator_tells_the_device_of_the_sensor_that_it_has() {
+    let with = outcome("flux_sensor = true", "state");
+    assert_eq!(word(&with), "finger=trusted");
+    assert_eq!(flux_events(&with), 1);
+    let without = outcome("", "state");
+    assert_eq!(word(&without), "flux=none");
+    assert_eq!(flux_events(&without), 0);
+}
+
+/// Told of a sensor that its board has not, a device renders the finger that it assumes; told of none, it takes no notice of one.
+#[test]
+fn a_device_that_is_told_wrongly_of_a_sensor_says_so_and_keeps_the_assumed_finger() {
+    let without = outcome("", "state");
+    let believing = outcome("", "flux set 0.1192 2048 5 0");
+    assert_eq!(word(&believing), "finger=sensor-range");
+    assert_eq!(
+        flux_events(&believing),
+        0,
+        "it was so from the first window on"
+    );
+    assert_eq!(setpoints(&believing), setpoints(&without));
+    assert!(setpoints(&without).len() > 3000);
+
+    let unaware = outcome("flux_sensor = true", "flux none");
+    assert_eq!(word(&unaware), "flux=none");
+    let layerless = "flux_sensor = true\n[plant]\nflux.resistance_m2k_w = 0";
+    let unaware = outcome(layerless, "flux none");
+    // The operator's line has delayed the others by 3 ms.
+    let off_k = setpoints(&unaware).into_iter().zip(setpoints(&without));
+    assert!(
+        off_k
+            .map(|(with, without)| (with - without).abs())
+            .all(|off_k| off_k < 1e-3)
+    );
+}
