@@ -85,7 +85,7 @@ impl Allowed {
 }
 
 /// Panics, all but one in libraries. Each switches the bridges off first, and ends in a reset by the watchdog.
-pub static PANICS: [Entry; 8] = [
+pub static PANICS: [Entry; 9] = [
     Entry {
         trees: &[TICK, REFILL],
         names: &["stm32f4xx_hal::dma::Transfer::next_transfer_common"],
@@ -131,6 +131,14 @@ pub static PANICS: [Entry; 8] = [
         why: "the executor polls no future that has ended",
     },
     Entry {
+        trees: &[LEARN],
+        names: &[
+            "thermal_display::app::learn::{{closure}}",
+            "thermal_display::app::learn::{closure#0}",
+        ],
+        why: "the executor polls no future that has ended",
+    },
+    Entry {
         trees: &[HOST],
         names: &[
             "fixed::FixedI32::saturating_from_float_helper",
@@ -143,9 +151,9 @@ pub static PANICS: [Entry; 8] = [
     },
 ];
 
-/// Loops of the control path. Loops that repeat an exclusive access need no entry: they repeat once for each exception
+/// Loops of the control path and of the learner. Loops that repeat an exclusive access need no entry: they repeat once for each exception
 /// between its load and its store.
-pub static LOOPS: [Entry; 12] = [
+pub static LOOPS: [Entry; 14] = [
     Entry {
         trees: &[TICK, CONVERTER, REFILL],
         names: &["stm32f4xx_hal::dma::stream_disable"],
@@ -185,8 +193,26 @@ pub static LOOPS: [Entry; 12] = [
             "contact_model::fixed_point::relaxation_bank::updated_slow",
             "contact_model::fixed_point::relaxation_bank::RelaxationBank::step",
             "contact_model::fixed_point::relaxation_bank::RelaxationBank::scaled_flux_to_match",
+            "contact_model::fixed_point::relaxation_bank::RelaxationBank::rescale",
+            "contact_model::fixed_point::relaxation_bank::StateFactors::new",
         ],
         why: "at most one iteration for each relaxation of a body, whose states are arrays of constant length",
+    },
+    Entry {
+        trees: &[TICK],
+        names: &["contact_model::fixed_point::body::weights::TissueWeights::"],
+        why: "the nine weights of a tissue",
+    },
+    Entry {
+        trees: &[LEARN],
+        names: &[
+            "thermal_learner::estimate::Estimate::",
+            "thermal_learner::output::LearnerOutput::",
+            "thermal_learner::parameters::",
+            "thermal_learner::regressors::",
+            "thermal_learner::signals::",
+        ],
+        why: "the parameters, rates or weights of a finger, arrays of constant length",
     },
     Entry {
         trees: &[TICK],
@@ -196,7 +222,7 @@ pub static LOOPS: [Entry; 12] = [
         why: "arrays of constant length",
     },
     Entry {
-        trees: &[TICK, CONVERTER, RECEIVER],
+        trees: &[TICK, CONVERTER, RECEIVER, LEARN],
         names: &["compiler_builtins::mem::", "compiler_builtins::arm::"],
         why: "moves and clears values, whose sizes are those of their types",
     },
