@@ -91,7 +91,7 @@ impl OwnResistances {
 
 /// `2^62 / n` for `n` from 2^31 on: below 2^31, relative error below 2^-28. A 32-bit division and one step of
 /// Newton's method, because a 64-bit division costs three hundred cycles.
-pub(super) const fn inverse(n: u32) -> u32 {
+pub(in crate::fixed_point) const fn inverse(n: u32) -> u32 {
     // 2^48 / n, relative error below 2^-15.
     let estimate = (u32::MAX / (n >> 16 | 1 << 15)) as i64;
     let residual = (1 << 48) - estimate * n as i64;
