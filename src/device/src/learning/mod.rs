@@ -182,8 +182,8 @@ impl FingerLearning {
         self.sums.is_complete()
     }
 
-    /// Ends a complete window: offers the next input, and returns the finger to be applied now, if it is not the one that was
-    /// applied last. That is the answer to the input before; if it is missing, one that is nearer to the assumed finger, until
+    /// Ends a complete window: offers the next input, and returns the finger to be applied now, if it differs enough from the
+    /// one that was applied last. That is the answer to the input before; if it is missing, one that is nearer to the assumed finger, until
     /// a window without contact. So it is while the sensor's code cannot be right.
     #[cold]
     #[inline(never)]
@@ -210,12 +210,12 @@ impl FingerLearning {
             flux_w_m2: sums.mean_flux(),
             contact,
         });
-        let next = if self.was_late || self.reading.is_faulty() {
-            self.applied.map(|applied| applied.nearer_to_mean())
-        } else {
-            answer
+        let next = match &self.applied {
+            applied if self.was_late || self.reading.is_faulty() => applied
+                .and_then(|applied| Some(applied.nearer_to_mean()).filter(|next| *next != applied)),
+            Some(applied) => answer.filter(|answer| !applied.is_nearly(answer)),
+            None => answer,
         };
-        let next = next.filter(|next| !self.applied.is_some_and(|applied| applied.is_nearly(next)));
         if next.is_some() {
             self.applied = next;
         }

@@ -1,5 +1,9 @@
 //! Windows, answers and the skin's offset, without a station.
 
+extern crate std;
+
+use std::vec::Vec;
+
 use contact_model::fixed_point::to_fixed;
 use fixed::types::{I2F30, I4F28};
 use thermal_learner::{Learner, WINDOW_TICKS};
@@ -97,6 +101,26 @@ fn the_same_finger_is_applied_once() {
     assert_eq!(window(&mut learning, Some(CONTACT)), None);
     let trust = answer(&input).trust;
     assert_eq!(learning.knowledge(), FingerKnowledge::Learnt(trust));
+}
+
+/// A weight that falls by a quarter of the tolerance a window: the answers before it differs by more are not applied, and none of
+/// its way is lost.
+#[test]
+fn a_finger_that_drifts_is_applied_when_it_has_moved_enough() {
+    let mut learning = taught();
+    let drift = I2F30::lit("0x.0008");
+    let mut applied = Vec::new();
+    for number in 1..=15 {
+        let input = learning.take_input().expect("an input");
+        let mut drifted = answer(&input);
+        drifted.weights[3] -= number * drift;
+        learning.put_output(&drifted);
+        if let Some(now) = window(&mut learning, Some(CONTACT)) {
+            assert_eq!(now, drifted);
+            applied.push(number);
+        }
+    }
+    assert_eq!(applied, [5, 10, 15]);
 }
 
 #[test]
