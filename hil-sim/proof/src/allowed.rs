@@ -200,8 +200,11 @@ pub static LOOPS: [Entry; 14] = [
     },
     Entry {
         trees: &[TICK],
-        names: &["contact_model::fixed_point::body::weights::TissueWeights::"],
-        why: "the nine weights of a tissue",
+        names: &[
+            "contact_model::fixed_point::body::weights::TissueWeights::",
+            "thermal_learner::output::LearnerOutput::",
+        ],
+        why: "weights and parameters of a finger, arrays of constant length",
     },
     Entry {
         trees: &[LEARN],

@@ -41,7 +41,7 @@ impl ChosenObject {
     /// resistance.
     /// Computes the default contact constants for the display's surface in `f64`, so it is for the start only.
     #[must_use]
-    pub fn new(display: &Surface) -> Self {
+    pub fn new(display: &Surface, display_layer: U16F16) -> Self {
         let [(_, any), ..] = &MATERIALS;
         let mut chosen = Self {
             material: None,
@@ -54,6 +54,7 @@ impl ChosenObject {
             default_pair: ContactPair::new(&SKIN, any, display, TICK_S).ok(),
         };
         chosen.choose_finger(AssumedFinger::default());
+        chosen.set_display_layer(display_layer);
         chosen
     }
 

@@ -19,6 +19,8 @@ mod learn;
 mod state;
 
 use contact_model::fixed_point::to_fixed;
+use fixed::types::U16F16;
+use thermal_learner::Place;
 use thermal_settings::Settings;
 
 pub use state::{ArmedTask, Event, State};
@@ -149,7 +151,10 @@ impl Station {
     pub fn new(settings: &Settings) -> Self {
         let parameters = ControlParameters::new(settings);
         let limit = to_fixed(settings.module.current_limit_a);
-        let mut station = Self {
+        let flux_sensor = settings.flux_sensor.as_ref().map(FluxParameters::new);
+        let flux_sensor = flux_sensor.as_ref();
+        // Built at once, because the start has no stack for a second station.
+        Self {
             sensors: SampleConverter::new(settings),
             averages: ThermistorAverages::default(),
             contact: ContactDetector::default(),
@@ -159,8 +164,11 @@ impl Station {
                 plate: PlateObserver::new(&parameters.observer, limit),
                 finger: FingerEstimator::default(),
             },
-            object: ChosenObject::new(&settings.display),
-            learning: None,
+            object: ChosenObject::new(
+                &settings.display,
+                flux_sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer),
+            ),
+            learning: flux_sensor.map(|sensor| FingerLearning::new(sensor, Place::Air)),
             flux_code: 0,
             reference: ReferenceGenerator::default(),
             due: DueWork::default(),
@@ -181,10 +189,7 @@ impl Station {
                 reference: None,
                 demanded: Current::ZERO,
             },
-        };
-        let flux_sensor = settings.flux_sensor.as_ref().map(FluxParameters::new);
-        station.replace_flux_sensor(flux_sensor.as_ref());
-        station
+        }
     }
 
     /// A station as [`Station::new`] makes it, tripped by `cause` if there is one.
