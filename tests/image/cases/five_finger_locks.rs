@@ -19,7 +19,7 @@ const ANSWERED_IN_MS: usize = 300;
 
 /// Lines to a finger that touches, in contact with an uploaded object. Each choice is made where it changes most: a material
 /// after an object with a body, a finger after one of another tissue.
-const IN_CONTACT: [&str; 46] = [
+const IN_CONTACT: [&str; 54] = [
     "id",
     "board",
     "state",
@@ -65,6 +65,14 @@ const IN_CONTACT: [&str; 46] = [
     "abort",
     "calibrate skin 33",
     "clear",
+    "flux set 0.1192 2048 5 30",
+    "flux",
+    "flux zero",
+    "arm",
+    "flux none",
+    "arm",
+    "flux set 0.1192 2048 5 30",
+    "flux none",
     "arm",
 ];
 
@@ -261,7 +269,7 @@ const FLASH_TIMINGS: [FlashTiming; 3] = [
 ];
 
 /// The command that locks longest if the flash needs no wait states.
-const LONGEST: &str = "material copper";
+const LONGEST: &str = "flux set 0.1192 2048 5 30";
 
 /// Sends the longest command at times 0.5 us apart over one turn, so that one of them begins to lock right before a finger's
 /// last scan ends.

@@ -258,7 +258,13 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         let needs_scatter = self.device.finger_needs_scatter(index);
         let samples = finger.samples(shared, needs_scatter);
         if self.device.finger_has_flux_sensor(index) {
-            let code = std::mem::replace(&mut finger.flux_code, finger.world.flux_code());
+            // The board for five fingers has no converter for it.
+            let converted = if FINGERS == 1 {
+                finger.world.flux_code()
+            } else {
+                0
+            };
+            let code = std::mem::replace(&mut finger.flux_code, converted);
             self.device.note_flux_code(index, code);
         }
         let outputs = self.device.step_finger(index, &samples);

@@ -26,15 +26,15 @@ const fn place(finger: AssumedFinger) -> Place {
 impl Station {
     /// Uses this heat-flux sensor from now on, or none, and forgets what was learnt. A finger that touches begins a new contact.
     pub(super) fn replace_flux_sensor(&mut self, sensor: Option<&FluxParameters>) {
-        let before = self.learning.take();
-        if before.is_none() && sensor.is_none() {
+        if self.learning.is_none() && sensor.is_none() {
             return;
         }
+        let included =
+            (self.learning.as_ref()).map_or(Celsius::ZERO, |before| before.included_offset());
         let finger = self.object.assumed_finger();
         self.learning = sensor.map(|sensor| FingerLearning::new(sensor, place(finger)));
         (self.object).set_display_layer(sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer));
         self.object.choose_finger(finger);
-        let included = before.map_or(Celsius::ZERO, |before| before.included_offset());
         let estimate = &mut self.estimator.finger;
         estimate.shift_sensed_skin(Celsius::ZERO.saturating_sub(included));
         estimate.forget_tissue_history();
