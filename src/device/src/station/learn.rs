@@ -116,7 +116,7 @@ impl Station {
 
     /// Adds the last tick to the learner's window, with the sensor's code at its end. At a window's end, takes over what was learnt
     /// up to the window before. A finger that is the thesis's half-space is not learnt.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn learn_from_flux(&mut self) {
         let Some(learning) = &mut self.learning else {
             return;
