@@ -88,6 +88,9 @@ def test_opening_switches_checksums_telemetry_and_events_on(fake: FakeDevice) ->
         (lambda d: d.events_on(False), "events off"),
         (lambda d: d.tune(), "tune"),
         (lambda d: d.calibrate_clear("check"), "calibrate check clear"),
+        (lambda d: d.set_flux_sensor(0.1192, 2048, 5, 30), "flux set 0.1192 2048 5 30"),
+        (lambda d: d.remove_flux_sensor(), "flux none"),
+        (lambda d: d.take_flux_zero(), "flux zero"),
         (lambda d: d.set_settings(["set tile 1 2 3 4 5"]), "set tile 1 2 3 4 5"),
     ],
 )

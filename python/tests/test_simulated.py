@@ -258,6 +258,13 @@ def test_all_questions_are_understood(hil_sim: str) -> None:
         assert display.self_test().result == "passed"
         assert 0 < display.raw().display < 4096
         assert display.margins().gain_margin > 1
+        assert display.flux() is None
+        display.set_flux_sensor(0.1192, 2048, 5, 30)
+        flux = display.flux()
+        assert flux is not None and flux.zero_counts == 2048
+        assert display.settings()[8:] == ["set flux 0.119200 2048.000 5.000 30.000"]
+        display.remove_flux_sensor()
+        assert display.flux() is None
         for finger in ("thesis", "mean"):
             display.assume_finger(finger)
             assert display.assumed_finger() == finger

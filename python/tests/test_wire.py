@@ -9,7 +9,7 @@ from thermal_display import TELEMETRY_FIELDS, EventKind, State
 from thermal_display import wire
 from thermal_display.device_clock import DeviceClock
 from thermal_display.events import parse_event
-from thermal_display.replies import Cause, Fields, Identity, Status
+from thermal_display.replies import Cause, Fields, FluxReport, Identity, Status
 from thermal_display.telemetry import TelemetryBuffer, parse_line
 
 
@@ -60,6 +60,8 @@ def test_commits_are_those_of_the_protocols_examples() -> None:
         ("save", False),
         ("hold 30", False),
         ("tune result", False),
+        ("flux", True),
+        ("flux zero", False),
     ],
 )
 def test_questions_and_numbered_rows_only_may_be_repeated(line: str, repeated: bool) -> None:
@@ -129,6 +131,7 @@ def test_more_fields_than_chosen_are_not_taken_for_the_chosen() -> None:
 
 def test_an_event_is_read() -> None:
     assert parse_event("E 12 345 trigger") == (12, 345, EventKind.TRIGGER)
+    assert parse_event("E 12 0 flux") == (12, 0, EventKind.FLUX)
     for line in ["E 12 345 touch", "E 12 land", "E x 0 land", "T 12 345 land"]:
         assert parse_event(line) is None
 
@@ -142,6 +145,14 @@ def test_replies_are_read() -> None:
     assert (status.state, status.fault, status.object_c) == (State.TRIPPED, "host-silent", -3.5)
     assert (status.limited, status.body, status.setpoint_c) == (True, "slab", None)
     assert Cause.read(Fields("cause=-")) is None
+    assert FluxReport.read(Fields("flux=none")) is None
+    flux = FluxReport.read(
+        Fields(
+            "flux=fitted counts_per_w_m2=0.119200 zero_counts=2051.250 lag_ms=5.000 resistance_mm2k_w=30.000 "
+            "w_m2=-3.2 finger=trusted"
+        )
+    )
+    assert flux == FluxReport(0.1192, 2051.25, 5.0, 30.0, -3.2, "trusted")
     old = Identity.read(Fields("thermal-display 0.1.0 fingers=1 tick_hz=1000 scan_hz=16000"))
     assert (old.protocol, old.can("course")) == (None, False)
     with pytest.raises(ValueError, match="material= is missing"):

@@ -24,7 +24,7 @@ const SETTINGS: [&str; 8] = [
 
 /// A device and its command handler.
 pub struct Bench<const FINGERS: usize> {
-    handler: CommandHandler<FINGERS>,
+    pub handler: CommandHandler<FINGERS>,
     pub device: Device<FINGERS>,
 }
 

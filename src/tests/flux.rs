@@ -7,8 +7,11 @@ use thermal_learner::Learner;
 
 use super::commissioning::Bench;
 use super::device::{arm, samples};
+use crate::commissioning::StorageOrder;
 use crate::device::FingerIndex;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
+use crate::protocol::CommandHandler;
+use crate::settings::decode_settings_record;
 
 const FITTED: &str = "flux=fitted counts_per_w_m2=0.119200 zero_counts=2048.000 lag_ms=5.000 \
                       resistance_mm2k_w=30.000";
@@ -196,4 +199,21 @@ fn a_code_that_cannot_be_right_is_a_word_and_an_event() {
         assert!(!answer.contains("sensor-range"), "{answer}");
         assert_eq!(events(&mut one), 1, "{code}");
     }
+}
+
+#[test]
+fn a_stored_sensor_is_there_after_a_restart() {
+    let mut two = Bench::<2>::new();
+    assert_eq!(two.send("@1 flux set 0.11925 2051.5 4.5 31.25"), "@1 ok");
+    let record = two.handler.record_to_save_or_forget(StorageOrder::Save);
+    let stored = decode_settings_record::<2>(&record).expect("a valid record");
+    let stored = stored.expect("settings rather than factory defaults");
+    let mut restarted = Bench::<2>::new();
+    restarted.handler = CommandHandler::from_stored(&stored);
+    restarted.device.restore_settings(&stored);
+    let has_sensor = |finger| restarted.device.finger_has_flux_sensor(finger);
+    assert!(FingerIndex::all().map(has_sensor).eq([false, true]));
+    let line = "@1 ok set flux 0.119250 2051.500 4.500 31.250";
+    assert_eq!(restarted.send("@1 settings 9"), line);
+    assert_eq!(restarted.send("@0 settings"), "@0 ok lines=8");
 }

@@ -16,6 +16,7 @@ from .replies import (
     CalibrationFit,
     Cause,
     Fields,
+    FluxReport,
     IdentifiedTile,
     RawReadings,
     SelfTestReport,
@@ -85,6 +86,10 @@ class Commands:
     def margins(self) -> IdentifiedTile:
         """The tile in use, and the stability margins of its loop."""
         return self._connection.ask("margins", IdentifiedTile.read, self._finger)
+
+    def flux(self) -> FluxReport | None:
+        """The heat-flux sensor, its flux, and what is known of the finger by it; `None` without one."""
+        return self._connection.ask("flux", FluxReport.read, self._finger)
 
     # The object
 
@@ -315,6 +320,28 @@ class Commands:
     def calibrate_clear(self, thermistor: Thermistor) -> None:
         """Deletes points and correction of a thermistor."""
         self._tell(f"calibrate {thermistor} clear")
+
+    def set_flux_sensor(
+        self, counts_per_w_m2: float, zero_counts: float, lag_ms: float, resistance_mm2k_w: float
+    ) -> None:
+        """The display has this heat-flux sensor: gain, 0.01 to 1 counts of 4096 per W/m²; code without flux, 64 to 4031; time
+        constant, 0.1 to 500 ms; thermal resistance, 0 to 1000 mm² K/W. `save` stores it."""
+        values = [
+            wire.number(counts_per_w_m2, "counts_per_w_m2"),
+            wire.number(zero_counts, "zero_counts"),
+            wire.number(lag_ms, "lag_ms"),
+            wire.number(resistance_mm2k_w, "resistance_mm2k_w"),
+        ]
+        self._tell("flux set " + " ".join(values))
+
+    def remove_flux_sensor(self) -> None:
+        """The display has no heat-flux sensor."""
+        self._tell("flux none")
+
+    def take_flux_zero(self) -> None:
+        """Takes the mean code of the last half second as the zero of the heat-flux sensor. No finger may touch the display, which
+        must have the temperature of the room."""
+        self._tell("flux zero")
 
     def settings(self) -> list[str]:
         """The settings as lines `set …`, which `set_settings` takes."""

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TypeVar, cast
 
-from .words import ContactMode, State
+from .words import ContactMode, FingerKnowledge, State
 
 Reply = TypeVar("Reply")
 
@@ -242,6 +242,35 @@ class RawReadings:
             supply=reply.real("supply"),
             stop=reply.flag("stop"),
             fault_line=reply.flag("fault_line"),
+        )
+
+
+@dataclass(frozen=True)
+class FluxReport:
+    """Answer to `flux`: the heat-flux sensor, and what is known by it."""
+
+    counts_per_w_m2: float
+    """Gain, counts of 4096 per W/m²."""
+    zero_counts: float
+    """Code without flux."""
+    lag_ms: float
+    resistance_mm2k_w: float
+    """Thermal resistance, mm² K/W."""
+    w_m2: float | None
+    """Flux out of the finger in the last tick, W/m²; `None` for a code that cannot be right."""
+    finger: FingerKnowledge
+
+    @classmethod
+    def read(cls, reply: Fields) -> FluxReport | None:
+        if reply.word("flux") == "none":
+            return None
+        return cls(
+            counts_per_w_m2=reply.real("counts_per_w_m2"),
+            zero_counts=reply.real("zero_counts"),
+            lag_ms=reply.real("lag_ms"),
+            resistance_mm2k_w=reply.real("resistance_mm2k_w"),
+            w_m2=reply.real_or_none("w_m2"),
+            finger=cast(FingerKnowledge, reply.word("finger")),
         )
 
 

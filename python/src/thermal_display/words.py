@@ -48,6 +48,8 @@ class EventKind(str, Enum):
     """A course has ended by itself."""
     TRIGGER = "trigger"
     """A rising edge at the trigger input."""
+    FLUX = "flux"
+    """What is known of the finger by its heat flux has changed."""
 
     def __str__(self) -> str:
         return self.value
@@ -60,6 +62,20 @@ Material = Literal[
 
 AssumedFinger = Literal["mean", "mean-on-pad", "thesis"]
 """Finger that the device assumes for the one that touches."""
+
+FingerKnowledge = Literal[
+    "learning",
+    "trusted",
+    "sensor-range",
+    "sensor",
+    "between",
+    "wet",
+    "contact",
+    "unexplained",
+    "arithmetic",
+    "late",
+]
+"""What is known of the finger by its heat flux. With all but the first two, set-points assume the finger of `assume_finger`."""
 
 ContactMode = Literal["contact", "semi-infinite"]
 """Set-point with contact resistance, or for perfect contact."""
@@ -76,7 +92,7 @@ PlayEnd = Literal["hold", "neutral"]
 SlabBack = Literal["insulated", "held"]
 """What is behind a slab: no heat passes, or the temperature stays."""
 
-TriggerEvent = Literal["land", "lift", "start", "end"]
+TriggerEvent = Literal["land", "lift", "start", "end", "flux"]
 """Events that can give a pulse at the trigger output."""
 
 Thermistor = Literal["display", "check", "sink", "skin", "room"]

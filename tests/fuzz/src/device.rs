@@ -17,6 +17,7 @@ use thermal_display::protocol::{
     wrap_as_telemetry_line,
 };
 use thermal_display::settings::Settings;
+use thermal_learner::Learner;
 
 use crate::tile::{FULL_SCALE, Tile, sum_at};
 
@@ -37,6 +38,7 @@ pub struct CheckedDevice<const FINGERS: usize> {
     device: Device<FINGERS>,
     handler: CommandHandler<FINGERS>,
     tiles: [Tile; FINGERS],
+    learners: [Learner; FINGERS],
 }
 
 impl<const FINGERS: usize> CheckedDevice<FINGERS> {
@@ -47,6 +49,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
             device: Device::new(&settings),
             handler: CommandHandler::new(settings),
             tiles: [Tile::default(); FINGERS],
+            learners: [const { Learner::new() }; FINGERS],
         }
     }
 
@@ -132,7 +135,16 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     /// Runs one tick and checks the outputs, the change of state and the telemetry.
     pub fn step(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {
         let before = self.state(finger);
+        if self.device.finger_has_flux_sensor(finger) {
+            // Some flux under a force, with the noise of another channel.
+            let code = 1843 + samples.force / 32 + samples.display % 4;
+            self.device.note_flux_code(finger, code);
+        }
         let outputs = self.device.step_finger(finger, samples);
+        if let Some(input) = self.device.take_learner_input(finger) {
+            let output = self.learners[finger.index()].advance(&input);
+            self.device.put_learner_output(finger, &output);
+        }
         let Status {
             state, setpoint, ..
         } = self.status(finger);

@@ -5,11 +5,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use thermal_client::client::{
-    BoardReport, Client, ClientError, PlainCommand, QueryBoard, QueryCause, QueryIdentity,
-    QueryRaw, QuerySelfTest, QueryState, upload_course,
+    BoardReport, Client, ClientError, FluxReport, PlainCommand, QueryBoard, QueryCause, QueryFlux,
+    QueryIdentity, QueryRaw, QuerySelfTest, QueryState, upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
 use thermal_device::events::DeviceEventKind;
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_device::stimulus::TemperatureKind;
 use thermal_device::{StateName, TelemetryFields};
@@ -422,6 +423,28 @@ fn the_answers_for_diagnosis_are_read() {
         uid: Some("00230041513250132032364E".into()),
     };
     assert_eq!(client.ask(&QueryBoard).unwrap(), board);
+    let flux = |text: String| FakeDevice::client(move |_| answers(&text)).ask(&QueryFlux);
+    assert_eq!(flux("ok flux=none".into()).unwrap(), None);
+    let fitted = |flux: &str, finger: &str| {
+        let values =
+            "counts_per_w_m2=0.119200 zero_counts=2051.250 lag_ms=5.000 resistance_mm2k_w=30.000";
+        format!("ok flux=fitted {values} w_m2={flux} finger={finger}")
+    };
+    for (word, finger) in FingerKnowledge::PROTOCOL_WORDS {
+        let report = FluxReport {
+            counts_per_w_m2: 0.1192,
+            zero_counts: 2051.25,
+            lag_ms: 5.0,
+            resistance_mm2k_w: 30.0,
+            w_m2: Some(-3.2),
+            finger,
+        };
+        assert_eq!(flux(fitted("-3.2", word)).unwrap(), Some(report));
+        assert_eq!(finger.name(), word);
+        let unknown = flux(fitted("-", word)).unwrap().unwrap();
+        assert_eq!(unknown.w_m2, None);
+    }
+    assert!(flux(fitted("-3.2", "warm")).is_err());
     let cause = client.ask(&QueryCause).unwrap().unwrap();
     assert_eq!((cause.fault, cause.tick), (Fault::DisplayHot, 1234));
     assert_eq!((cause.sink_c, cause.asked_a), (None, -6.0));

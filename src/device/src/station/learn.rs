@@ -26,20 +26,25 @@ const fn place(finger: AssumedFinger) -> Place {
 impl Station {
     /// Uses this heat-flux sensor from now on, or none, and forgets what was learnt. A finger that touches begins a new contact.
     pub(super) fn replace_flux_sensor(&mut self, sensor: Option<&FluxParameters>) {
-        if self.learning.is_none() && sensor.is_none() {
+        let included = self.learning.as_ref().map(FingerLearning::included_offset);
+        if included.is_none() && sensor.is_none() {
             return;
         }
-        let included =
-            (self.learning.as_ref()).map_or(Celsius::ZERO, |before| before.included_offset());
-        let finger = self.object.assumed_finger();
-        self.learning = sensor.map(|sensor| FingerLearning::new(sensor, place(finger)));
-        (self.object).set_display_layer(sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer));
-        self.object.choose_finger(finger);
-        let estimate = &mut self.estimator.finger;
-        estimate.shift_sensed_skin(Celsius::ZERO.saturating_sub(included));
-        estimate.forget_tissue_history();
-        estimate.forget_conductances();
+        let place = place(self.object.assumed_finger());
+        self.learning = sensor.map(|sensor| FingerLearning::new(sensor, place));
+        let layer = sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer);
+        self.object.set_display_layer(layer);
+        let included = included.unwrap_or_default();
+        (self.estimator.finger).shift_sensed_skin(Celsius::ZERO.saturating_sub(included));
+        self.due.add(DueWork::ASSUMED_FINGER);
         self.due.add(DueWork::CONTACT_RESTART);
+    }
+
+    /// Goes back to the finger that is assumed.
+    pub(super) fn assume_finger_again(&mut self) {
+        self.object.choose_finger(self.object.assumed_finger());
+        self.estimator.finger.forget_tissue_history();
+        self.estimator.finger.forget_conductances();
     }
 
     /// [`crate::Device::finger_has_flux_sensor`].

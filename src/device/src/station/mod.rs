@@ -95,6 +95,8 @@ impl DueWork {
     const CONTACT_RESTART: u8 = 1;
     /// A code of the heat-flux sensor.
     const FLUX: u8 = 2;
+    /// Back to the assumed finger, because what was learnt of the one that touches is void.
+    const ASSUMED_FINGER: u8 = 4;
 
     const fn add(&mut self, work: u8) {
         self.0 |= work;
@@ -262,6 +264,9 @@ impl Station {
     #[inline(never)]
     fn do_due_work(&mut self) {
         let due = core::mem::take(&mut self.due);
+        if due.contains(DueWork::ASSUMED_FINGER) {
+            self.assume_finger_again();
+        }
         if due.contains(DueWork::FLUX) {
             self.learn_from_flux();
         }

@@ -198,6 +198,20 @@ fn finger_is_kept_between_contacts_with_wider_deviations_until_a_restart() {
 }
 
 #[test]
+fn a_restart_brings_place_and_sensor() {
+    let (place, sensor) = (Place::Pad, sensor());
+    let (mut restarted, mut begun) = (Learner::new(), new_learner(place));
+    let first = LearnerInput {
+        restart: Some(Restart { place, sensor }),
+        ..LIFTED
+    };
+    assert_eq!(restarted.advance(&first), begun.advance(&LIFTED));
+    for input in inputs(true) {
+        assert_eq!(restarted.advance(&input), begun.advance(&input));
+    }
+}
+
+#[test]
 fn windows_that_are_not_steady_change_nothing_that_is_learnt() {
     let mut learner = new_learner(Place::Air);
     let first = learner.advance(&LIFTED);

@@ -165,6 +165,47 @@ fn another_finger_is_assumed_at_once_and_learnt_from_the_next_window_on() {
 }
 
 #[test]
+fn another_sensor_and_none_forget_the_learnt_finger() {
+    let other = FluxSensor {
+        resistance_mm2k_w: 60.0,
+        ..FluxSensor::DESIGNED
+    };
+    for sensor in [Some(other), None] {
+        let mut station = station(Some(FluxSensor::DESIGNED));
+        let layer = |station: &Station| station.object.bodies().resistances.display_layer;
+        let designed_layer = layer(&station);
+        // e_skin = 1170 W s^0.5/(m2 K) times 3e-5 m2 K/W over the root of a tick.
+        assert!(
+            (designed_layer.to_num::<f64>() - 1.110).abs() < 2e-3,
+            "{designed_layer}"
+        );
+        for tick in 0..30 {
+            step(&mut station, tick, code(tick));
+            if let Some(input) = station.take_learner_input() {
+                station.put_learner_output(&answer(&input));
+            }
+        }
+        assert_eq!(station.object.bodies().resistances.skin_factor, 1.5);
+        let parameters = sensor.as_ref().map(FluxParameters::new);
+        // Refused while an object is presented.
+        let command = Command::FluxSensor(parameters);
+        assert_eq!(station.execute(&command), Err(Refused::Presenting));
+        station.state = State::Ready;
+        assert!(station.execute(&command).is_ok());
+        step(&mut station, 30, None);
+        let bodies = station.object.bodies();
+        assert_eq!(bodies.finger, *AssumedFinger::Mean.body());
+        assert_eq!(bodies.resistances.skin_factor, I4F28::ONE);
+        let ratio = layer(&station).to_num::<f64>() / designed_layer.to_num::<f64>();
+        let expected = if sensor.is_some() { 2.0 } else { 0.0 };
+        assert!((ratio - expected).abs() < 1e-4, "{ratio}");
+        assert_eq!(station.has_flux_sensor(), sensor.is_some());
+        let skin = station.estimator.finger.temperatures_before_contact();
+        assert!((skin.expect("a skin").skin - Celsius::lit("34")).abs() < 1e-3);
+    }
+}
+
+#[test]
 fn codes_change_nothing_without_a_sensor() {
     let (mut with, mut without) = (station(None), station(None));
     for tick in 0..400 {
