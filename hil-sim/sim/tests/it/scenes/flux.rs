@@ -12,7 +12,7 @@ fn outcome(device: &str, told: &str) -> Outcome {
     let text = format!(
         "duration_s = 4\nskin_c = 34\nroom_c = 24\n[device]\n{device}\n[finger]\ntissue = \"layered\"\n\
          [object]\nmaterial = \"granite\"\nappears_t_s = 0.2\n[[force]]\nt_s = 0.7\nforce_n = 2\n\
-         [[host]]\nt_s = 0.05\nline = \"{told}\"\n[[host]]\nt_s = 0.1\nline = \"events on\"\n\
+         [[host]]\nt_s = 0.01\nline = \"{told}\"\n[[host]]\nt_s = 0.15\nline = \"events on\"\n\
          [[host]]\nt_s = 3.9\nline = \"flux\"\n"
     );
     let scene = scene(&text);
