@@ -106,6 +106,10 @@ fn a_missing_answer_and_one_for_another_window_end_in_the_mean_finger() {
     for earlier in [None, Some(1), Some(u16::MAX)] {
         let mut learning = taught();
         let before = answer(&learning.take_input().expect("an input"));
+        if let Some(earlier) = earlier {
+            let sequence = before.sequence.wrapping_sub(earlier);
+            learning.put_output(&LearnerOutput { sequence, ..before });
+        }
         let mut last = None;
         for number in 0..80 {
             if let Some(input) = learning.take_input() {
