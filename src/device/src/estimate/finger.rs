@@ -39,6 +39,9 @@ const CONDUCTANCE_FORCE_TOLERANCE_SHIFT: u32 = 10;
 /// flux into the display in W/mm².
 const SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2: I2F30 = I2F30::from_bits(39_728_000);
 
+/// A heat flux, W/mm², positive out of the skin.
+pub type FluxPerMm2 = I10F22;
+
 /// Low-pass filtered temperatures of the skin and of the room before a contact. They are not updated from landing until
 /// 2 s after lifting, and not in the first 2 s after a restart of the estimator. The set-points of a contact are
 /// computed from these initial temperatures.
@@ -263,6 +266,10 @@ pub struct FingerEstimator {
     /// The skin that the host assumes for set-points, to which `before_contact` and `skin_state_on_display` then belong,
     /// and the sensed skin beside it; `None` without an assumption.
     assumed_skin: Option<AssumedSkin>,
+    /// Flux of the last tick into the display by the assumed finger, 0 without contact.
+    modelled_flux: FluxPerMm2,
+    /// What a sensor of the heat flux has measured beyond that.
+    flux_beyond_model: FluxPerMm2,
 }
 
 impl FingerEstimator {
@@ -377,6 +384,17 @@ impl FingerEstimator {
         &self.skin_state_on_display
     }
 
+    /// Flux of the last tick into the display by the assumed finger; `None` without contact.
+    #[must_use]
+    pub fn modelled_flux(&self) -> Option<FluxPerMm2> {
+        self.contact.as_ref().map(|_| self.modelled_flux)
+    }
+
+    /// Adds this to the modelled flux from now on.
+    pub const fn set_flux_beyond_model(&mut self, beyond: FluxPerMm2) {
+        self.flux_beyond_model = beyond;
+    }
+
     /// Whether the last tick has filtered the readings of skin and room.
     #[must_use]
     pub const fn has_filtered_skin(&self) -> bool {
@@ -461,8 +479,9 @@ impl FingerEstimator {
         if let Some(assumed) = &mut self.assumed_skin {
             scaled_flux = assumed.step_sensed_skin(display, bodies, before.room, surface);
         }
-        let flux_w_mm2: I10F22 = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
-        saturating_product(flux_w_mm2, contact_area(force))
+        self.modelled_flux = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
+        let flux = self.modelled_flux.saturating_add(self.flux_beyond_model);
+        saturating_product(flux, contact_area(force))
     }
 }
 

@@ -17,7 +17,9 @@ mod window_sums;
 use contact_model::fixed_point::Celsius;
 use thermal_learner::{Distrust, Flux, LearnerInput, LearnerOutput, Place, Restart, Trust};
 
-use crate::estimate::filter_change;
+use crate::estimate::{FluxPerMm2, filter_change};
+use crate::low_pass::LowPass;
+use crate::sense::CONTACT_DEBOUNCE_TICKS;
 pub use flux_parameters::FluxParameters;
 use flux_reading::FluxReading;
 pub use resting_code::RestingCode;
@@ -81,12 +83,33 @@ impl FingerKnowledge {
     }
 }
 
+/// What was measured at the end of a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Measured {
+    /// Flux out of the skin; `None` if it is not valid.
+    pub flux: Option<Flux>,
+    /// Surface of the display, °C.
+    pub surface: Option<Celsius>,
+}
+
+impl Measured {
+    /// Before the first tick.
+    const NOTHING: Self = Self {
+        flux: Some(Flux::ZERO),
+        surface: None,
+    };
+}
+
 /// Learning of one finger: the sensor, the present window, and what was asked and answered.
 #[derive(Clone, Debug)]
 pub struct FingerLearning {
     parameters: FluxParameters,
     reading: FluxReading,
     resting: RestingCodes,
+    /// The last two ticks, for which it is not known yet whether the finger presses.
+    undecided: [Measured; CONTACT_DEBOUNCE_TICKS as usize],
+    /// Flux that the device assumes, W/mm², behind the sensor's lag.
+    modelled_behind_lag: LowPass,
     /// Ticks since the finger has lifted.
     lifted_ticks: u32,
     sums: WindowSums,
@@ -117,6 +140,8 @@ impl FingerLearning {
             parameters: *parameters,
             reading: FluxReading::new(parameters),
             resting: RestingCodes::default(),
+            undecided: [Measured::NOTHING; CONTACT_DEBOUNCE_TICKS as usize],
+            modelled_behind_lag: LowPass::new(parameters.lag),
             lifted_ticks: u32::MAX,
             sums: WindowSums::default(),
             sequence: 0,
@@ -166,17 +191,49 @@ impl FingerLearning {
         change.saturating_sub(lost)
     }
 
-    /// Adds a tick: the sensor's code, and what was estimated at the end of the last tick, if the finger presses. Returns
-    /// whether the window is complete.
-    pub fn add_tick(&mut self, code: u16, contact: Option<TickOfContact>) -> bool {
+    /// Takes the measurements at the end of the last tick, the sensor's code and the display's surface, and returns those of the
+    /// tick before [`CONTACT_DEBOUNCE_TICKS`] others, of which it is known by now whether the finger pressed: a force off zero
+    /// counts when it has lasted.
+    pub fn take(&mut self, code: u16, surface: Option<Celsius>) -> Measured {
+        let [decided, next] = self.undecided;
+        let flux = self.reading.convert(code);
+        let rests = flux.is_some() && self.is_lifted_for_long();
+        self.resting.add(rests.then_some(code));
+        self.undecided = [next, Measured { flux, surface }];
+        decided
+    }
+
+    /// What the flux of the last tick was beyond the `modelled` one, W/mm²: slow differences as the sensor sees them, while the
+    /// model alone shows what is quicker than the sensor. Nothing without contact, and for a finger that is not trusted.
+    pub fn flux_beyond_model(&mut self, modelled: Option<FluxPerMm2>) -> FluxPerMm2 {
+        let is_trusted = matches!(
+            self.knowledge,
+            FingerKnowledge::Learnt(Trust::Learning | Trust::Trusted)
+        );
+        let [_, Measured { flux, .. }] = self.undecided;
+        let Some((modelled, flux)) = modelled.zip(flux).filter(|_| is_trusted) else {
+            self.modelled_behind_lag.set_output(FluxPerMm2::ZERO);
+            return FluxPerMm2::ZERO;
+        };
+        self.modelled_behind_lag.update_by_input(modelled);
+        let measured = i64::from(flux.to_bits()) << (FluxPerMm2::FRAC_NBITS - Flux::FRAC_NBITS);
+        // A flux has 32 bits, and a million mm² are a m².
+        let measured = FluxPerMm2::from_bits((measured / 1_000_000) as i32);
+        measured.saturating_sub(self.modelled_behind_lag.output())
+    }
+
+    /// Whether the finger has been lifted for so long that a flux is none of its.
+    const fn is_lifted_for_long(&self) -> bool {
+        self.lifted_ticks > self.parameters.ticks_after_lifting
+    }
+
+    /// Adds a tick: its flux, and what was estimated at its end, if the finger pressed. Returns whether the window is complete.
+    pub fn add_tick(&mut self, flux: Option<Flux>, contact: Option<TickOfContact>) -> bool {
         self.lifted_ticks = match contact {
             Some(_) => 0,
             None => self.lifted_ticks.saturating_add(1),
         };
-        let counts = self.lifted_ticks <= self.parameters.ticks_after_lifting;
-        let flux = self.reading.convert(code);
-        let rests = flux.is_some() && !counts;
-        self.resting.add(rests.then_some(code));
+        let counts = !self.is_lifted_for_long();
         let flux = flux.map(|flux| if counts { flux } else { Flux::ZERO });
         self.sums.add(flux, contact);
         self.sums.is_complete()

@@ -46,7 +46,8 @@ fn answer(input: &LearnerInput) -> LearnerOutput {
 /// A window, with or without a contact; what is applied at its end.
 fn window(learning: &mut FingerLearning, contact: Option<TickOfContact>) -> Option<LearnerOutput> {
     for tick in 1..=WINDOW_TICKS {
-        assert_eq!(learning.add_tick(code(tick), contact), tick == WINDOW_TICKS);
+        let flux = learning.reading.convert(code(tick));
+        assert_eq!(learning.add_tick(flux, contact), tick == WINDOW_TICKS);
     }
     learning.end_window(&STATE)
 }
@@ -71,7 +72,8 @@ fn a_landing_may_be_in_any_tick_of_a_window() {
         let (mut touching, mut above_k, mut flux_w_m2) = (0, 0.0, 0.0);
         for tick in 0..8 * WINDOW_TICKS {
             let contact = (landing..landing + 32).contains(&tick).then_some(CONTACT);
-            if !learning.add_tick(code(tick), contact) {
+            let flux = learning.reading.convert(code(tick));
+            if !learning.add_tick(flux, contact) {
                 continue;
             }
             learning.end_window(&STATE);
@@ -128,6 +130,10 @@ fn a_missing_answer_and_one_for_another_window_end_in_the_mean_finger() {
     for earlier in [None, Some(1), Some(u16::MAX)] {
         let mut learning = taught();
         let before = answer(&learning.take_input().expect("an input"));
+        if let Some(earlier) = earlier {
+            let sequence = before.sequence.wrapping_sub(earlier);
+            learning.put_output(&LearnerOutput { sequence, ..before });
+        }
         let mut last = None;
         for number in 0..80 {
             if let Some(input) = learning.take_input() {
@@ -183,18 +189,48 @@ fn an_answer_from_before_a_restart_is_void_and_nothing_is_late() {
 }
 
 #[test]
-fn a_window_with_a_code_at_a_rail_has_no_flux_and_is_a_fault() {
+fn a_window_with_a_flux_that_is_not_valid_has_none_and_is_a_fault() {
     let mut learning = taught();
     let input = learning.take_input().expect("an input");
     learning.put_output(&answer(&input));
-    for tick in 1..WINDOW_TICKS {
-        learning.add_tick(code(tick), Some(CONTACT));
+    for tick in 0..60 {
+        learning.reading.convert(4094 + tick % 2);
     }
-    assert!(learning.add_tick(4095, Some(CONTACT)));
+    for _ in 1..WINDOW_TICKS {
+        learning.add_tick(Some(Flux::ONE), Some(CONTACT));
+    }
+    assert!(learning.add_tick(None, Some(CONTACT)));
     learning.end_window(&STATE);
     assert_eq!(learning.knowledge(), FingerKnowledge::SensorFault);
     let input = learning.take_input().expect("an input");
     assert_eq!(input.flux_w_m2, None);
+}
+
+/// A steady flux: the sensor's difference from the model, at once where both have lagged alike, and nothing without contact.
+#[test]
+fn the_flux_beyond_the_model_is_a_slow_difference() {
+    let mut learning = learning();
+    let modelled = FluxPerMm2::lit("0.001");
+    let mut beyond = FluxPerMm2::ZERO;
+    for tick in 0..100 {
+        // 119 or 120 counts: 998 or 1007 W/m².
+        learning.take(code(tick), None);
+        beyond = learning.flux_beyond_model(Some(modelled + FluxPerMm2::lit("0.0005")));
+    }
+    assert!(
+        (beyond + FluxPerMm2::lit("0.0005")).abs() < 1e-5,
+        "{beyond}"
+    );
+    learning.take(code(0), None);
+    assert_eq!(learning.flux_beyond_model(None), FluxPerMm2::ZERO);
+    // A jump of the model reaches the difference with the sensor's lag of 5 ms.
+    for tick in 0..5 {
+        learning.take(code(tick), None);
+        beyond = learning.flux_beyond_model(Some(modelled));
+    }
+    let lagged = modelled.to_num::<f64>() * (1.0 - (-1f64).exp());
+    let expected = 0.001 - lagged;
+    assert!((beyond.to_num::<f64>() - expected).abs() < 5e-5, "{beyond}");
 }
 
 /// Filtered as the skin's estimate is, with an offset that changes while nothing touches: the estimate goes to the reading

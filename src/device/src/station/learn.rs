@@ -132,15 +132,18 @@ impl Station {
         finger.shift_sensed_skin(change);
         let skin = skin.map(|skin| skin.saturating_add(change));
         let is_limited = (self.last.reference).is_some_and(|reference| reference.limited);
+        let measured = learning.take(self.flux_code, self.estimator.plate.surface());
+        let beyond = learning.flux_beyond_model(finger.modelled_flux());
+        finger.set_flux_beyond_model(beyond);
         let contact = finger.contact();
         let presses = self.contact.is_force_nonzero_debounced();
-        let tick = skin.zip(self.estimator.plate.surface()).filter(|_| presses);
+        let tick = skin.zip(measured.surface).filter(|_| presses);
         let tick = tick.map(|(skin, surface)| TickOfContact {
             skin_above_display: learning.skin_without_offset(skin).saturating_sub(surface),
             is_steady: !is_limited
                 && contact.is_some_and(|contact| contact.force_change() != ForceChange::New),
         });
-        if !learning.add_tick(self.flux_code, tick) {
+        if !learning.add_tick(measured.flux, tick) {
             return;
         }
         let above_room = skin.zip(finger.temperatures_before_contact());

@@ -49,8 +49,8 @@ impl PopulationCase {
             Way::AsItIs => ("", ""),
             Way::Version01 => ("told = \"half-space\"\n", "finger = \"thesis\"\n"),
         };
-        let sensor = match self.population {
-            Population::DesignedSensor | Population::HypotheticalSensor => "flux_sensor = true\n",
+        let sensor = match self.population.scenario() {
+            "G" => "flux_sensor = true\n",
             _ => "",
         };
         let Self {

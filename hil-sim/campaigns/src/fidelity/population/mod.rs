@@ -5,6 +5,7 @@ mod chart;
 mod object;
 mod statistics;
 
+use contact_model::material::{REFERENCE_DISPLAY, SKIN, Surface};
 use thermal_plant::Params;
 use thermal_plant::parameters::{self, stream_seed};
 use thermal_plant::sensors::FluxParams;
@@ -36,6 +37,9 @@ named_enum! {
         /// The same with a better sensor, which nobody has designed.
         #[serde(rename = "G-hypothetical")]
         HypotheticalSensor = "G-hypothetical",
+        /// The same with surfaces of display and skin that are rough and conduct as the device assumes.
+        #[serde(rename = "G-known-surfaces")]
+        KnownSurfaces = "G-known-surfaces",
         /// Contact laws under the nominal layered finger, on an otherwise nominal plant.
         #[serde(rename = "I")]
         ContactLaws = "I",
@@ -83,13 +87,13 @@ const fn aim(since: Since, percent: f64, aim_mk: f64) -> Aim {
 }
 
 impl Population {
-    /// The scenario's name on the command line; F and G have two populations.
+    /// The scenario's name on the command line; F and G have several populations.
     #[must_use]
     pub const fn scenario(self) -> &'static str {
         match self {
             Self::Objects => "E",
             Self::FingerBox | Self::DrawnFingers => "F",
-            Self::DesignedSensor | Self::HypotheticalSensor => "G",
+            Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => "G",
             Self::ContactLaws => "I",
         }
     }
@@ -109,6 +113,7 @@ impl Population {
             Self::HypotheticalSensor => {
                 "as F-draw, first contact with a hypothetical sensor of 1 %"
             }
+            Self::KnownSurfaces => "as G-hypothetical, surfaces in contact as the device assumes",
             Self::ContactLaws => {
                 "contact laws of contact.draw; nominal layered finger, six objects"
             }
@@ -132,7 +137,7 @@ impl Population {
             Self::Objects => &OBJECTS,
             Self::FingerBox => &FINGER_BOX,
             Self::DrawnFingers => &DRAWN_FINGERS,
-            Self::DesignedSensor | Self::HypotheticalSensor => &FIRST_CONTACT,
+            Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => &FIRST_CONTACT,
             Self::ContactLaws => &[],
         }
     }
@@ -141,7 +146,7 @@ impl Population {
     #[must_use]
     pub const fn ways(self) -> &'static [Way] {
         match self {
-            Self::DesignedSensor | Self::HypotheticalSensor => &[Way::AsItIs],
+            Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => &[Way::AsItIs],
             _ => &Way::ALL,
         }
     }
@@ -167,7 +172,9 @@ impl Population {
             // A scene file holds 63 bits.
             // G has the fingers and devices of F.
             let stream = match self {
-                Self::DesignedSensor | Self::HypotheticalSensor => Self::DrawnFingers.scenario(),
+                Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => {
+                    Self::DrawnFingers.scenario()
+                }
                 other => other.scenario(),
             };
             let own = stream_seed(seed, &format!("{stream} {number}")) >> 1;
@@ -175,6 +182,10 @@ impl Population {
                 Self::FingerBox => (own, layered("") + &device(own)),
                 Self::DrawnFingers | Self::DesignedSensor => (own, drawn_finger(own)),
                 Self::HypotheticalSensor => (own, drawn_finger(own) + &hypothetical_sensor(own)),
+                Self::KnownSurfaces => {
+                    let hypothetical = drawn_finger(own) + &hypothetical_sensor(own);
+                    (own, hypothetical + &known_surfaces())
+                }
                 _ => (
                     seed,
                     layered("") + &format!("[plant]\ncontact.draw = {own}\n"),
@@ -219,6 +230,23 @@ fn hypothetical_sensor(seed: u64) -> String {
         flux.gain_error * HYPOTHETICAL_GAIN,
         flux.zero_w_m2 * HYPOTHETICAL_ZERO,
     )
+}
+
+/// Keys of `[plant]` by which display and skin have the surfaces that the device assumes.
+fn known_surfaces() -> String {
+    let surfaces = [("display", REFERENCE_DISPLAY), ("skin", SKIN.surface)];
+    let keys = surfaces.map(|(name, surface)| {
+        let Surface {
+            conductivity_w_mk,
+            roughness_um,
+            slope_rad,
+        } = surface;
+        format!(
+            "{name}.conductivity_w_mk = {conductivity_w_mk:?}\n{name}.roughness_um = {roughness_um:?}\n\
+             {name}.slope_rad = {slope_rad:?}\n"
+        )
+    });
+    keys.concat()
 }
 
 /// A device of the parameter box. Its display thermistors are bonded alike ([`SAME_VALUE`]): with lags that are drawn apart,

@@ -41,6 +41,7 @@ fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
         Population::DrawnFingers,
         Population::DesignedSensor,
         Population::HypotheticalSensor,
+        Population::KnownSurfaces,
     ] {
         let cases = population.cases(1, 2);
         assert_eq!(cases.len(), 12);
