@@ -8,8 +8,8 @@ use contact_model::reference::mean_conductance;
 use nalgebra::{SMatrix, SVector};
 
 use crate::ramps::{FORCES_N, LEGS, leg_at};
-use crate::recording::{Recording, RecordingError, STEP_S};
-use crate::thermal_signals::{Equation, PROPERTIES, equations};
+use crate::recording::{Recording, RecordingError};
+use crate::thermal_signals::{EQUATION_S, Equation, PROPERTIES, equations};
 
 /// Unknowns: the logarithm of the spots' conductance at [`MIDDLE_N`], the exponent, the gap's conductance over
 /// [`GAP_UNIT_W_M2K`], and the properties of the finger.
@@ -29,10 +29,15 @@ const PRIOR: [(f64, f64); PROPERTIES] = [
     (0.0, 0.48),
     (0.0, 0.05),
 ];
+/// Prior of the exponent: that of Eq. 6-8, and the spread of other correlations for spots in contact, 0.85 to 1. It matters where
+/// there is a gap, which looks much like a smaller exponent.
+const EXPONENT_PRIOR: (f64, f64) = (0.95, 0.05);
 /// Time after landing from which on samples count, s.
 const FROM_S: f64 = 0.1;
-/// Standard deviation of what the model leaves out, K, and the time over which it is one error, s.
+/// Standard deviation of what the model leaves out just after landing, K, the time in which it grows by as much again, s, since
+/// deep tissue and blood are modelled worse than the epidermis, and the time over which it is one error, s.
 const MODEL_K: f64 = 0.02;
+const MODEL_GROWS_S: f64 = 5.0;
 const MODEL_S: f64 = 0.5;
 /// Least fall of the weighted sum of squares for which the gap is taken.
 const GAP_IS_TAKEN_FROM: f64 = 9.0;
@@ -101,7 +106,8 @@ impl Problem {
     fn new(recording: &Recording) -> Self {
         let counted = equations(recording).into_iter().filter_map(|equation| {
             let leg = leg_at(equation.since_s)?;
-            (equation.since_s >= FROM_S).then(|| (equation, leg, log_pressure(equation.force_n)))
+            (equation.since_s >= FROM_S)
+                .then(|| (equation, leg, log_pressure(equation.log_force.exp())))
         });
         Self {
             equations: counted.collect(),
@@ -114,7 +120,6 @@ impl Problem {
         unknowns: &Unknowns,
         times: &[f64; LEGS],
     ) -> (SMatrix<f64, UNKNOWNS, UNKNOWNS>, Unknowns, f64) {
-        let weight = STEP_S / MODEL_S / (MODEL_K * MODEL_K);
         let mut matrix = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
         let (mut gradient, mut squares) = (Unknowns::zeros(), 0.0);
         for (equation, leg, log_pressure) in &self.equations {
@@ -130,7 +135,8 @@ impl Problem {
                 slopes[3 + of] = *slope;
                 left += slope * unknowns[3 + of];
             }
-            let weight = weight * times[*leg];
+            let model_k = MODEL_K * (1.0 + equation.since_s / MODEL_GROWS_S);
+            let weight = times[*leg] * EQUATION_S / MODEL_S / (model_k * model_k);
             squares += weight * left * left;
             matrix.syger(weight, &slopes, &slopes, 1.0);
             gradient.axpy(weight * left, &slopes, 1.0);
@@ -141,6 +147,11 @@ impl Problem {
             matrix[(3 + of, 3 + of)] += 1.0 / (deviation * deviation);
             gradient[3 + of] += left / deviation;
         }
+        let (mean, deviation) = EXPONENT_PRIOR;
+        let left = (unknowns[EXPONENT] - mean) / deviation;
+        squares += left * left;
+        matrix[(EXPONENT, EXPONENT)] += 1.0 / (deviation * deviation);
+        gradient[EXPONENT] += left / deviation;
         (matrix, gradient, squares)
     }
 

@@ -91,7 +91,7 @@ impl Recording {
                 })
             };
             if let Some(step_s) = before_s.map(|before_s| since_s - before_s)
-                && !((step_s - STEP_S).abs() < STEP_TOLERANCE_S)
+                && !(STEP_S - STEP_TOLERANCE_S..=STEP_S + STEP_TOLERANCE_S).contains(&step_s)
             {
                 return Err(RecordingError::Gap {
                     after_s: since_s,
@@ -99,7 +99,7 @@ impl Recording {
                 });
             }
             before_s = Some(since_s);
-            if !(flux_w_m2.abs() < 1e5) {
+            if !(-1e5..=1e5).contains(&flux_w_m2) {
                 return value("the flux, W/m2,", flux_w_m2, "-1e5 to 1e5");
             }
             if !is_degree(surface_c) {

@@ -16,14 +16,35 @@ pub struct Equation {
     pub per_property: [f64; PROPERTIES],
     /// Flux, W/m².
     pub flux_w_m2: f64,
-    /// Force, N.
-    pub force_n: f64,
+    /// Logarithm of the force in N.
+    pub log_force: f64,
     /// Time since landing, s.
     pub since_s: f64,
 }
 
 /// Number of properties of the finger.
 pub const PROPERTIES: usize = 4;
+/// Samples that make one equation, 0.1 s: the noise of a single flux times the resistance, which is itself unknown, would make
+/// a small resistance look better.
+const SAMPLES_PER_EQUATION: usize = 10;
+/// Time of one equation, s.
+pub const EQUATION_S: f64 = SAMPLES_PER_EQUATION as f64 * STEP_S;
+
+impl Equation {
+    /// The mean of equations that follow each other.
+    fn mean_of(equations: &[Self]) -> Self {
+        let mean = |of: &dyn Fn(&Self) -> f64| {
+            equations.iter().map(of).sum::<f64>() / equations.len() as f64
+        };
+        Self {
+            difference_k: mean(&|one| one.difference_k),
+            per_property: std::array::from_fn(|of| mean(&|one| one.per_property[of])),
+            flux_w_m2: mean(&|one| one.flux_w_m2),
+            log_force: mean(&|one| one.log_force),
+            since_s: mean(&|one| one.since_s),
+        }
+    }
+}
 
 /// A relaxation driven by a flux that is linear between samples.
 struct Bank {
@@ -98,9 +119,11 @@ pub fn equations(recording: &Recording) -> Vec<Equation> {
                 1.0,
             ],
             flux_w_m2: sample.flux_w_m2,
-            force_n: sample.force_n,
+            log_force: sample.force_n.ln(),
             since_s: sample.since_s,
         }
     };
-    recording.samples.iter().map(of_sample).collect()
+    let all: Vec<_> = recording.samples.iter().map(of_sample).collect();
+    let means = all.chunks_exact(SAMPLES_PER_EQUATION);
+    means.map(Equation::mean_of).collect()
 }

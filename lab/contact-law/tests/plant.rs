@@ -84,75 +84,121 @@ fn exact_m2k_w(params: &Params, force_n: f64) -> f64 {
     params.finger.resistance_factor * contact.expect("a force").resistance_m2k_w
 }
 
-fn percentile(values: &mut [f64], part: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[((values.len() - 1) as f64 * part).round() as usize]
-}
-
 /// Median, 90 % and worst.
-fn three(mut values: Vec<f64>) -> [f64; 3] {
-    [0.5, 0.9, 1.0].map(|part| percentile(&mut values, part))
+fn three(values: &[f64]) -> [f64; 3] {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    [0.5, 0.9, 1.0].map(|part| sorted[((sorted.len() - 1) as f64 * part).round() as usize])
 }
 
+/// Deviations of fits from the plants' own laws, without their signs.
 #[derive(Default)]
-struct Errors {
+struct Deviations {
     resistance_percent: [Vec<f64>; FORCES_N.len()],
     exponent: Vec<f64>,
     gap_w_m2k: Vec<f64>,
-    gaps_taken: usize,
-    inside: [usize; 5],
+    /// Number of fits with a gap.
+    gaps: usize,
+    /// How many of the intervals of resistances, exponent and gap contain the plant's value.
+    inside: [usize; FORCES_N.len() + 2],
 }
 
-fn errors(sensor: fn(FluxParams) -> FluxParams, has_gap: bool, fingers: u64) -> Errors {
-    let mut errors = Errors::default();
+fn deviations(sensor: fn(FluxParams) -> FluxParams, has_gap: bool, fingers: u64) -> Deviations {
+    let mut found = Deviations::default();
     for seed in 0..fingers {
         let params = params(seed, sensor, has_gap);
-        let Fit {
-            law,
-            resistances_m2k_w,
-            resistance_intervals_m2k_w,
-            exponent_interval,
-            gap_interval_w_m2k,
-            fall_by_gap,
-            residual_k,
-        } = fit(&record(&params, seed)).expect("a good recording");
-        for (of, force_n) in FORCES_N.into_iter().enumerate() {
-            let exact = exact_m2k_w(&params, force_n);
-            errors.resistance_percent[of].push(100.0 * (resistances_m2k_w[of] / exact - 1.0).abs());
-            let both = resistance_intervals_m2k_w[of];
-            errors.inside[of] += usize::from((both.low..both.high).contains(&exact));
+        let fit = fit(&record(&params, seed)).expect("a good recording");
+        let Fit { law, .. } = fit;
+        let resistances_m2k_w = FORCES_N.map(|force_n| exact_m2k_w(&params, force_n));
+        let fitted = fit.resistances_m2k_w.iter().zip(resistances_m2k_w);
+        for (percent, (fitted, exact)) in found.resistance_percent.iter_mut().zip(fitted) {
+            percent.push(100.0 * (fitted / exact - 1.0).abs());
         }
+        // The factor is on the whole resistance.
         let gap = params.contact.gap_w_m2k / params.finger.resistance_factor;
-        errors
+        found
             .exponent
             .push((law.exponent - params.contact.exponent).abs());
-        errors.gap_w_m2k.push((law.gap_w_m2k - gap).abs());
-        errors.gaps_taken += usize::from(law.gap_w_m2k > 0.0);
-        errors.inside[3] += usize::from(
-            (exponent_interval.low..exponent_interval.high).contains(&params.contact.exponent),
-        );
-        errors.inside[4] +=
-            usize::from((gap_interval_w_m2k.low..gap_interval_w_m2k.high).contains(&gap));
-        println!(
-            "  {seed}: R {:?} %, exponent {:.4} of {:.4}, gap {:.0} of {gap:.0}, fall {fall_by_gap:.1}, left {:.1} mK",
-            errors
-                .resistance_percent
-                .each_ref()
-                .map(|all| (10.0 * all[all.len() - 1]).round() / 10.0),
-            law.exponent,
-            params.contact.exponent,
-            law.gap_w_m2k,
-            1e3 * residual_k
-        );
+        found.gap_w_m2k.push((law.gap_w_m2k - gap).abs());
+        found.gaps += usize::from(law.gap_w_m2k > 0.0);
+        let [a, b, c] = fit.resistance_intervals_m2k_w;
+        let intervals = [a, b, c, fit.exponent_interval, fit.gap_interval_w_m2k];
+        let [a, b, c] = resistances_m2k_w;
+        let exact = [a, b, c, params.contact.exponent, gap];
+        for (inside, (interval, exact)) in found.inside.iter_mut().zip(intervals.iter().zip(exact))
+        {
+            *inside += usize::from((interval.low..=interval.high).contains(&exact));
+        }
     }
-    errors
+    let name = if has_gap {
+        "with a gap"
+    } else {
+        "without a gap"
+    };
+    println!("{fingers} fingers {name}; median, 90 %, worst:");
+    for (force_n, percent) in FORCES_N.iter().zip(&found.resistance_percent) {
+        println!("  R at {force_n} N {:.1?} %", three(percent));
+    }
+    let (exponent, gap) = (three(&found.exponent), three(&found.gap_w_m2k));
+    println!(
+        "  exponent {exponent:.4?}, gap {gap:.0?} W/(m2 K), taken in {}",
+        found.gaps
+    );
+    println!("  inside of the intervals: {:?}", found.inside);
+    found
 }
 
+/// The resistance is to be within 10 %, and the exponent, where there is no gap, within 0.01.
+#[track_caller]
+fn assert_without_gap(sensor: fn(FluxParams) -> FluxParams, fingers: u64) {
+    let found = deviations(sensor, false, fingers);
+    assert_eq!(found.gaps, 0);
+    for percent in &found.resistance_percent {
+        assert!(three(percent)[2] < 6.0, "{percent:?} %");
+    }
+    let [median, most, worst] = three(&found.exponent);
+    assert!(
+        median < 0.007 && most < 0.0125 && worst < 0.0155,
+        "{:?}",
+        found.exponent
+    );
+    // Of 95 in a hundred.
+    assert!(
+        found.inside[..4]
+            .iter()
+            .all(|inside| *inside as f64 > 0.87 * fingers as f64)
+    );
+}
+
+#[track_caller]
+fn assert_with_gap(sensor: fn(FluxParams) -> FluxParams, fingers: u64) {
+    let found = deviations(sensor, true, fingers);
+    assert_eq!(found.gaps, fingers as usize);
+    for percent in &found.resistance_percent {
+        let [_, most, worst] = three(percent);
+        assert!(most < 9.0 && worst < 12.0, "{percent:?} %");
+    }
+    assert!(three(&found.exponent)[2] < 0.065, "{:?}", found.exponent);
+    let [median, _, worst] = three(&found.gap_w_m2k);
+    assert!(
+        median < 14.0 && worst < 75.0,
+        "{:?} W/(m2 K)",
+        found.gap_w_m2k
+    );
+    assert!(
+        found
+            .inside
+            .iter()
+            .all(|inside| *inside as f64 > 0.87 * fingers as f64)
+    );
+}
+
+/// The sensor that was designed, within its tolerances.
 fn designed(drawn: FluxParams) -> FluxParams {
     drawn
 }
 
-/// 1 %, 2.7 W/m² and 22 W/m² a tick.
+/// One of 1 %, 2.7 W/m² and 22 W/m² a conversion.
 fn hypothetical(drawn: FluxParams) -> FluxParams {
     FluxParams {
         gain_error: drawn.gain_error / 1.5,
@@ -163,25 +209,46 @@ fn hypothetical(drawn: FluxParams) -> FluxParams {
 }
 
 #[test]
-fn figures() {
-    let fingers = std::env::var("FINGERS").map_or(12, |text| text.parse().expect("a number"));
-    for (name, sensor) in [
-        ("designed", designed as fn(FluxParams) -> FluxParams),
-        ("1 %", hypothetical),
-    ] {
-        for has_gap in [false, true] {
-            println!("{name}, gap {has_gap}");
-            let found = errors(sensor, has_gap, fingers);
-            for (force_n, percent) in FORCES_N.iter().zip(found.resistance_percent) {
-                println!("R at {force_n} N: {:.1?} %", three(percent));
-            }
-            println!(
-                "exponent {:.4?}, gap {:.0?}, taken {}, inside {:?}",
-                three(found.exponent),
-                three(found.gap_w_m2k),
-                found.gaps_taken,
-                found.inside
-            );
-        }
-    }
+fn resistance_and_exponent_of_fingers_without_a_gap() {
+    assert_without_gap(designed, 24);
+    assert_without_gap(hypothetical, 12);
+}
+
+#[test]
+fn resistance_and_gap_of_fingers_with_one() {
+    assert_with_gap(designed, 24);
+    assert_with_gap(hypothetical, 12);
+}
+
+#[test]
+fn what_is_no_recording_of_the_ramps_is_refused() {
+    let params = params(0, designed, false);
+    let good = record(&params, 0);
+    let refused = |change: &dyn Fn(&mut Recording)| {
+        let mut recording = good.clone();
+        change(&mut recording);
+        fit(&recording).expect_err("refused").to_string()
+    };
+    assert_eq!(
+        refused(&|recording| recording.samples.truncate(500)),
+        "the recording has 5.00 s of contact; at least 9 s are needed"
+    );
+    assert_eq!(
+        refused(&|recording| {
+            recording.samples.remove(100);
+        }),
+        "the sample 1.020 s after landing follows the one before by 0.020 s; allowed is 0.01 s"
+    );
+    assert_eq!(
+        refused(&|recording| recording.samples[9].flux_w_m2 = f64::NAN),
+        "the flux, W/m2, is NaN at 0.100 s after landing; allowed is -1e5 to 1e5"
+    );
+    assert_eq!(
+        refused(&|recording| recording.samples[9].force_n = 0.0),
+        "the force, N, is 0 at 0.100 s after landing; allowed is 0.003 to 20, which is a contact"
+    );
+    assert_eq!(
+        refused(&|recording| recording.skin_c = 134.0),
+        "the skin, C, is 134 at 0.000 s after landing; allowed is -40 to 125"
+    );
 }
