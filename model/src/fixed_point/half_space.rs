@@ -18,6 +18,7 @@
 
 mod conductance;
 
+pub(super) use conductance::inverse;
 pub use conductance::{ContactConductance, OwnResistances};
 
 use fixed::types::{I0F32, I12F20};

@@ -32,8 +32,9 @@ pub use plain_command::{
     PlainCommand, THERMISTORS, thermistor, thermistor_word, upload, upload_course,
 };
 pub use query::{
-    Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryIdentity, QueryLaw,
-    QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState, TuneResult,
+    Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryContactLaw,
+    QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState,
+    TuneResult,
 };
 pub use reply::{
     BoardReport, CalibrationFit, Cause, IdentifiedTile, Identity, RawReadings, SelfTestReport,

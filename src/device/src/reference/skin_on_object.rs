@@ -46,8 +46,8 @@ impl ContactPairFactors {
             weight: pair.weight(),
             inverse_weight: U16F16::from_bits(inverse.min(u64::from(u32::MAX)) as u32),
             ratio: pair.ratio(),
-            ratio_at_landing: pair
-                .at_pressure(log2_relative_pressure(LANDING_FORCE))
+            ratio_at_landing: resistances
+                .contact(pair, log2_relative_pressure(LANDING_FORCE))
                 .ratio_of(resistances),
         }
     }
