@@ -5,6 +5,8 @@ mod chart;
 mod object;
 mod statistics;
 
+use contact_model::contact_law::ContactLaw;
+use thermal_client::client::PlainCommand;
 use thermal_plant::Params;
 use thermal_plant::parameters::{self, stream_seed};
 use thermal_plant::sensors::FluxParams;
@@ -39,6 +41,9 @@ named_enum! {
         /// Contact laws under the nominal layered finger, on an otherwise nominal plant.
         #[serde(rename = "I")]
         ContactLaws = "I",
+        /// The same, with the device told of each: what measuring a person's law can give at most.
+        #[serde(rename = "I-told")]
+        ToldContactLaws = "I-told",
     }
 }
 
@@ -83,14 +88,14 @@ const fn aim(since: Since, percent: f64, aim_mk: f64) -> Aim {
 }
 
 impl Population {
-    /// The scenario's name on the command line; F and G have two populations.
+    /// The scenario's name on the command line; F, G and I have two populations.
     #[must_use]
     pub const fn scenario(self) -> &'static str {
         match self {
             Self::Objects => "E",
             Self::FingerBox | Self::DrawnFingers => "F",
             Self::DesignedSensor | Self::HypotheticalSensor => "G",
-            Self::ContactLaws => "I",
+            Self::ContactLaws | Self::ToldContactLaws => "I",
         }
     }
 
@@ -112,6 +117,7 @@ impl Population {
             Self::ContactLaws => {
                 "contact laws of contact.draw; nominal layered finger, six objects"
             }
+            Self::ToldContactLaws => "the same contact laws, each told to the device",
         }
     }
 
@@ -133,15 +139,17 @@ impl Population {
             Self::FingerBox => &FINGER_BOX,
             Self::DrawnFingers => &DRAWN_FINGERS,
             Self::DesignedSensor | Self::HypotheticalSensor => &FIRST_CONTACT,
-            Self::ContactLaws => &[],
+            Self::ContactLaws | Self::ToldContactLaws => &[],
         }
     }
 
-    /// What its devices are told. Version 0.1 knew no sensor of the heat flux.
+    /// What its devices are told. Version 0.1 knew no sensor of the heat flux, and no contact law but Eq. 6-8.
     #[must_use]
     pub const fn ways(self) -> &'static [Way] {
         match self {
-            Self::DesignedSensor | Self::HypotheticalSensor => &[Way::AsItIs],
+            Self::DesignedSensor | Self::HypotheticalSensor | Self::ToldContactLaws => {
+                &[Way::AsItIs]
+            }
             _ => &Way::ALL,
         }
     }
@@ -175,10 +183,8 @@ impl Population {
                 Self::FingerBox => (own, layered("") + &device(own)),
                 Self::DrawnFingers | Self::DesignedSensor => (own, drawn_finger(own)),
                 Self::HypotheticalSensor => (own, drawn_finger(own) + &hypothetical_sensor(own)),
-                _ => (
-                    seed,
-                    layered("") + &format!("[plant]\ncontact.draw = {own}\n"),
-                ),
+                Self::ToldContactLaws => (seed, drawn_contact(own) + &told_contact(own)),
+                _ => (seed, drawn_contact(own)),
             };
             for object in six_objects() {
                 let name = format!("{}, draw {number}", object.name);
@@ -192,6 +198,25 @@ impl Population {
 /// A layered finger with further keys.
 fn layered(keys: &str) -> String {
     format!("[finger]\ntissue = \"layered\"\n{keys}")
+}
+
+/// A nominal layered finger with a contact law of `contact.draw`.
+fn drawn_contact(seed: u64) -> String {
+    layered("") + &format!("[plant]\ncontact.draw = {seed}\n")
+}
+
+/// The line that tells the device of that law. The pressure is the force over the true area there, which shows as another
+/// microhardness of the area that the device assumes.
+fn told_contact(seed: u64) -> String {
+    let mut params = Params::nominal();
+    parameters::draw_contact(&mut params, seed);
+    let plant = params.contact;
+    let line = PlainCommand::ContactLaw(ContactLaw {
+        exponent: plant.exponent,
+        hardness_pa: plant.hardness_pa * plant.area_factor,
+        gap_w_m2k: plant.gap_w_m2k,
+    });
+    format!("[[host]]\nt_s = 0.0\nline = \"{line}\"\n")
 }
 
 /// A finger of `finger.draw` on a device of the parameter box.
