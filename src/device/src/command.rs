@@ -4,8 +4,9 @@
 
 use core::fmt;
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::fixed_point::{
-    Body, Celsius, ContactPair, ContactPairError, FingerBody, to_fixed,
+    Body, Celsius, ContactPair, ContactPairError, FingerBody, OwnContactLaw, to_fixed,
 };
 use contact_model::material::{Material, SKIN, Surface};
 use fixed::types::U16F16;
@@ -142,6 +143,32 @@ impl AssumedFinger {
     }
 }
 
+/// A contact law that the host has chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChosenContactLaw {
+    /// The law as the host told it.
+    pub told: ContactLaw,
+    /// The same for the control path; `None` for Eq. 6-8.
+    pub own: Option<OwnContactLaw>,
+}
+
+impl ChosenContactLaw {
+    /// Eq. 6-8.
+    pub const NOMINAL: Self = Self {
+        told: ContactLaw::NOMINAL,
+        own: None,
+    };
+
+    /// Computes the constants of a law. Uses `f64`, which is slow on the microcontroller.
+    #[must_use]
+    pub fn new(told: ContactLaw) -> Self {
+        Self {
+            told,
+            own: OwnContactLaw::new(&told, TICK_S),
+        }
+    }
+}
+
 /// A command or query of the host to one finger's station. All values are within their ranges; whether the station's
 /// state permits the command is decided only when the station executes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,6 +195,10 @@ pub enum Command<'a> {
     /// Choose the finger that is assumed for the one that touches. If that changes it, a finger that touches begins a new
     /// contact. `None` changes nothing: the answer is the assumed finger.
     Finger(Option<AssumedFinger>),
+    /// Choose the contact law of the finger; choosing another finger makes it the nominal one. A finger that touches begins a new
+    /// contact, and with a heat-flux sensor the finger is learnt anew. Refused for the thesis's finger. `None` changes nothing:
+    /// the answer is the law in use.
+    ContactLaw(Option<ChosenContactLaw>),
     /// Choose the object's temperature before contact, °C; `None` takes the room's. If a finger touches, a new contact
     /// begins.
     Object(Option<Celsius>),
@@ -266,6 +297,8 @@ pub enum Reply {
     Material(Option<Material>),
     /// Answer to [`Command::Finger`] with `None`: the assumed finger's word in the protocol.
     Finger(&'static str),
+    /// Answer to [`Command::ContactLaw`] with `None`: the law in use.
+    ContactLaw(ContactLaw),
     /// Answer to [`Command::Cause`]: cause of the present trip or, after `clear`, of the last one. `None` if the
     /// station has not tripped since the start of the program, and was not tripped when it started.
     Cause(Option<TripCause>),
@@ -304,6 +337,8 @@ pub enum Refused {
     Testing,
     /// `start` was sent before the first command `material`, so there is no object to present.
     NoMaterial,
+    /// The command was [`Command::ContactLaw`], and the assumed finger is the thesis's.
+    NeedsLayeredFinger,
     /// `start` was sent while an object is already presented.
     AlreadyStarted,
     /// The command with this name, `hold` or `play`, was sent in a state that does not drive the display (in tripped the reply is

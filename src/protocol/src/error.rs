@@ -449,6 +449,9 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         Refused::NotArmed => "start needs arm first",
         Refused::Testing => "the self-test goes on; ask again in a second",
         Refused::NoMaterial => "start needs a material first",
+        Refused::NeedsLayeredFinger => {
+            "contact needs another finger than the thesis's; finger mean first"
+        }
         Refused::AlreadyStarted => "already started; arm takes the object away",
         Refused::NeedsDrivenDisplay(command) => {
             return write!(f, "{command} needs a driven display: arm first");

@@ -2,6 +2,7 @@
 
 use core::fmt::{self, Display as _};
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::decimal::Rounded;
 use thermal_commissioning::{
     CONVERTER_STEPS_PER_LINE_MAX, SessionReply, Setting, StorageOrder, THERMISTOR_WORDS,
@@ -19,7 +20,7 @@ use crate::request::CONTACT_MODEL_WORDS;
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
 const PROTOCOL_VERSION: u32 = 1;
 /// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
-const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course,flux";
+const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course,flux,contact";
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
@@ -77,6 +78,7 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
         }
         command::Reply::Raw(samples) => raw_answer_line(samples).fmt(f),
         command::Reply::Finger(name) => write!(f, "ok finger={name}"),
+        command::Reply::ContactLaw(law) => write_contact_law(f, law),
         // No line from the host requests a material's properties.
         command::Reply::Material(_) => f.write_str("ok"),
         // No line from the host requests averages, normal equations and flux, which commissioning sessions evaluate.
@@ -86,6 +88,15 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
         | command::Reply::FluxZero(_)
         | command::Reply::NormalEquation(_) => f.write_str("ok"),
     }
+}
+
+fn write_contact_law(f: &mut fmt::Formatter<'_>, law: &ContactLaw) -> fmt::Result {
+    let exponent = Rounded(law.exponent, 4);
+    let (hardness, gap) = (Rounded(law.hardness_pa, 0), Rounded(law.gap_w_m2k, 1));
+    write!(
+        f,
+        "ok exponent={exponent} hardness_pa={hardness} gap_w_m2k={gap}"
+    )
 }
 
 fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt::Result {

@@ -1,10 +1,11 @@
 //! Parsing of a line from the host to a request.
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::material::{MATERIALS, Material, Surface};
 use contact_model::slab::Back;
 
 use thermal_commissioning::{SessionRequest, StorageOrder};
-use thermal_device::command::{AssumedFinger, ChosenMaterial, Command};
+use thermal_device::command::{AssumedFinger, ChosenContactLaw, ChosenMaterial, Command};
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_settings::{Range, Settings};
@@ -87,6 +88,7 @@ impl Request {
         "material" => Self::Station(parse_material_and_compute_contact(words, display)?),
         "object" => parse_object(words)?,
         "finger" => Self::Station(Command::Finger(words.next().map(parse_finger).transpose()?)),
+        "contact" => Self::Station(Command::ContactLaw(parse_contact_law(words)?)),
         "upload" => Self::Upload,
         "mode" => Self::Station(Command::Mode(parse_contact_model(words)?)),
         "law" => Self::Station(Command::Law(words.next().map(parse_control_law_word).transpose()?)),
@@ -146,6 +148,29 @@ pub const SWITCH_WORDS: [(&str, bool); 2] = [("on", true), ("off", false)];
 /// conductivity (W/mK), density (kg/m³), specific heat (J/kgK), roughness (µm) and slope of the asperities (rad).
 pub const CUSTOM_MATERIAL_WORD: &str = "custom";
 
+/// Argument of the command `contact` for the contact law of Eq. 6-8, in place of the three values of another one.
+pub const NOMINAL_CONTACT_LAW_WORD: &str = "nominal";
+
+static CONTACT_LAW_RANGES: [Range; 3] = [
+    Range {
+        name: "exponent",
+        unit: "",
+        min: *ContactLaw::EXPONENTS.start(),
+        max: *ContactLaw::EXPONENTS.end(),
+    },
+    Range {
+        name: "microhardness",
+        unit: "Pa",
+        min: *ContactLaw::HARDNESSES_PA.start(),
+        max: *ContactLaw::HARDNESSES_PA.end(),
+    },
+    Range {
+        name: "gap",
+        unit: "W/(m2 K)",
+        min: *ContactLaw::GAPS_W_M2K.start(),
+        max: *ContactLaw::GAPS_W_M2K.end(),
+    },
+];
 static STREAM_INTERVAL_RANGE: Range = Range {
     name: "interval",
     unit: "ms",
@@ -202,6 +227,21 @@ fn parse_finger(name: &str) -> Result<AssumedFinger, Error> {
     let found = table_entry_for_word_or_none(&AssumedFinger::PROTOCOL_WORDS, name);
     let (_, finger) = found.ok_or(Error::UnknownAssumedFinger(name.into()))?;
     Ok(finger)
+}
+
+fn parse_contact_law(words: &mut Words<'_>) -> Result<Option<ChosenContactLaw>, Error> {
+    if words.clone().next().is_none() {
+        return Ok(None);
+    }
+    if skip_if_next_is(words, NOMINAL_CONTACT_LAW_WORD) {
+        return Ok(Some(ChosenContactLaw::NOMINAL));
+    }
+    let [exponent, hardness_pa, gap_w_m2k] = read_numbers_in_ranges(words, &CONTACT_LAW_RANGES)?;
+    Ok(Some(ChosenContactLaw::new(ContactLaw {
+        exponent,
+        hardness_pa,
+        gap_w_m2k,
+    })))
 }
 
 fn parse_contact_model(words: &mut Words<'_>) -> Result<ContactModel, Error> {

@@ -13,10 +13,11 @@ use super::{
     ANSWER_MAX_BYTES, BoardStatus, Error, LINE_MAX_BYTES, LineError, LineReader, Reply, Request,
     TelemetryLine,
 };
+use contact_model::contact_law::ContactLaw;
 use thermal_commissioning::IdentificationError;
 use thermal_device::TelemetryFields;
-use thermal_device::command::AssumedFinger;
 use thermal_device::command::{self, Command, ObjectBody, Status};
+use thermal_device::command::{AssumedFinger, ChosenContactLaw};
 use thermal_device::control::Law;
 use thermal_device::drive::Current;
 use thermal_device::reference::ContactModel;
@@ -64,6 +65,19 @@ fn every_command_is_parsed() {
             "finger thesis",
             Command::Finger(Some(AssumedFinger::Thesis)),
         ),
+        ("contact", Command::ContactLaw(None)),
+        (
+            "contact nominal",
+            Command::ContactLaw(Some(ChosenContactLaw::NOMINAL)),
+        ),
+        (
+            "contact 0.875 61250 1000",
+            Command::ContactLaw(Some(ChosenContactLaw::new(ContactLaw {
+                exponent: 0.875,
+                hardness_pa: 61_250.0,
+                gap_w_m2k: 1000.0,
+            }))),
+        ),
         ("object -20", Command::Object(Some(Celsius::lit("-20")))),
         ("object 23.25", Command::Object(Some(Celsius::lit("23.25")))),
         ("law", Command::Law(None)),
@@ -107,12 +121,22 @@ fn both_ends_of_a_range_are_allowed() {
     }
 }
 
+/// The values of Eq. 6-8 themselves are the law that costs nothing.
+#[test]
+fn a_contact_law_of_nominal_values_is_the_nominal_one() {
+    let Ok(Request::Station(Command::ContactLaw(Some(law)))) = parse("contact 0.95 122500 0")
+    else {
+        panic!("a contact law");
+    };
+    assert_eq!(law.own, None);
+}
+
 #[test]
 fn every_error_message_names_the_mistake_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id board state stream events trigger-out checksum material object finger upload mode law arm hold play pulse skin start abort clear cause self-test raw \
+            "err unknown command 'fly'; known: id board state stream events trigger-out checksum material object finger contact upload mode law arm hold play pulse skin start abort clear cause self-test raw \
              calibrate tune margins settings set flux save forget",
         ),
         (
@@ -144,6 +168,18 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
             "err slope missing; 0.0001 to 1.5 rad",
         ),
         ("mode", "err mode missing; known: contact semi-infinite"),
+        (
+            "contact soft",
+            "err exponent 'soft' is not a decimal number; 0.3 to 1.5 ",
+        ),
+        (
+            "contact 0.9 122500",
+            "err gap missing; 0 to 100000 W/(m2 K)",
+        ),
+        (
+            "contact 0.9 999 0",
+            "err microhardness '999' out of range; 1000 to 100000000 Pa",
+        ),
         (
             "calibrate",
             "err sensor missing; known: display check sink skin room",

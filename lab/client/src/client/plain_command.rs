@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::Material;
 use contact_model::slab::Back;
@@ -13,7 +14,7 @@ use thermal_device::events::DeviceEventKind;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_device::stimulus::{CourseEnd, PlayOrder, TemperatureKind};
-use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
+use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, NOMINAL_CONTACT_LAW_WORD};
 use thermal_settings::{CRC_32, FluxSensor};
 
 use super::reply::SettingsLine;
@@ -42,6 +43,8 @@ pub enum PlainCommand {
     },
     /// Choose the finger that the device assumes for the one that touches.
     AssumedFinger(AssumedFinger),
+    /// Take this for the finger's contact law: `contact nominal` if it is that of Eq. 6-8.
+    ContactLaw(ContactLaw),
     /// Choose the contact model.
     Mode(ContactModel),
     /// Choose the control law.
@@ -165,6 +168,14 @@ impl fmt::Display for PlainCommand {
                 }
             }
             Self::AssumedFinger(finger) => write!(f, "finger {}", finger.name()),
+            Self::ContactLaw(ContactLaw::NOMINAL) => {
+                write!(f, "contact {NOMINAL_CONTACT_LAW_WORD}")
+            }
+            Self::ContactLaw(law) => write!(
+                f,
+                "contact {:.4} {:.0} {:.1}",
+                law.exponent, law.hardness_pa, law.gap_w_m2k
+            ),
             Self::Mode(mode) => {
                 write!(f, "mode {}", word_in(&CONTACT_MODEL_WORDS, mode))
             }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use contact_model::contact_law::ContactLaw;
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::safety::ThermistorId;
@@ -50,6 +51,12 @@ queries! {
     /// The finger that the device assumes.
     QueryAssumedFinger = "finger" => AssumedFinger,
         |reply: &Fields<'_>| in_table(&AssumedFinger::PROTOCOL_WORDS, reply.word("finger")?);
+    /// The contact law that the device was told of.
+    QueryContactLaw = "contact" => ContactLaw, |reply: &Fields<'_>| Some(ContactLaw {
+        exponent: reply.number("exponent")?,
+        hardness_pa: reply.number("hardness_pa")?,
+        gap_w_m2k: reply.number("gap_w_m2k")?,
+    });
     /// Result of the last identification of the tile, which is in use from then on.
     TuneResult = "tune result" => IdentifiedTile, IdentifiedTile::read;
     /// The tile in use.

@@ -4,8 +4,8 @@ use fixed::types::{I4F28, I12F20, U0F32, U16F16};
 
 use super::{HalfSpace, TICK_GAIN};
 use crate::fixed_point::{
-    Body, Celsius, Contact, Fraction, MantissaExponent, Ratio, ScaledBody, product,
-    saturating_product,
+    Body, Celsius, Contact, ContactPair, Fraction, Log2, MantissaExponent, OwnContactLaw, Ratio,
+    ScaledBody, product, saturating_product,
 };
 
 /// A contact resistance in series with a [`HalfSpace`], for one tick: gives the scaled flux for a temperature
@@ -74,6 +74,8 @@ pub struct OwnResistances {
     /// Resistance of a layer on the display's face, in series with its contact: its temperature difference per kelvin of
     /// scaled flux.
     pub display_layer: U16F16,
+    /// The contact law of the finger's skin; `None` for Eq. 6-8.
+    pub law: Option<OwnContactLaw>,
 }
 
 impl OwnResistances {
@@ -81,17 +83,35 @@ impl OwnResistances {
     pub const NONE: Self = Self {
         skin_factor: I4F28::ONE,
         display_layer: U16F16::ZERO,
+        law: None,
     };
 
-    /// The resistance of this finger's contact, where that of the thesis's skin is `resistance`; saturates.
+    /// The contact of this finger at the pressure given by `log2(P / H)`, without its gap and factor.
+    #[must_use]
+    pub fn contact(&self, pair: &ContactPair, log2_relative_pressure: Log2) -> Contact {
+        match &self.law {
+            None => pair.at_pressure(log2_relative_pressure),
+            Some(law) => pair.at_pressure_by(law, log2_relative_pressure),
+        }
+    }
+
+    /// A resistance of [`Self::contact`] with the gap parallel to it.
+    fn with_gap(&self, resistance: U16F16) -> U16F16 {
+        match &self.law {
+            None => resistance,
+            Some(law) => law.with_gap(resistance),
+        }
+    }
+
+    /// The resistance of this finger's contact, where that of [`Self::contact`] is `resistance`; saturates.
     fn of_contact(&self, resistance: U16F16) -> U16F16 {
-        saturating_product(self.skin_factor, resistance)
+        saturating_product(self.skin_factor, self.with_gap(resistance))
     }
 }
 
 /// `2^62 / n` for `n` from 2^31 on: below 2^31, relative error below 2^-28. A 32-bit division and one step of
 /// Newton's method, because a 64-bit division costs three hundred cycles.
-pub(in crate::fixed_point) const fn inverse(n: u32) -> u32 {
+pub const fn inverse(n: u32) -> u32 {
     // 2^48 / n, relative error below 2^-15.
     let estimate = (u32::MAX / (n >> 16 | 1 << 15)) as i64;
     let residual = (1 << 48) - estimate * n as i64;
@@ -164,6 +184,13 @@ impl Contact {
     #[must_use]
     pub fn ratio_of(&self, own: &OwnResistances) -> Ratio {
         let object = own.of_contact(self.object_resistance()).to_bits().max(1);
+        if own.law.is_some_and(|law| law.has_gap()) {
+            let display = own
+                .of_contact(self.display_resistance())
+                .saturating_add(own.display_layer);
+            let ratio = (u64::from(display.to_bits()) << Ratio::FRAC_NBITS) / u64::from(object);
+            return Ratio::from_bits(ratio.min(Ratio::MAX.to_bits().into()) as u32);
+        }
         // Both have the same binary places.
         let layer =
             (u64::from(own.display_layer.to_bits()) << Ratio::FRAC_NBITS) / u64::from(object);
@@ -171,9 +198,14 @@ impl Contact {
         self.ratio.saturating_add(layer)
     }
 
-    /// Resistance between an average skin and the display: its temperature difference per kelvin of scaled flux.
+    /// Resistance between skin and display without a factor that was learnt, and without the layer: its temperature difference
+    /// per kelvin of scaled flux.
     #[must_use]
-    pub fn display_resistance(&self) -> U16F16 {
+    pub fn expected_display_resistance(&self, own: &OwnResistances) -> U16F16 {
+        own.with_gap(self.display_resistance())
+    }
+
+    fn display_resistance(&self) -> U16F16 {
         resistance(self.ratio, self.root_rate_per_tick, self.weight)
     }
 

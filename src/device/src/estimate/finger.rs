@@ -1,8 +1,8 @@
 //! The finger: its temperature before contact, its force, and by how much the display has cooled its skin.
 
 use contact_model::fixed_point::{
-    Body, Celsius, Contact, ContactConductance, ContactPair, Force, Ratio, TissueStateFactors,
-    contact_area, log2_relative_pressure, product, saturating_product,
+    Body, Celsius, Contact, ContactConductance, ContactPair, Force, OwnResistances, Ratio,
+    TissueStateFactors, contact_area, log2_relative_pressure, product, saturating_product,
 };
 use fixed::types::{I2F30, I10F22, U16F16};
 
@@ -86,7 +86,11 @@ pub struct ContactConductances {
 
 impl ContactConductances {
     fn new(pair: &ContactPair, bodies: Option<&Bodies>, force: Force) -> Self {
-        let contact = pair.at_pressure(log2_relative_pressure(force));
+        let pressure = log2_relative_pressure(force);
+        let contact = match bodies {
+            None => pair.at_pressure(pressure),
+            Some(bodies) => bodies.resistances.contact(pair, pressure),
+        };
         let (display, object) = match bodies {
             None => (contact.display_conductance(), contact.object_conductance()),
             Some(Bodies {
@@ -111,10 +115,10 @@ impl ContactConductances {
         }
     }
 
-    /// Contact resistance of an average skin with the display, K per K of scaled flux.
+    /// Contact resistance of skin and display without the factor that was learnt, K per K of scaled flux; `own` are the finger's.
     #[must_use]
-    pub fn average_display_resistance(&self) -> U16F16 {
-        self.contact.display_resistance()
+    pub fn expected_display_resistance(&self, own: &OwnResistances) -> U16F16 {
+        self.contact.expected_display_resistance(own)
     }
 
     /// Whether the conductances may also be used for `force`, N, because it differs by at most 1/1024 from the force

@@ -109,6 +109,7 @@ mod tests {
 
     use std::vec::Vec;
 
+    use contact_model::fixed_point::OwnResistances;
     use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
     use contact_model::reference::contact_resistance;
     use proptest::prelude::*;
@@ -177,7 +178,7 @@ mod tests {
         let scaled = pair
             .expect("a pair")
             .at_pressure(pressure)
-            .display_resistance();
+            .expected_display_resistance(&OwnResistances::NONE);
         let exact_m2k_w = contact_resistance(&SKIN.surface, &REFERENCE_DISPLAY, pressure_pa);
         let mut sums = WindowSums::default();
         let contact = TickOfContact {

@@ -290,6 +290,11 @@ impl ReferenceGenerator {
     /// Goes on with the tissue `to`, and with the resistances of the finger that is presented next.
     pub fn change_finger(&mut self, factors: &TissueStateFactors, to: &Body) {
         self.skin_on_object.change_tissue(factors, to);
+        self.forget_resistances();
+    }
+
+    /// Takes over the resistances of the finger that is presented next.
+    pub fn forget_resistances(&mut self) {
         self.factors = ContactPairFactors::default();
     }
 

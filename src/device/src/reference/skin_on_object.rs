@@ -40,6 +40,12 @@ impl ContactPairFactors {
     /// which the processor has no instruction, so it is computed only when another object is presented.
     #[must_use]
     pub fn new(pair: &ContactPair, resistances: &OwnResistances) -> Self {
+        // With a gap the set-point begins near the object's temperature, and has left it after some milliseconds: a display that
+        // waited there would be late for all that follows.
+        let without_law = OwnResistances {
+            law: None,
+            ..*resistances
+        };
         // 1 in 2^-48 over the weight in 2^-32.
         let inverse = (1u64 << 48) / u64::from(pair.weight().to_bits().max(1));
         Self {
@@ -48,7 +54,7 @@ impl ContactPairFactors {
             ratio: pair.ratio(),
             ratio_at_landing: pair
                 .at_pressure(log2_relative_pressure(LANDING_FORCE))
-                .ratio_of(resistances),
+                .ratio_of(&without_law),
         }
     }
 

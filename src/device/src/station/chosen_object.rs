@@ -1,5 +1,6 @@
 //! The object that the host has chosen to present.
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::fixed_point::{
     Body, Celsius, ContactPair, FingerBody, Fraction, OwnResistances, ScaledBody,
 };
@@ -7,7 +8,7 @@ use contact_model::material::{MATERIALS, SKIN, Surface};
 use fixed::types::{I4F28, U16F16};
 
 use crate::TICK_S;
-use crate::command::{AssumedFinger, ChosenMaterial, ObjectBody};
+use crate::command::{AssumedFinger, ChosenContactLaw, ChosenMaterial, ObjectBody};
 use crate::estimate::Bodies;
 use crate::reference::{ContactModel, PresentedObject};
 
@@ -19,6 +20,8 @@ pub struct ChosenObject {
     pub material: Option<ChosenMaterial>,
     /// The finger that is assumed for the one that touches.
     finger: AssumedFinger,
+    /// The contact law that the host has told.
+    pub contact_law: ContactLaw,
     /// Whether the object is the half-space of its material.
     is_half_space: bool,
     /// The word of the object's body in the protocol.
@@ -46,6 +49,7 @@ impl ChosenObject {
         let mut chosen = Self {
             material: None,
             finger: AssumedFinger::Thesis,
+            contact_law: ContactLaw::NOMINAL,
             is_half_space: true,
             body_name: ObjectBody::HalfSpace.name(),
             bodies: Bodies::HALF_SPACES,
@@ -106,8 +110,15 @@ impl ChosenObject {
     pub fn choose_finger(&mut self, finger: AssumedFinger) {
         self.finger = finger;
         self.bodies.finger = *finger.body();
-        self.bodies.resistances.skin_factor = OwnResistances::NONE.skin_factor;
+        self.choose_contact_law(&ChosenContactLaw::NOMINAL);
         self.bodies.are_half_spaces = self.is_half_space && finger == AssumedFinger::Thesis;
+    }
+
+    /// Takes this for the contact law of the finger from now on; what was learnt of its resistance was learnt by another one.
+    pub const fn choose_contact_law(&mut self, law: &ChosenContactLaw) {
+        self.contact_law = law.told;
+        self.bodies.resistances.law = law.own;
+        self.bodies.resistances.skin_factor = OwnResistances::NONE.skin_factor;
     }
 
     /// Gives the assumed finger what was learnt of the one that touches: its tissue, the relative change of the flux that the air

@@ -49,6 +49,7 @@ impl Station {
                         self.estimator.finger.forget_tissue_history();
                     }
                     self.object.choose_finger(finger);
+                    self.reference.forget_resistances();
                     self.forget_learnt_finger(finger);
                     self.due.add(DueWork::CONTACT_RESTART);
                 }
@@ -61,6 +62,17 @@ impl Station {
             Command::FluxSensor(ref sensor) => {
                 self.require_no_object_presented()?;
                 self.replace_flux_sensor(sensor.as_ref());
+            }
+            Command::ContactLaw(None) => return Ok(Reply::ContactLaw(self.object.contact_law)),
+            Command::ContactLaw(Some(ref law)) => {
+                // Eq. 6-12, which the thesis's finger has on half-spaces, holds for Eq. 6-8 only.
+                if !self.object.assumed_finger().is_layered() {
+                    return Err(Refused::NeedsLayeredFinger);
+                }
+                self.object.choose_contact_law(law);
+                self.reference.forget_resistances();
+                self.forget_learnt_finger(self.object.assumed_finger());
+                self.due.add(DueWork::CONTACT_RESTART);
             }
             Command::Material(ref material) => {
                 self.object.choose_material(material);

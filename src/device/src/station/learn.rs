@@ -153,11 +153,12 @@ impl Station {
                 .saturating_sub(before.room)
         });
         let assumed = self.object.assumed_finger();
+        let resistances = &self.object.bodies().resistances;
         let conductances = contact.and_then(|contact| contact.stored_conductances());
         let conductances = conductances.filter(|_| assumed.is_layered());
         let state = StateAtEnd {
             scaled_air_flux: product(above_room, assumed.body().air),
-            resistance: conductances.map(|both| both.average_display_resistance()),
+            resistance: conductances.map(|both| both.expected_display_resistance(resistances)),
             ticks_since_landing: contact.map_or(0, |contact| contact.ticks_since_landing()),
         };
         let before = learning.knowledge();

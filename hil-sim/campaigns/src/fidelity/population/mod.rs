@@ -5,7 +5,9 @@ mod chart;
 mod object;
 mod statistics;
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::material::{REFERENCE_DISPLAY, SKIN, Surface};
+use thermal_client::client::PlainCommand;
 use thermal_plant::Params;
 use thermal_plant::parameters::{self, stream_seed};
 use thermal_plant::sensors::FluxParams;
@@ -43,6 +45,9 @@ named_enum! {
         /// Contact laws under the nominal layered finger, on an otherwise nominal plant.
         #[serde(rename = "I")]
         ContactLaws = "I",
+        /// The same, with the device told of each: what measuring a person's law can give at most.
+        #[serde(rename = "I-told")]
+        ToldContactLaws = "I-told",
     }
 }
 
@@ -87,14 +92,14 @@ const fn aim(since: Since, percent: f64, aim_mk: f64) -> Aim {
 }
 
 impl Population {
-    /// The scenario's name on the command line; F and G have several populations.
+    /// The scenario's name on the command line; F, G and I have several populations.
     #[must_use]
     pub const fn scenario(self) -> &'static str {
         match self {
             Self::Objects => "E",
             Self::FingerBox | Self::DrawnFingers => "F",
             Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => "G",
-            Self::ContactLaws => "I",
+            Self::ContactLaws | Self::ToldContactLaws => "I",
         }
     }
 
@@ -117,6 +122,7 @@ impl Population {
             Self::ContactLaws => {
                 "contact laws of contact.draw; nominal layered finger, six objects"
             }
+            Self::ToldContactLaws => "the same contact laws, each told to the device",
         }
     }
 
@@ -138,15 +144,18 @@ impl Population {
             Self::FingerBox => &FINGER_BOX,
             Self::DrawnFingers => &DRAWN_FINGERS,
             Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => &FIRST_CONTACT,
-            Self::ContactLaws => &[],
+            Self::ContactLaws | Self::ToldContactLaws => &[],
         }
     }
 
-    /// What its devices are told. Version 0.1 knew no sensor of the heat flux.
+    /// What its devices are told. Version 0.1 knew no sensor of the heat flux, and no contact law but Eq. 6-8.
     #[must_use]
     pub const fn ways(self) -> &'static [Way] {
         match self {
-            Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => &[Way::AsItIs],
+            Self::DesignedSensor
+            | Self::HypotheticalSensor
+            | Self::KnownSurfaces
+            | Self::ToldContactLaws => &[Way::AsItIs],
             _ => &Way::ALL,
         }
     }
@@ -186,10 +195,8 @@ impl Population {
                     let hypothetical = drawn_finger(own) + &hypothetical_sensor(own);
                     (own, hypothetical + &known_surfaces())
                 }
-                _ => (
-                    seed,
-                    layered("") + &format!("[plant]\ncontact.draw = {own}\n"),
-                ),
+                Self::ToldContactLaws => (seed, drawn_contact(own) + &told_contact(own)),
+                _ => (seed, drawn_contact(own)),
             };
             for object in six_objects() {
                 let name = format!("{}, draw {number}", object.name);
@@ -203,6 +210,25 @@ impl Population {
 /// A layered finger with further keys.
 fn layered(keys: &str) -> String {
     format!("[finger]\ntissue = \"layered\"\n{keys}")
+}
+
+/// A nominal layered finger with a contact law of `contact.draw`.
+fn drawn_contact(seed: u64) -> String {
+    layered("") + &format!("[plant]\ncontact.draw = {seed}\n")
+}
+
+/// The line that tells the device of that law. The pressure is the force over the true area there, which shows as another
+/// microhardness of the area that the device assumes.
+fn told_contact(seed: u64) -> String {
+    let mut params = Params::nominal();
+    parameters::draw_contact(&mut params, seed);
+    let plant = params.contact;
+    let line = PlainCommand::ContactLaw(ContactLaw {
+        exponent: plant.exponent,
+        hardness_pa: plant.hardness_pa * plant.area_factor,
+        gap_w_m2k: plant.gap_w_m2k,
+    });
+    format!("[[host]]\nt_s = 0.0\nline = \"{line}\"\n")
 }
 
 /// A finger of `finger.draw` on a device of the parameter box.

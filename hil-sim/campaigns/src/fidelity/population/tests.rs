@@ -2,6 +2,8 @@
 
 use std::collections::HashSet;
 
+use contact_model::pressure::THESIS_PRESSURES;
+use contact_model::reference::mean_conductance;
 use thermal_plant::parameters::PlaceBeforeContact;
 use thermal_plant::slab::BackBoundary;
 use thermal_sim::scene::AssumedFinger;
@@ -127,6 +129,44 @@ fn drawn_contact_laws_leave_all_else_nominal() {
         assert_eq!(scene.params.sensors, scenes[0].params.sensors);
     }
     assert_ne!(scenes[0].params.contact, scenes[6].params.contact);
+}
+
+/// At the forces of the thesis, and the same otherwise.
+#[test]
+fn told_contact_laws_are_those_of_the_plant() {
+    let untold = Population::ContactLaws.cases(1, 3);
+    let told = Population::ToldContactLaws.cases(1, 3);
+    for (untold, told) in untold.iter().zip(&told) {
+        let scene = told.scene(Way::AsItIs).expect("a scene");
+        assert_eq!(
+            untold.scene(Way::AsItIs).expect("a scene").params,
+            scene.params
+        );
+        let [line] = scene.host.as_slice() else {
+            panic!("one line");
+        };
+        let words: Vec<f64> = (line.line.split(' ').skip(1))
+            .map(|word| word.parse().expect("a number"))
+            .collect();
+        let law = ContactLaw {
+            exponent: words[0],
+            hardness_pa: words[1],
+            gap_w_m2k: words[2],
+        };
+        let Params {
+            contact,
+            finger,
+            display,
+            ..
+        } = &scene.params;
+        for (force_n, pressure_pa) in THESIS_PRESSURES {
+            let mean = mean_conductance::<f64>(&finger.surface, display);
+            let plant = contact.at_force(force_n, &finger.surface, display);
+            let product =
+                plant.expect("a force").resistance_m2k_w * law.conductance_w_m2k(mean, pressure_pa);
+            assert!((product - 1.0).abs() < 1e-3, "{force_n} N: {product}");
+        }
+    }
 }
 
 #[test]

@@ -4,10 +4,11 @@ extern crate std;
 
 use std::vec::Vec;
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::finger::{FingerProperties, MEAN, THESIS};
 use contact_model::fixed_point::{
-    Body, ContactPair, FingerBody, Force, ScaledBody, contact_area, log2_relative_pressure,
-    to_fixed,
+    Body, ContactPair, FingerBody, Force, OwnContactLaw, ScaledBody, contact_area,
+    log2_relative_pressure, to_fixed,
 };
 use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
@@ -234,6 +235,24 @@ fn any_body() -> impl Strategy<Value = Body> {
     })
 }
 
+/// None, or one of any that a host may tell.
+fn law() -> impl Strategy<Value = Option<OwnContactLaw>> {
+    let any = (
+        ContactLaw::EXPONENTS,
+        ContactLaw::HARDNESSES_PA,
+        ContactLaw::GAPS_W_M2K,
+    );
+    prop::option::of(any).prop_map(|law| {
+        let (exponent, hardness_pa, gap_w_m2k) = law?;
+        let law = ContactLaw {
+            exponent,
+            hardness_pa,
+            gap_w_m2k,
+        };
+        OwnContactLaw::new(&law, TICK_S)
+    })
+}
+
 fn any_celsius() -> impl Strategy<Value = Celsius> {
     prop_oneof![
         any::<i32>().prop_map(Celsius::from_bits),
@@ -264,7 +283,7 @@ proptest! {
         objects in prop::collection::vec(any_body(), 2),
         material in 0..MATERIALS.len(),
         events in prop::collection::vec(
-            (any_celsius(), any_celsius(), any_celsius(), prop::option::of(any::<u32>()), 0..3usize, (0..2usize, any::<u32>()), any::<(i32, u32)>(), any::<bool>(), 1..300u32),
+            (any_celsius(), any_celsius(), any_celsius(), prop::option::of(any::<u32>()), 0..3usize, (0..2usize, any::<u32>()), (any::<i32>(), any::<u32>(), law()), any::<bool>(), 1..300u32),
             1..20,
         ),
     ) {
@@ -275,7 +294,7 @@ proptest! {
         let factors = ContactPairFactors::new(&pair, &OwnResistances::NONE);
         let mut estimator = FingerEstimator::default();
         let mut skin = SkinOnObject::default();
-        for (skin_c, room_c, other, force, finger, (object, factor), (skin_factor, layer), restart, ticks) in events {
+        for (skin_c, room_c, other, force, finger, (object, factor), (skin_factor, layer, law), restart, ticks) in events {
             let force = force.map(Force::from_bits);
             // The third finger stands for the thesis's path without bodies.
             let bodies = Bodies {
@@ -284,6 +303,7 @@ proptest! {
                 resistances: OwnResistances {
                     skin_factor: I4F28::from_bits(skin_factor),
                     display_layer: U16F16::from_bits(layer),
+                    law,
                 },
                 are_half_spaces: finger == fingers.len(),
             };
