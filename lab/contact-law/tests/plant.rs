@@ -1,7 +1,9 @@
 //! Force ramps of simulated fingers: layered tissue by finite volumes, blood, the tile, and the heat-flux sensor.
 
 use contact_law_fit::{FORCES_N, Fit, RAMPS_S, Recording, Sample, fit, force_n};
-use contact_model::material::find;
+use contact_model::material::{SKIN, find};
+use contact_model::pressure::pressure_pa;
+use contact_model::reference::mean_conductance;
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::finger::FingerParams;
 use thermal_plant::object::ObjectConfig;
@@ -113,6 +115,12 @@ fn deviations(sensor: fn(FluxParams) -> FluxParams, has_gap: bool, fingers: u64)
         let fitted = fit.resistances_m2k_w.iter().zip(resistances_m2k_w);
         for (percent, (fitted, exact)) in found.resistance_percent.iter_mut().zip(fitted) {
             percent.push(100.0 * (fitted / exact - 1.0).abs());
+        }
+        // The law that a device is told has the resistances that are reported.
+        let mean_w_m2k = mean_conductance::<f64>(&SKIN.surface, &params.display);
+        for (force_n, fitted) in FORCES_N.iter().zip(fit.resistances_m2k_w) {
+            let told_w_m2k = law.conductance_w_m2k(mean_w_m2k, pressure_pa(*force_n));
+            assert!((fitted * told_w_m2k - 1.0).abs() < 1e-9);
         }
         // The factor is on the whole resistance.
         let gap = params.contact.gap_w_m2k / params.finger.resistance_factor;
