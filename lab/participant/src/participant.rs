@@ -46,13 +46,13 @@ const GATE_SHARE: f64 = 0.5;
 /// A simulated participant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Participant {
-    /// Skin before contact at the begin of the session against that of the session's rest, K.
+    /// Skin before contact at the start of the session, minus `rest_c`, K.
     pub skin_off_k: f64,
-    /// Skin at rest of the session, °C.
+    /// Skin temperature that the session's `[rest]` demands, °C; 33 °C without `[rest]`.
     pub rest_c: f64,
     /// Rise of the skin over the session, K.
     pub drift_k: f64,
-    /// Largest distance from the rest's temperature, K.
+    /// Limit on how far the skin may be from `rest_c`, K: half of the gate's tolerance; infinite without a measured gate.
     pub off_max_k: f64,
     /// The hand.
     pub hand: HandParams,

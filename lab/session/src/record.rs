@@ -67,9 +67,9 @@ pub struct StationRecord {
     pub setpoint_c: Option<f64>,
     /// Display thermistor at the landing, °C.
     pub display_c: Option<f64>,
-    /// Mean force in contact, N.
+    /// Mean force from the first landing to the last lift or the tone to lift, N; gaps between touches count.
     pub force_mean_n: Option<f64>,
-    /// Standard deviation of the force in contact, N.
+    /// Standard deviation of the force over the same time, N.
     pub force_sd_n: Option<f64>,
     /// Mean force of the last 2 s of the contact, N.
     pub force_end_mean_n: Option<f64>,

@@ -53,7 +53,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// Sends a line and prints its answer; ends at the first that is refused.
+/// Sends a line and prints its answer. A refusal is an error, so that no further line is sent.
 fn send(client: &mut AnyClient<'_>, line: &str, json: bool) -> Result<(), Failure> {
     let answer = client.query(line).map_err(|error| match error {
         ClientError::Unsendable { .. } => Failure::input(error),

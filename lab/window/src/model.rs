@@ -28,7 +28,7 @@ pub struct SessionView {
     pub title: String,
     /// Where the fingers go.
     pub stations: Vec<Station>,
-    /// Gate of the skin.
+    /// Condition on the skin before each trial, from the session file; `None` if there is none.
     pub rest: Option<Rest>,
     /// How a trial proceeds.
     pub rules: TrialRules,

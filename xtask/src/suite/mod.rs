@@ -182,17 +182,26 @@ fn whole(
         ),
         windows(),
     ];
-    let tests = choice.handed_to(cargo("test --release --workspace --no-fail-fast"));
+    let tests = |which: &str| {
+        let line = format!("test --release --no-fail-fast {which}");
+        Ok(vec![choice.handed_to(cargo(&line))])
+    };
+    // `hil-sim` is selected, too, so that cargo unifies features as for the workspace and compiles no dependency again.
+    let on_image = "-p image-tests -p hil-sim --test image";
     let on_target = choice.handed_to(cargo("xtask on-target --emulated --check"));
     let fuzz = format!("xtask fuzz --seconds {FUZZ_S}");
     vec![
         vec![host, images],
         vec![
             vec![Check {
-                title: "whole system, native and on the emulated microcontroller",
-                commands: Ok(vec![tests]),
+                title: "units, and the whole system natively",
+                commands: tests("--workspace --exclude image-tests"),
             }],
             vec![
+                Check {
+                    title: "image on the emulated microcontroller",
+                    commands: tests(on_image),
+                },
                 check("fuzzers: inputs of the repository, 4 s a target", [&fuzz]),
                 Check {
                     title: "tests for a bare board, on the emulated one",

@@ -24,14 +24,19 @@ const PROPERTIES: [(&str, Property); 3] = [
 
 /// Covariates of what pairs and confusions have, one at a time.
 pub fn ancova(task: &Task) -> Section {
-    let mut section = Section::new("ancova", "Analysis of covariance").note(
-        "Per cent correct of each participant with each pair, or material, by participant and one covariate: y = m + b x, with a \
-         mean m of each participant and the same slope b for all (each effect adjusted for the other). The covariate of a pair is the binary \
-         logarithm of the ratio of its materials' properties, the larger over the smaller; of a single material it is that of its \
-         property. n counts cells. Roughnesses are those of the session's materials, Young's moduli those of Tables 3-2 and 4-1 of \
-         the thesis; it does not say what its factor was. The properties of few materials go together, such as those of foam, so \
-         that a small p is no evidence of a cause.",
-    );
+    let mut section = Section::new("ancova", "Analysis of covariance")
+        .note(
+            "Per cent correct of each participant with each pair, or material, by participant and one covariate: y = m + b x, with \
+             a mean m of each participant and the same slope b for all (each effect adjusted for the other). n counts cells.",
+        )
+        .note(
+            "The covariate of a pair is the binary logarithm of the ratio of its materials' properties, the larger over the \
+             smaller; of a single material it is that of its property. Roughnesses are those of the session's materials, Young's \
+             moduli those of Tables 3-2 and 4-1 of the thesis; it does not say what its factor was.",
+        )
+        .note(
+            "The properties of few materials go together, such as those of foam, so that a small p is no evidence of a cause.",
+        );
     let mut table = Table::new(
         "ancova",
         "Covariates beside the participants; n counts participants times pairs or materials",

@@ -85,7 +85,7 @@ pub struct TableResult {
 /// Section 4.2: identification.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Identification {
-    /// Fitted factor on the noise.
+    /// Factor by which the observer's noise is multiplied, fitted to both overall percentages correct.
     pub factor: f64,
     /// Materials.
     pub materials: Vec<String>,

@@ -4,7 +4,7 @@ use super::closed_form::colder;
 use super::report::{Falls, Worth};
 use crate::ObserverParams;
 
-/// What errors of 20, 50 and 200 mK at the receptors are worth.
+/// What errors of 20, 50, 100 and 200 mK at the receptors are worth.
 pub(super) fn worth(touch: &ObserverParams, falls: &Falls) -> Vec<Worth> {
     /// Standard normal deviate of 75 %.
     const Z_75: f64 = 0.674_489_750_196_082;
