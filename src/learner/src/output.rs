@@ -65,8 +65,9 @@ impl LearnerOutput {
     #[must_use]
     pub fn is_nearly(&self, other: &Self) -> bool {
         let weights = self.weights.iter().zip(&other.weights);
-        weights.fold(true, |near, (own, other)| near & (own.abs_diff(*other) <= WEIGHT_TOLERANCE))
-            && self.air_change.abs_diff(other.air_change) <= AIR_TOLERANCE
+        weights.fold(true, |near, (own, other)| {
+            near & (own.abs_diff(*other) <= WEIGHT_TOLERANCE)
+        }) && self.air_change.abs_diff(other.air_change) <= AIR_TOLERANCE
             && self.skin_offset_k.abs_diff(other.skin_offset_k) <= SKIN_TOLERANCE_K
             && self.resistance_factor.abs_diff(other.resistance_factor) <= RESISTANCE_TOLERANCE
     }

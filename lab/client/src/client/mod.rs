@@ -32,9 +32,9 @@ pub use plain_command::{
     PlainCommand, THERMISTORS, thermistor, thermistor_word, upload, upload_course,
 };
 pub use query::{
-    Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryContactLaw, QueryFlux,
-    QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState,
-    TuneResult,
+    Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryContactLaw,
+    QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings,
+    QueryState, TuneResult,
 };
 pub use reply::{
     BoardReport, CalibrationFit, Cause, FluxReport, IdentifiedTile, Identity, RawReadings,
