@@ -49,7 +49,7 @@ pub fn contingency<R: AsRef<[u32]>>(table: &[R]) -> Result<ChiSquare> {
 /// Whether counts have given proportions, which are divided by their sum; `cells - 1` degrees of freedom.
 ///
 /// # Errors
-/// Fewer than two cells, other than one proportion a cell, a proportion that is not positive and finite, or no counts.
+/// Fewer than two cells, other than one proportion a cell, a proportion that is not from 1e-100 to 1e100, or no counts.
 pub fn goodness_of_fit(observed: &[u32], proportions: &[f64]) -> Result<ChiSquare> {
     at_least("cells", observed.len(), 2)?;
     if proportions.len() != observed.len() {
@@ -62,7 +62,10 @@ pub fn goodness_of_fit(observed: &[u32], proportions: &[f64]) -> Result<ChiSquar
     }
     check_row("proportions", 0, proportions)?;
     let smallest = proportions.iter().copied().fold(f64::MAX, f64::min);
-    checked("smallest proportion", smallest, "positive", |p| p > 0.0)?;
+    // Of a smaller one the statistic can be beyond the largest number.
+    checked("smallest proportion", smallest, "at least 1e-100", |p| {
+        p >= 1e-100
+    })?;
     let total: f64 = observed.iter().copied().map(f64::from).sum();
     at_least("counts", total as usize, 1)?;
     let parts: f64 = proportions.iter().sum();

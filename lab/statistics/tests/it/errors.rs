@@ -138,10 +138,12 @@ fn arguments_out_of_range_are_named_with_their_range() {
         tukey(&[1.0, 2.0], 5, 0.0, 10.0),
         Err(OutOfRange { .. })
     ));
-    assert!(matches!(
-        goodness_of_fit(&[3, 4], &[1.0, 0.0]),
-        Err(OutOfRange { .. })
-    ));
+    for proportion in [0.0, 2.1e-308, 0.9e-100] {
+        let refused = goodness_of_fit(&[3, 4], &[1.0, proportion]);
+        assert!(matches!(refused, Err(OutOfRange { .. })), "{refused:?}");
+    }
+    let smallest = goodness_of_fit(&[u32::MAX, u32::MAX], &[1e100, 1e-100]);
+    assert!(smallest.expect("a test").statistic.is_finite());
     let rows = [[1.0, 2.0], [2.0, 5.0], [0.0, 1.0]];
     assert!(matches!(
         contrast_within(&rows, &[1.0, 1.0]),
