@@ -18,6 +18,7 @@ from fake_device import FakeDevice
 from thermal_display import (
     BridgeNotOff,
     Closed,
+    ContactLaw,
     DeviceBusy,
     DeviceRestarted,
     DeviceTripped,
@@ -91,6 +92,8 @@ def test_opening_switches_checksums_telemetry_and_events_on(fake: FakeDevice) ->
         (lambda d: d.set_flux_sensor(0.1192, 2048, 5, 30), "flux set 0.1192 2048 5 30"),
         (lambda d: d.remove_flux_sensor(), "flux none"),
         (lambda d: d.take_flux_zero(), "flux zero"),
+        (lambda d: d.set_contact_law(ContactLaw(0.875, 61250, 1000)), "contact 0.875 61250 1000"),
+        (lambda d: d.set_contact_law(None), "contact nominal"),
         (lambda d: d.set_settings(["set tile 1 2 3 4 5"]), "set tile 1 2 3 4 5"),
     ],
 )

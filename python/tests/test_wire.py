@@ -5,8 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermal_display import TELEMETRY_FIELDS, EventKind, State
-from thermal_display import wire
+from thermal_display import (
+    FLUX_FIELDS,
+    TELEMETRY_FIELDS,
+    EventKind,
+    State,
+    TelemetryField,
+    wire,
+)
 from thermal_display.device_clock import DeviceClock
 from thermal_display.events import parse_event
 from thermal_display.replies import Cause, Fields, FluxReport, Identity, Status
@@ -97,15 +103,29 @@ def test_numbers_that_are_not_finite_are_not_sent(value: float) -> None:
 
 def test_a_line_of_telemetry_is_read() -> None:
     line = "T 7 contact 24.31939 24.3300 23.99 - 23.97 1.999 0.233 0.426 17 limited"
-    tick, state, numbers, evaluations, remark = parse_line(line, TELEMETRY_FIELDS) or (0, "", [], 0, "")
-    assert (tick, state, evaluations, remark) == (7, "contact", 17, "limited")
-    np.testing.assert_equal(numbers, [24.31939, 24.33, 23.99, np.nan, 23.97, 1.999, 0.233, 0.426])
+    parsed = parse_line(line, TELEMETRY_FIELDS)
+    assert parsed is not None
+    assert (parsed.tick, parsed.state, parsed.evaluations, parsed.remark) == (7, "contact", 17, "limited")
+    np.testing.assert_equal(parsed.numbers, [24.31939, 24.33, 23.99, np.nan, 23.97, 1.999, 0.233, 0.426])
+    np.testing.assert_equal(parsed.of_flux, [np.nan, np.nan])
+    assert parsed.known == ""
 
 
 def test_a_line_with_chosen_fields_fills_their_columns() -> None:
     parsed = parse_line("T 7 preset 30.0000 1.5 -", ("display", "force"))
     assert parsed is not None
-    np.testing.assert_equal(parsed[2], [np.nan, 30, np.nan, np.nan, np.nan, 1.5, np.nan, np.nan])
+    np.testing.assert_equal(parsed.numbers, [np.nan, 30, np.nan, np.nan, np.nan, 1.5, np.nan, np.nan])
+
+
+def test_a_line_with_fields_of_the_flux_sensor_fills_their_columns() -> None:
+    fields: tuple[TelemetryField, ...] = ("force", *FLUX_FIELDS)
+    parsed = parse_line("T 7 contact 1.5 -1234.5 24.0125 trusted -", fields)
+    assert parsed is not None
+    assert (parsed.numbers[5], parsed.of_flux, parsed.known) == (1.5, (-1234.5, 24.0125), "trusted")
+    parsed = parse_line("T 7 contact 1.5 - - - -", fields)
+    assert parsed is not None
+    np.testing.assert_equal(parsed.of_flux, [np.nan, np.nan])
+    assert parsed.known == ""
 
 
 @pytest.mark.parametrize(
@@ -160,7 +180,7 @@ def test_replies_are_read() -> None:
 
 
 def _row(tick: int) -> tuple[object, ...]:
-    return (tick, 0, "off", *[0.0] * 8, 0, "-", 0.0, 0.0, 0)
+    return (tick, 0, "off", *[0.0] * 8, 0, "-", 0.0, 0.0, 0, 0.0, 0.0, "")
 
 
 def test_the_ring_keeps_the_newest_rows_and_counts_the_others() -> None:

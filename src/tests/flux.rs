@@ -2,11 +2,12 @@
 
 use std::format;
 use std::string::String;
+use std::vec::Vec;
 
 use thermal_learner::Learner;
 
 use super::commissioning::Bench;
-use super::device::{arm, samples};
+use super::device::{arm, samples, telemetry_line};
 use crate::commissioning::StorageOrder;
 use crate::device::FingerIndex;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
@@ -216,4 +217,31 @@ fn a_stored_sensor_is_there_after_a_restart() {
     let line = "@1 ok set flux 0.119250 2051.500 4.500 31.250";
     assert_eq!(restarted.send("@1 settings 9"), line);
     assert_eq!(restarted.send("@0 settings"), "@0 ok lines=8");
+}
+
+#[test]
+fn telemetry_has_flux_surface_and_finger_if_they_are_named() {
+    let (mut one, mut learner) = (Bench::<1>::new(), Learner::new());
+    let line = |bench: &mut Bench<1>| {
+        telemetry_line(&mut bench.device, FingerIndex::FIRST).expect("telemetry")
+    };
+    assert_eq!(one.send("stream 1 flux display surface finger"), "ok");
+    step(&mut one, &mut learner, (FREE, SAME), [2048]);
+    let line_without = line(&mut one);
+    assert!(line_without.ends_with(" - - - -"), "{line_without}");
+    assert_eq!(one.send("flux set 0.1192 2048 5 30"), "ok");
+    step(
+        &mut one,
+        &mut learner,
+        (FREE, SAME),
+        [2048, 2048, 2048 + 119],
+    );
+    let line = line(&mut one);
+    let words: Vec<_> = line.split(' ').collect();
+    let ["T", "4", "off", display, "998.3", surface, "learning", "-"] = words[..] else {
+        panic!("{line}");
+    };
+    // Nothing warms or cools the display.
+    let kelvin = |word: &str| word.parse::<f64>().expect(word);
+    assert!((kelvin(display) - kelvin(surface)).abs() < 0.1, "{line}");
 }

@@ -39,6 +39,7 @@ from .replies import (
     BoardReport,
     CalibrationFit,
     Cause,
+    ContactLaw,
     FluxReport,
     IdentifiedTile,
     Identity,
@@ -49,6 +50,7 @@ from .replies import (
 from .simulator import HIL_SIM_VARIABLE, Simulator, find_hil_sim
 from .telemetry import TELEMETRY_DTYPE, LineCounts, Sample, Telemetry, TelemetryArray
 from .words import (
+    FLUX_FIELDS,
     TELEMETRY_FIELDS,
     AssumedFinger,
     ContactMode,
@@ -74,6 +76,7 @@ __all__ = [
     "ClockEstimate",
     "Closed",
     "CommandError",
+    "ContactLaw",
     "ContactMode",
     "DeviceBusy",
     "DeviceClock",
@@ -86,6 +89,7 @@ __all__ = [
     "EventTimeout",
     "Events",
     "Finger",
+    "FLUX_FIELDS",
     "FingerKnowledge",
     "FluxReport",
     "HIL_SIM_VARIABLE",

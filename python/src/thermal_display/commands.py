@@ -15,6 +15,7 @@ from .errors import DeviceTripped, LineDamaged, StateTimeout
 from .replies import (
     CalibrationFit,
     Cause,
+    ContactLaw,
     Fields,
     FluxReport,
     IdentifiedTile,
@@ -24,6 +25,7 @@ from .replies import (
 )
 from .telemetry import Stream
 from .words import (
+    ALL_FIELDS,
     TELEMETRY_FIELDS,
     AssumedFinger,
     ContactMode,
@@ -90,6 +92,10 @@ class Commands:
     def flux(self) -> FluxReport | None:
         """The heat-flux sensor, its flux, and what is known of the finger by it; `None` without one."""
         return self._connection.ask("flux", FluxReport.read, self._finger)
+
+    def contact_law(self) -> ContactLaw:
+        """The contact law that is taken for the finger's."""
+        return self._connection.ask("contact", ContactLaw.read, self._finger)
 
     # The object
 
@@ -186,6 +192,18 @@ class Commands:
         return self._connection.ask(
             "finger", lambda reply: cast(AssumedFinger, reply.word("finger")), self._finger
         )
+
+    def set_contact_law(self, law: ContactLaw | None) -> None:
+        """Takes this contact law for the finger's; `None` for Eq. 6-8, the default. Refused for the finger `thesis`."""
+        if law is None:
+            self._tell("contact nominal")
+            return
+        values = [
+            wire.number(law.exponent, "exponent"),
+            wire.number(law.hardness_pa, "hardness_pa"),
+            wire.number(law.gap_w_m2k, "gap_w_m2k"),
+        ]
+        self._tell("contact " + " ".join(values))
 
     def skin(self, skin_c: float | None) -> None:
         """Skin before contact that set-points assume, 15 to 42 °C; `None` for that of the sensor."""
@@ -290,12 +308,12 @@ class Commands:
         1000 lines a second, of all fingers together. 0 ends telemetry, and with it the device's guard: it does not trip any
         more when this program dies. 60000 keeps the guard."""
         chosen = set(fields)
-        unknown = chosen.difference(TELEMETRY_FIELDS)
+        unknown = chosen.difference(ALL_FIELDS)
         if unknown:
-            raise ValueError(f"unknown fields {', '.join(sorted(unknown))}; known: {', '.join(TELEMETRY_FIELDS)}")
+            raise ValueError(f"unknown fields {', '.join(sorted(unknown))}; known: {', '.join(ALL_FIELDS)}")
         if int(interval_ms) != interval_ms:
             raise ValueError(f"interval_ms is {interval_ms}; allowed are whole numbers from 0 to 60000")
-        in_order = tuple(name for name in TELEMETRY_FIELDS if name in chosen)
+        in_order = tuple(name for name in ALL_FIELDS if name in chosen)
         self._connection.set_stream(self._finger, Stream(int(interval_ms), in_order or TELEMETRY_FIELDS))
 
     def trigger_out(self, *kinds: TriggerEvent) -> None:

@@ -246,6 +246,22 @@ class RawReadings:
 
 
 @dataclass(frozen=True)
+class ContactLaw:
+    """Conductance of skin and display, `h (P/H)^exponent + gap` with the mean conductance `h` of both surfaces."""
+
+    exponent: float
+    """0.3 to 1.5; 0.95 in Eq. 6-8."""
+    hardness_pa: float
+    """Microhardness `H`, 1e3 to 1e8 Pa."""
+    gap_w_m2k: float
+    """Conductance of the gap, 0 to 1e5 W/(m² K)."""
+
+    @classmethod
+    def read(cls, reply: Fields) -> ContactLaw:
+        return cls(reply.real("exponent"), reply.real("hardness_pa"), reply.real("gap_w_m2k"))
+
+
+@dataclass(frozen=True)
 class FluxReport:
     """Answer to `flux`: the heat-flux sensor, and what is known by it."""
 

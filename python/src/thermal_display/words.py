@@ -99,7 +99,18 @@ Thermistor = Literal["display", "check", "sink", "skin", "room"]
 """Thermistors; `check` is the second one of the display."""
 
 TelemetryField = Literal[
-    "setpoint", "display", "sink", "skin", "room", "force", "demand", "current", "evaluations"
+    "setpoint",
+    "display",
+    "sink",
+    "skin",
+    "room",
+    "force",
+    "demand",
+    "current",
+    "evaluations",
+    "flux",
+    "surface",
+    "finger",
 ]
 """Fields of telemetry that `stream` can choose."""
 
@@ -114,4 +125,11 @@ TELEMETRY_FIELDS: tuple[TelemetryField, ...] = (
     "current",
     "evaluations",
 )
+"""The fields of a line if none is chosen, in its order."""
+
+FLUX_FIELDS: tuple[TelemetryField, ...] = ("flux", "surface", "finger")
+"""The fields of the heat-flux sensor, which follow the others in a line if they are chosen: flux, estimate of the display's
+surface, and what is known of the finger."""
+
+ALL_FIELDS = TELEMETRY_FIELDS + FLUX_FIELDS
 """All fields, in the order of a line."""

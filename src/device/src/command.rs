@@ -322,6 +322,8 @@ pub enum Reply {
 pub struct FluxState {
     /// Flux out of the finger in the last tick, W/m²; `None` if the sensor's code cannot be right.
     pub flux: Option<Flux>,
+    /// Estimated temperature of the display's surface under the finger, °C, then; `None` without an estimate of the plate.
+    pub surface: Option<Celsius>,
     /// What is known of the finger.
     pub knowledge: FingerKnowledge,
 }

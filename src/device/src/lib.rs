@@ -35,6 +35,7 @@ pub use pwm_period::{
 pub use state_name::StateName;
 pub use station::Station;
 pub use telemetry::{Telemetry, TelemetryFields};
+pub use thermal_learner::Flux;
 pub use thermal_settings::{TICK_HZ, TICK_S};
 pub use trigger_edge::TriggerEdge;
 

@@ -30,7 +30,7 @@ pub use line_checksum::{ChecksumError, OutgoingLine, line_checksum, strip_checks
 pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
 pub use reply::Reply;
 pub use request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, NOMINAL_CONTACT_LAW_WORD, Request};
-pub use telemetry::{TelemetryLine, UnsolicitedLine, wrap_as_telemetry_line};
+pub use telemetry::{TelemetryLine, UnsolicitedLine};
 pub use upload::UploadError;
 
 #[cfg(test)]

@@ -15,17 +15,17 @@ use super::{
 };
 use contact_model::contact_law::ContactLaw;
 use thermal_commissioning::IdentificationError;
-use thermal_device::TelemetryFields;
-use thermal_device::command::{self, Command, ObjectBody, Status};
+use thermal_device::command::{self, Command, FluxState, ObjectBody, Status};
 use thermal_device::command::{AssumedFinger, ChosenContactLaw};
 use thermal_device::control::Law;
 use thermal_device::drive::Current;
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::{
     ComparatorSideReport, Fault, SelfTestReport, SelfTestResult, SideLine,
 };
 use thermal_device::sense::SupplyVoltage;
-use thermal_device::{StateName, Telemetry};
+use thermal_device::{Flux, StateName, Telemetry, TelemetryFields};
 use thermal_settings::Settings;
 
 fn parse(line: &str) -> Result<Request, Error> {
@@ -48,14 +48,14 @@ fn every_command_is_parsed() {
             "stream 0",
             Command::Stream {
                 interval_ms: 0,
-                fields: TelemetryFields::ALL,
+                fields: TelemetryFields::DEFAULT,
             },
         ),
         (
             " stream  60000 ",
             Command::Stream {
                 interval_ms: 60_000,
-                fields: TelemetryFields::ALL,
+                fields: TelemetryFields::DEFAULT,
             },
         ),
         ("object room", Command::Object(None)),
@@ -350,12 +350,30 @@ fn the_longest_answers_fit_their_limit() {
         demand: Current::MIN,
         current: Current::MIN,
         evaluations: u32::MAX,
-        fields: TelemetryFields::ALL,
+        fields: TelemetryFields::DEFAULT,
     };
-    let line = TelemetryLine(longest).to_string();
+    let flux = Some(FluxState {
+        flux: Some(Flux::MIN),
+        surface: Some(Celsius::MIN),
+        knowledge: FingerKnowledge::SensorFault,
+    });
+    let write = |telemetry| TelemetryLine { telemetry, flux }.to_string();
+    let line = write(longest);
     assert!(
-        line.len() <= ANSWER_MAX_BYTES && line.ends_with(" display-short"),
+        line.len() <= ANSWER_MAX_BYTES && line.ends_with(" 4294967295 display-short"),
         "{line}"
+    );
+    let all = Telemetry {
+        fields: (0..TelemetryFields::NAMES.len())
+            .fold(TelemetryFields::NONE, TelemetryFields::with),
+        ..longest
+    };
+    assert_eq!(
+        write(all),
+        line.replace(
+            " display-short",
+            " -524288.0 -512.0000 sensor-range display-short"
+        )
     );
 }
 

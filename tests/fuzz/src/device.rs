@@ -9,12 +9,12 @@ use std::fmt::Display;
 
 use thermal_display::device::command::{self, Command, Status, WithSourceFinger};
 use thermal_display::device::drive::{BoardOutputs, ComparatorTest, Drive};
+use thermal_display::device::events::UnsolicitedReport;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, FingerIndex, StateName, TriggerEdge};
 use thermal_display::protocol::{
     CommandHandler, Error, LineError, LineReader, OutgoingLine, UnsolicitedLine,
-    wrap_as_telemetry_line,
 };
 use thermal_display::settings::Settings;
 use thermal_learner::Learner;
@@ -23,7 +23,7 @@ use crate::tile::{FULL_SCALE, Tile, sum_at};
 
 /// Longest answer and telemetry line, bytes: the text, and `@n ` before it.
 const ANSWER_MAX: usize = thermal_display::protocol::ANSWER_MAX_BYTES + 3;
-const TELEMETRY_MAX: usize = 128 + 3;
+const TELEMETRY_MAX: usize = 160 + 3;
 /// Largest error of a display's reading, whatever settings lines have set, K: 2.52 of its
 /// correction, 0.18 of the converter's steps, 0.04 of its self-heating.
 pub const READING_ERROR_MAX_K: f64 = 2.8;
@@ -168,18 +168,16 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
             );
         }
         while let Some(event) = self.device.take_finger_event(finger) {
-            let event = event.map_content(UnsolicitedLine);
-            check_text(&self.to_host(&event), TELEMETRY_MAX);
+            let line = self.unsolicited(event);
+            check_text(&self.to_host(&line), TELEMETRY_MAX);
         }
         if let Some(telemetry) = self.device.finger_telemetry_if_due(finger) {
             let demand_a: f64 = telemetry.content.demand.to_num();
             assert!(demand_a.abs() <= 6.0, "demand {demand_a} A");
             let off = outputs.drive == Drive::Off;
             assert!(!off || demand_a == 0.0, "demand {demand_a} A while off");
-            check_text(
-                &self.to_host(&wrap_as_telemetry_line(telemetry)),
-                TELEMETRY_MAX,
-            );
+            let line = self.unsolicited(telemetry.into_report());
+            check_text(&self.to_host(&line), TELEMETRY_MAX);
         }
         outputs
     }
@@ -202,6 +200,14 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     }
 
     /// A line to the host; its checksum is checked and taken away.
+    fn unsolicited(
+        &mut self,
+        report: WithSourceFinger<UnsolicitedReport>,
+    ) -> WithSourceFinger<UnsolicitedLine> {
+        let device = &mut self.device;
+        UnsolicitedLine::of_report(report, |finger, command| device.execute(finger, command))
+    }
+
     fn to_host(&self, content: &dyn Display) -> String {
         let mut line = OutgoingLine::new();
         self.handler.write_line(&mut line, content);

@@ -7,6 +7,7 @@ use std::fmt::Display;
 use thermal_commissioning::StorageOrder;
 use thermal_device::command::WithSourceFinger;
 use thermal_device::drive::{BoardOutputs, ComparatorTest, Drive};
+use thermal_device::events::UnsolicitedReport;
 use thermal_device::safety::{Fault, ThermalDose, TripCause};
 use thermal_device::sense::{DigitalInputs, SCANS_PER_TICK, Samples, Scan};
 use thermal_device::{
@@ -16,9 +17,7 @@ use thermal_device::{
 use thermal_learner::Learner;
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::comparator::ComparatorTest as PlantTest;
-use thermal_protocol::{
-    CommandHandler, Error, LineReader, OutgoingLine, Reply, UnsolicitedLine, wrap_as_telemetry_line,
-};
+use thermal_protocol::{CommandHandler, Error, LineReader, OutgoingLine, Reply, UnsolicitedLine};
 use thermal_settings::{Settings, StoredSettings, decode_settings_record};
 
 use super::{BAUD, DeviceReset, Engine};
@@ -278,11 +277,18 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         }
         finger.set_outputs(outputs);
         while let Some(event) = self.device.take_finger_event(index) {
-            self.send_line(&event.map_content(UnsolicitedLine));
+            self.send_report(event);
         }
         if let Some(telemetry) = self.device.finger_telemetry_if_due(index) {
-            self.send_line(&wrap_as_telemetry_line(telemetry));
+            self.send_report(telemetry.into_report());
         }
+    }
+
+    fn send_report(&mut self, report: WithSourceFinger<UnsolicitedReport>) {
+        let device = &mut self.device;
+        let line =
+            UnsolicitedLine::of_report(report, |finger, command| device.execute(finger, command));
+        self.send_line(&line);
     }
 
     /// Raises the trigger input `after_us` µs after the last boundary.

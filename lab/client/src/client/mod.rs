@@ -454,7 +454,7 @@ impl<L: Link> Client<L> {
                     fields = index.map_or(fields, |index| fields.with(index));
                 }
                 if fields == TelemetryFields::NONE {
-                    fields = TelemetryFields::ALL;
+                    fields = TelemetryFields::DEFAULT;
                 }
                 let stream = Stream {
                     interval_ms: interval_ms as u32,

@@ -136,7 +136,7 @@ impl PlainCommand {
     /// Telemetry at this interval, ms, with all fields; 0 ends it.
     #[must_use]
     pub const fn stream(interval_ms: u32) -> Self {
-        Self::Stream(interval_ms, TelemetryFields::ALL)
+        Self::Stream(interval_ms, TelemetryFields::DEFAULT)
     }
 }
 
@@ -215,7 +215,7 @@ impl fmt::Display for PlainCommand {
             }
             Self::Stream(interval_ms, fields) => {
                 write!(f, "stream {interval_ms}")?;
-                if *fields == TelemetryFields::ALL {
+                if *fields == TelemetryFields::DEFAULT {
                     return Ok(());
                 }
                 let names = TelemetryFields::NAMES.iter().enumerate();

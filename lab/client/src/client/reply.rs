@@ -13,7 +13,7 @@ use thermal_protocol::{CONTACT_MODEL_WORDS, Request};
 use thermal_settings::Settings;
 
 use super::Fields;
-use super::fields::{fault, fault_word, finite, in_table, state, state_word};
+use super::fields::{fault, fault_word, finite, in_table, knowledge_word, state, state_word};
 
 /// Answer to `id`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -393,13 +393,6 @@ impl FluxReport {
             finger: in_table(&FingerKnowledge::PROTOCOL_WORDS, reply.word("finger")?)?,
         }))
     }
-}
-
-fn knowledge_word<S: Serializer>(
-    knowledge: &FingerKnowledge,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(knowledge.name())
 }
 
 /// Answer to `board`: option bytes, clocks, locks and counters of the serial line.

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use thermal_client::client::{
     BoardReport, Client, ClientError, FluxReport, PlainCommand, QueryBoard, QueryCause, QueryFlux,
-    QueryIdentity, QueryRaw, QuerySelfTest, QueryState, upload_course,
+    QueryIdentity, QueryRaw, QuerySelfTest, QueryState, Telemetry, upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
 use thermal_device::events::DeviceEventKind;
@@ -338,6 +338,10 @@ fn events_and_telemetry_of_chosen_fields_are_read() {
         (Some(-1.25), None)
     );
     assert_eq!(telemetry.evaluations, None);
+    assert_eq!(
+        (telemetry.flux_w_m2, telemetry.surface_c, telemetry.finger),
+        (None, None, None)
+    );
     let event = client.take_event().unwrap().event;
     assert_eq!(
         (event.tick, event.microseconds, event.kind),
@@ -465,4 +469,30 @@ fn every_fault_of_the_device_is_known_in_its_state() {
         assert_eq!(status.state, StateName::Tripped(*fault));
         assert_eq!((status.object_c, status.limited), (Some(24.0), true));
     }
+}
+
+#[test]
+fn fields_of_the_flux_sensor_are_read() {
+    let mut client = knows(&[("stream 10 force flux surface finger", "ok")]);
+    let fields = [5, 9, 10, 11].into_iter();
+    let fields = fields.fold(TelemetryFields::NONE, TelemetryFields::with);
+    client.ask(&PlainCommand::Stream(10, fields)).unwrap();
+    client
+        .link()
+        .sends(1, "T 10 stimulus 0.512 -1234.5 24.0125 wet -");
+    client.link().sends(2, "T 20 stimulus 0.512 - - - -");
+    client.link().sends(3, "T 30 stimulus 0.512 1 24 damp -");
+    client.wait(Duration::from_millis(10)).unwrap();
+    let mut next = || Some(client.next_telemetry(Duration::ZERO).unwrap()?.telemetry);
+    let values = |line: Telemetry| (line.force_n, line.flux_w_m2, line.surface_c, line.finger);
+    let known = FingerKnowledge::PROTOCOL_WORDS
+        .into_iter()
+        .find(|(word, _)| *word == "wet");
+    let (_, known) = known.unwrap();
+    assert_eq!(
+        next().map(values),
+        Some((Some(0.512), Some(-1234.5), Some(24.0125), Some(known)))
+    );
+    assert_eq!(next().map(values), Some((Some(0.512), None, None, None)));
+    assert_eq!(next(), None);
 }

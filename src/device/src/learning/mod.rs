@@ -321,6 +321,13 @@ impl FingerLearning {
         self.reading.last()
     }
 
+    /// The display's surface when that flux was read, °C.
+    #[must_use]
+    pub const fn surface(&self) -> Option<Celsius> {
+        let [_, Measured { surface, .. }] = self.undecided;
+        surface
+    }
+
     /// Mean code of the last half second without contact.
     #[must_use]
     pub const fn resting_code(&self) -> Option<RestingCode> {

@@ -57,6 +57,7 @@ impl Station {
         let learning = self.learning.as_ref()?;
         Some(FluxState {
             flux: learning.flux(),
+            surface: learning.surface(),
             knowledge: learning.knowledge(),
         })
     }

@@ -183,7 +183,7 @@ impl Station {
             stimulus_has_reference: false,
             tick: 0,
             telemetry_ticks: 0,
-            telemetry_fields: TelemetryFields::ALL,
+            telemetry_fields: TelemetryFields::DEFAULT,
             events: EventReporter::default(),
             last: LastTickValues {
                 samples: Samples::default(),
