@@ -91,6 +91,8 @@ def test_opening_switches_checksums_telemetry_and_events_on(fake: FakeDevice) ->
         (lambda d: d.set_flux_sensor(0.1192, 2048, 5, 30), "flux set 0.1192 2048 5 30"),
         (lambda d: d.remove_flux_sensor(), "flux none"),
         (lambda d: d.take_flux_zero(), "flux zero"),
+        (lambda d: d.set_surface(30, 1.25, 0.11), "surface set 30 1.25 0.11"),
+        (lambda d: d.set_nominal_surface(), "surface nominal"),
         (lambda d: d.set_settings(["set tile 1 2 3 4 5"]), "set tile 1 2 3 4 5"),
     ],
 )

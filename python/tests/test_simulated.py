@@ -263,6 +263,11 @@ def test_all_questions_are_understood(hil_sim: str) -> None:
         flux = display.flux()
         assert flux is not None and flux.zero_counts == 2048
         assert display.settings()[8:] == ["set flux 0.119200 2048.000 5.000 30.000"]
+        display.set_surface(30, 1.25, 0.11)
+        assert display.surface().slope_rad == 0.11
+        assert display.settings()[9:] == ["set surface 30.000 1.2500 0.11000"]
+        display.set_nominal_surface()
+        assert display.surface().slope_rad == 0.138
         display.remove_flux_sensor()
         assert display.flux() is None
         for finger in ("thesis", "mean"):
