@@ -11,4 +11,5 @@ mod line_queue;
 mod objects;
 mod station;
 mod storage;
+mod surface;
 mod task_liveness;

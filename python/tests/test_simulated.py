@@ -276,6 +276,11 @@ def test_all_questions_are_understood(hil_sim: str) -> None:
         assert display.contact_law() == person
         display.set_contact_law(None)
         assert display.contact_law() == ContactLaw(0.95, 122500, 0)
+        display.set_surface(30, 1.25, 0.11)
+        assert display.surface().slope_rad == 0.11
+        assert display.settings()[9:] == ["set surface 30.000 1.2500 0.11000"]
+        display.set_nominal_surface()
+        assert display.surface().slope_rad == 0.138
         display.remove_flux_sensor()
         assert display.flux() is None
         for finger in ("thesis", "mean"):

@@ -15,7 +15,7 @@ from thermal_display import (
 )
 from thermal_display.device_clock import DeviceClock
 from thermal_display.events import parse_event
-from thermal_display.replies import Cause, Fields, FluxReport, Identity, Status
+from thermal_display.replies import Cause, DisplaySurface, Fields, FluxReport, Identity, Status
 from thermal_display.telemetry import TelemetryBuffer, parse_line
 
 
@@ -68,6 +68,8 @@ def test_commits_are_those_of_the_protocols_examples() -> None:
         ("tune result", False),
         ("flux", True),
         ("flux zero", False),
+        ("surface", True),
+        ("surface nominal", False),
     ],
 )
 def test_questions_and_numbered_rows_only_may_be_repeated(line: str, repeated: bool) -> None:
@@ -173,6 +175,8 @@ def test_replies_are_read() -> None:
         )
     )
     assert flux == FluxReport(0.1192, 2051.25, 5.0, 30.0, -3.2, "trusted")
+    surface = DisplaySurface.read(Fields("conductivity_w_mk=30.000 roughness_um=1.2500 slope_rad=0.11000"))
+    assert surface == DisplaySurface(30, 1.25, 0.11)
     old = Identity.read(Fields("thermal-display 0.1.0 fingers=1 tick_hz=1000 scan_hz=16000"))
     assert (old.protocol, old.can("course")) == (None, False)
     with pytest.raises(ValueError, match="material= is missing"):

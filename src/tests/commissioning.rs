@@ -173,7 +173,7 @@ fn an_error_names_the_first_finger_that_refuses_and_the_others_execute_the_line(
     );
     assert_eq!(
         five.send("@1 set colour 3"),
-        "@1 err unknown setting 'colour'; known: steps correction tile flux"
+        "@1 err unknown setting 'colour'; known: steps correction tile flux surface"
     );
     assert_eq!(
         five.send("@0 tune result"),
@@ -203,19 +203,19 @@ fn invalid_arguments_are_refused_and_change_nothing() {
     for (line, answer) in [
         (
             "settings 0",
-            "err line of settings '0' out of range; 1 to 9 (whole)",
+            "err line of settings '0' out of range; 1 to 10 (whole)",
         ),
         (
             "settings 1.5",
-            "err line of settings '1.5' out of range; 1 to 9 (whole)",
+            "err line of settings '1.5' out of range; 1 to 10 (whole)",
         ),
         (
-            "settings 10",
-            "err line of settings '10' out of range; 1 to 9 (whole)",
+            "settings 11",
+            "err line of settings '11' out of range; 1 to 10 (whole)",
         ),
         (
             "set",
-            "err setting missing; known: steps correction tile flux",
+            "err setting missing; known: steps correction tile flux surface",
         ),
         ("set steps", "err border missing; 10 to 22 (whole)"),
         ("set steps 10", "err step missing; -4 to 4 counts"),

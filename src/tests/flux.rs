@@ -68,7 +68,7 @@ fn a_sensor_is_set_by_either_line_reported_and_removed() {
     for line in ["flux set 0.1192 2048 5 30", "set flux 0.1192 2048 5 30"] {
         let mut one = Bench::<1>::new();
         assert_eq!(one.send("flux"), "ok flux=none");
-        assert_eq!(one.send("settings 9"), "ok set flux none");
+        assert_eq!(one.send("settings 9"), "ok set surface nominal");
         assert!(!one.device.finger_has_flux_sensor(FingerIndex::FIRST));
         assert_eq!(one.send(line), "ok");
         assert!(one.device.finger_has_flux_sensor(FingerIndex::FIRST));

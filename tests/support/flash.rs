@@ -10,8 +10,8 @@ use embedded_storage::nor_flash::{
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 use thermal_display::settings::{
-    Calibration, Correction, FluxSensor, RECORD_MAX_BYTES, SettingsStore, StoredSettings, Tile,
-    TriplicatedSealedFlash,
+    Calibration, Correction, DisplaySurface, FluxSensor, RECORD_MAX_BYTES, SettingsStore,
+    StoredSettings, Tile, TriplicatedSealedFlash,
 };
 use thermal_sim::FlashCells;
 
@@ -103,7 +103,7 @@ impl NorFlash for Flash {
     }
 }
 
-/// Settings that differ from number to number in every value, from 1000 on with heat-flux sensors; for some numbers none, which
+/// Settings that differ from number to number in every value, from 1000 on with heat-flux sensors and surfaces of the display; for some numbers none, which
 /// stands for factory defaults.
 #[must_use]
 pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[StoredSettings; FINGERS]> {
@@ -129,6 +129,12 @@ pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[StoredSettings; FI
                 let values = [0.1, 2000.0, 5.0, 30.0].map(|base| base + of(finger + 29, 1e5));
                 FluxSensor::from_array_rounded(values)
             }),
+            display: if number >= 1000 {
+                let values = [30.0, 1.0, 0.1].map(|base| base + of(finger + 30, 1e5));
+                DisplaySurface::from_array_rounded(values)
+            } else {
+                DisplaySurface::NOMINAL
+            },
         }
     }))
 }

@@ -16,6 +16,7 @@ from .replies import (
     CalibrationFit,
     Cause,
     ContactLaw,
+    DisplaySurface,
     Fields,
     FluxReport,
     IdentifiedTile,
@@ -96,6 +97,10 @@ class Commands:
     def contact_law(self) -> ContactLaw:
         """The contact law that is taken for the finger's."""
         return self._connection.ask("contact", ContactLaw.read, self._finger)
+
+    def surface(self) -> DisplaySurface:
+        """The surface of the display."""
+        return self._connection.ask("surface", DisplaySurface.read, self._finger)
 
     # The object
 
@@ -360,6 +365,20 @@ class Commands:
         """Takes the mean code of the last half second as the zero of the heat-flux sensor. No finger may touch the display, which
         must have the temperature of the room."""
         self._tell("flux zero")
+
+    def set_surface(self, conductivity_w_mk: float, roughness_um: float, slope_rad: float) -> None:
+        """The display has this surface: conductivity, 0.1 to 500 W/(m K); RMS roughness, 0.01 to 30 µm; mean slope, 0.001 to 1.5 rad.
+        `save` stores it."""
+        values = [
+            wire.number(conductivity_w_mk, "conductivity_w_mk"),
+            wire.number(roughness_um, "roughness_um"),
+            wire.number(slope_rad, "slope_rad"),
+        ]
+        self._tell("surface set " + " ".join(values))
+
+    def set_nominal_surface(self) -> None:
+        """The display has the surface of the reference design."""
+        self._tell("surface nominal")
 
     def settings(self) -> list[str]:
         """The settings as lines `set …`, which `set_settings` takes."""

@@ -291,6 +291,25 @@ class FluxReport:
 
 
 @dataclass(frozen=True)
+class DisplaySurface:
+    """Answer to `surface`: the surface of the display."""
+
+    conductivity_w_mk: float
+    roughness_um: float
+    """RMS roughness, µm."""
+    slope_rad: float
+    """Mean slope of the asperities, rad."""
+
+    @classmethod
+    def read(cls, reply: Fields) -> DisplaySurface:
+        return cls(
+            conductivity_w_mk=reply.real("conductivity_w_mk"),
+            roughness_um=reply.real("roughness_um"),
+            slope_rad=reply.real("slope_rad"),
+        )
+
+
+@dataclass(frozen=True)
 class BoardReport:
     """Answer to `board`."""
 

@@ -10,26 +10,28 @@ use super::session_messages::{
 };
 use super::stability_margins::StabilityMargins;
 use super::tile_identification::tile_from_normal_equations;
+use contact_model::fixed_point::ContactPair;
+use contact_model::material::{MATERIALS, SKIN};
 use thermal_device::command::{self, Command, Refused};
 use thermal_device::control::ControlParameters;
 use thermal_device::identification::{NORMAL_EQUATION_AND_STATISTICS_ROWS, NormalEquationRow};
 use thermal_device::learning::FluxParameters;
 use thermal_device::sense::CalibrationTables;
 use thermal_settings::{
-    CALIBRATED_ADC_BORDER_COUNT, Calibration, Correction, FIRST_CALIBRATED_ADC_BORDER_INDEX,
-    FluxSensor, Settings, Tile,
+    CALIBRATED_ADC_BORDER_COUNT, Calibration, Correction, DisplaySurface,
+    FIRST_CALIBRATED_ADC_BORDER_INDEX, FluxSensor, Settings, TICK_S, Tile,
 };
 
 /// Number of lines of the settings that hold the converter's steps at 13 borders of its segments, up to seven in each
 /// line: 2.
 const CONVERTER_STEPS_LINE_COUNT: usize =
     CALIBRATED_ADC_BORDER_COUNT.div_ceil(CONVERTER_STEPS_PER_LINE_MAX);
-/// Number of lines that hold all commissioned settings of a finger without a heat-flux sensor, 8: two for the converter's 13
-/// steps, one for the correction of each of the five thermistors, and one for the tile.
-const LINE_COUNT_WITHOUT_FLUX_SENSOR: usize =
-    CONVERTER_STEPS_LINE_COUNT + THERMISTOR_WORDS.len() + 1;
-/// Number of lines that hold all commissioned settings of a finger, with one for a heat-flux sensor.
-pub const SETTINGS_LINE_COUNT_MAX: usize = LINE_COUNT_WITHOUT_FLUX_SENSOR + 1;
+/// Number of lines that hold all commissioned settings of a finger without a heat-flux sensor whose display has the nominal
+/// surface, 8: two for the converter's 13 steps, one for the correction of each of the five thermistors, and one for the tile.
+const LINE_COUNT_ALWAYS: usize = CONVERTER_STEPS_LINE_COUNT + THERMISTOR_WORDS.len() + 1;
+/// Number of lines that hold all commissioned settings of a finger, with one for a heat-flux sensor and one for the surface of the
+/// display.
+pub const SETTINGS_LINE_COUNT_MAX: usize = LINE_COUNT_ALWAYS + 2;
 
 /// A function that executes a command on the station of the session's finger, and returns the station's reply or
 /// refusal. The control tick may be locked out while it runs, so it must end after a bounded, short time.
@@ -76,6 +78,7 @@ impl CommissioningSession {
     /// - [`SessionError::Refused`]: the station refuses a command that the request needs.
     /// - [`SessionError::Identification`]: `tune result`, but the recorded response gives no tile.
     /// - [`SessionError::Point`]: the calibration point is rejected.
+    /// - [`SessionError::ContactPair`]: the surface of the display does not suit the contact model with the chosen material.
     pub fn answer(
         &mut self,
         request: SessionRequest,
@@ -125,6 +128,12 @@ impl CommissioningSession {
                 };
                 return Ok(SessionReply::Flux(self.settings.flux_sensor.zip(state)));
             }
+            SessionRequest::Set(Setting::DisplaySurface(display)) => {
+                self.set_display_surface(display, &mut execute)?;
+            }
+            SessionRequest::DisplaySurface => {
+                return Ok(SessionReply::DisplaySurface(self.settings.display));
+            }
             SessionRequest::FluxZero => self.take_flux_zero(&mut execute)?,
             SessionRequest::TuneResult => {
                 self.identify_and_set_tile(&mut execute)?;
@@ -133,7 +142,8 @@ impl CommissioningSession {
             SessionRequest::Margins => return Ok(self.tile_and_margins_reply()),
             SessionRequest::CountSettingsLines => {
                 let flux_sensor = usize::from(self.settings.flux_sensor.is_some());
-                let lines = LINE_COUNT_WITHOUT_FLUX_SENSOR + flux_sensor;
+                let display = usize::from(self.settings.display != DisplaySurface::NOMINAL);
+                let lines = LINE_COUNT_ALWAYS + flux_sensor + display;
                 return Ok(SessionReply::SettingsLines(lines));
             }
             SessionRequest::SettingsLine(index) => {
@@ -185,6 +195,27 @@ impl CommissioningSession {
         let parameters = sensor.as_ref().map(FluxParameters::new);
         execute(Command::FluxSensor(parameters))?;
         self.settings.flux_sensor = sensor;
+        Ok(())
+    }
+
+    /// Replaces the surface of the display in the station and in this session's settings (in RAM; only `save` writes them to
+    /// flash). If the station refuses it, because it presents an object, or the contact model cannot represent it with the chosen
+    /// material, nothing changes.
+    #[inline(never)]
+    fn set_display_surface(
+        &mut self,
+        display: DisplaySurface,
+        execute: &mut impl ExecuteOnStation,
+    ) -> Result<(), SessionError> {
+        let [(_, any), ..] = MATERIALS;
+        let material = match execute(Command::MaterialProperties)? {
+            command::Reply::Material(Some(material)) => material,
+            _ => any,
+        };
+        let pair = ContactPair::new(&SKIN, &material, display.surface(), TICK_S)
+            .map_err(SessionError::ContactPair)?;
+        execute(Command::DisplaySurface(pair))?;
+        self.settings.display = display;
         Ok(())
     }
 
@@ -318,8 +349,8 @@ impl CommissioningSession {
         })
     }
 
-    /// The content of one line of the settings by its index, 0 to 8: two lines of converter steps, five corrections,
-    /// the tile, the heat-flux sensor.
+    /// The content of one line of the settings by its index, 0 to 9: two lines of converter steps, five corrections,
+    /// the tile, then a heat-flux sensor if there is one, and the surface of the display.
     #[inline(never)]
     fn setting_at_line_index(&self, index: usize) -> Setting {
         let calibration = &self.settings.calibration;
@@ -336,8 +367,11 @@ impl CommissioningSession {
         let sensor = index - CONVERTER_STEPS_LINE_COUNT;
         match calibration.corrections.get(sensor) {
             Some(correction) => Setting::Correction(sensor, *correction),
-            None if index < LINE_COUNT_WITHOUT_FLUX_SENSOR => Setting::Tile(self.settings.tile),
-            None => Setting::FluxSensor(self.settings.flux_sensor),
+            None if index < LINE_COUNT_ALWAYS => Setting::Tile(self.settings.tile),
+            None => match self.settings.flux_sensor {
+                Some(sensor) if index == LINE_COUNT_ALWAYS => Setting::FluxSensor(Some(sensor)),
+                _ => Setting::DisplaySurface(self.settings.display),
+            },
         }
     }
 }

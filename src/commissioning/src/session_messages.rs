@@ -1,8 +1,9 @@
 //! Requests to a commissioning session, its replies and its errors.
 
+use contact_model::fixed_point::ContactPairError;
 use thermal_device::command::{FluxState, Refused};
 use thermal_device::sense::THERMISTOR_COUNT;
-use thermal_settings::{Correction, FluxSensor, Tile};
+use thermal_settings::{Correction, DisplaySurface, FluxSensor, Tile};
 
 use crate::{IdentificationError, PointError, StabilityMargins};
 
@@ -46,7 +47,9 @@ pub enum SessionRequest {
     Flux,
     /// `flux zero`: takes the mean of the sensor's code over the last half second as its zero.
     FluxZero,
-    /// `set ...`, `flux set ...` and `flux none`: replaces the part of the settings that the line holds, and uses it from the next tick on. A line with
+    /// `surface`: reports the surface of the display.
+    DisplaySurface,
+    /// `set ...`, `flux set ...`, `flux none`, `surface set ...` and `surface nominal`: replaces the part of the settings that the line holds, and uses it from the next tick on. A line with
     /// a correction also removes the calibration points of its thermistor; a line with steps removes those of both
     /// display thermistors.
     Set(Setting),
@@ -72,6 +75,8 @@ pub enum SessionReply {
     },
     /// The heat-flux sensor with what its station knows by it; `None` if it is not fitted: reply to [`SessionRequest::Flux`].
     Flux(Option<(FluxSensor, FluxState)>),
+    /// The surface of the display: reply to [`SessionRequest::DisplaySurface`].
+    DisplaySurface(DisplaySurface),
     /// Number of lines that hold the settings: reply to [`SessionRequest::CountSettingsLines`].
     SettingsLines(usize),
     /// One line of the settings: reply to [`SessionRequest::SettingsLine`].
@@ -102,6 +107,9 @@ pub enum Setting {
     /// `flux GAIN ZERO LAG RESISTANCE`: the heat-flux sensor's gain (counts per W/m²), zero (counts), lag (ms) and thermal
     /// resistance (mm² K/W); `flux none` without one.
     FluxSensor(Option<FluxSensor>),
+    /// `surface CONDUCTIVITY ROUGHNESS SLOPE`: the display's conductivity (W/mK), roughness (µm) and slope (rad); `surface nominal`
+    /// for those of the reference design.
+    DisplaySurface(DisplaySurface),
 }
 
 /// Why a commissioning session rejects a request. The settings are unchanged then.
@@ -113,6 +121,8 @@ pub enum SessionError {
     Identification(IdentificationError),
     /// The calibration point is rejected; the value is the reason.
     Point(PointError),
+    /// The contact model cannot represent the chosen material on this surface of the display; the value is the reason.
+    ContactPair(ContactPairError),
 }
 
 impl From<Refused> for SessionError {

@@ -269,6 +269,10 @@ pub enum Command<'a> {
     /// Use this heat-flux sensor from the next tick on, or none, and learn anew with it. Refused while an object is presented,
     /// because the finger would feel the change.
     FluxSensor(Option<FluxParameters>),
+    /// The display has another surface from now on: contact constants of skin, chosen material (or any, before a choice) and
+    /// this surface. What was learnt of the finger is forgotten. Refused while an object is presented, because the finger would
+    /// feel the change.
+    DisplaySurface(ContactPair),
     /// Report the flux, and what is known of the finger by it. Never refused.
     Flux,
     /// Report the mean code of the heat-flux sensor over half a second without flux. Refused while an object is presented, without
@@ -349,8 +353,8 @@ pub enum Refused {
     /// `tune` was sent in a state that does not drive the display (in tripped the reply is [`Self::Tripped`]), while an object or
     /// a course is presented, or without a valid reading of the sink.
     TuneNeedsArmed,
-    /// The command was [`Command::Average`], [`Command::Calibrate`], [`Command::Retune`], [`Command::FluxSensor`] or
-    /// [`Command::FluxZero`], and an object or a course is presented:
+    /// The command was [`Command::Average`], [`Command::Calibrate`], [`Command::Retune`], [`Command::FluxSensor`],
+    /// [`Command::DisplaySurface`] or [`Command::FluxZero`], and an object or a course is presented:
     /// the finger would feel the change, or disturb the average.
     Presenting,
     /// The command with this name, `tune` or `flux zero`, was sent while a finger touches the display; the finger's heat would

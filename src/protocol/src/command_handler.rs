@@ -6,7 +6,9 @@ use contact_model::fixed_point::Body;
 use contact_model::material::{Material, SKIN};
 use contact_model::slab::{Back, Slab};
 use thermal_commissioning::{CommissioningSession, SessionReply, SessionRequest, StorageOrder};
-use thermal_device::command::{self, Command, ObjectBody, Refused, WithSourceFinger};
+use thermal_device::command::{
+    self, ChosenMaterial, Command, ObjectBody, Refused, WithSourceFinger,
+};
 use thermal_device::{FingerIndex, StateName, TICK_S};
 use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode_settings_record};
 
@@ -62,7 +64,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// A handler for a device whose fingers have the calibration, the tile and the heat-flux sensor that were loaded from flash, one element
+    /// A handler for a device whose fingers have the calibration, the tile heat-flux sensor and display that were loaded from flash, one element
     /// for each finger, and factory defaults for all other settings.
     #[must_use]
     pub fn from_stored(stored: &[StoredSettings; FINGERS]) -> Self {
@@ -139,7 +141,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             finger: number,
             content,
         };
-        let request = Request::parse(line, self.sessions[0].settings()).map_err(rejected)?;
+        let owner = finger.map_or(0, FingerIndex::index);
+        let request = Request::parse(line, self.sessions[owner].settings()).map_err(rejected)?;
         match request {
             Request::Checksum(_) if finger.is_some() && FINGERS > 1 => {
                 Err(rejected(Error::WholeDevice("checksum")))
@@ -152,6 +155,11 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 fingers: FINGERS as u8,
             })),
             Request::Board => Ok(addressed(Reply::Board(self.board))),
+            Request::Station(Command::Material(chosen))
+                if finger.is_none() && self.displays_differ() =>
+            {
+                self.choose_material_on_each_display(&chosen, execute)
+            }
             Request::Station(command) => Self::execute_in_stations(command, finger, execute),
             Request::Slab { thickness_mm, back } => {
                 let material = Self::chosen_material(finger, &mut execute);
@@ -203,6 +211,42 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             Ok(reply) => Ok(reply.map_content(Reply::Station)),
             Err(refused) => Err(refused.map_content(Error::from)),
         }
+    }
+
+    /// Whether the displays of the fingers have different surfaces.
+    fn displays_differ(&self) -> bool {
+        let [first, others @ ..] = &self.sessions[..] else {
+            return false;
+        };
+        let first = first.settings().display;
+        others.iter().any(|one| one.settings().display != first)
+    }
+
+    /// Chooses a material in the stations of all fingers, with the contact constants of each one's display.
+    #[inline(never)]
+    fn choose_material_on_each_display(
+        &self,
+        chosen: &ChosenMaterial,
+        mut execute: impl ExecuteOnStations<FINGERS>,
+    ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
+        let mut first_error = None;
+        for (one, session) in FingerIndex::all().zip(&self.sessions) {
+            let display = session.settings().display.surface();
+            let done = ChosenMaterial::new(chosen.name, &chosen.properties, display)
+                .map_err(Error::ContactPair)
+                .and_then(|chosen| {
+                    let done = execute(Some(one), Command::Material(chosen));
+                    done.map_err(|refused| Error::Refused(refused.content))
+                });
+            if let Err(content) = done {
+                first_error.get_or_insert(WithSourceFinger {
+                    finger: one.index_unless_single_finger(),
+                    content,
+                });
+            }
+        }
+        let done = WithSourceFinger::from_whole_device(Reply::DONE);
+        first_error.map_or(Ok(done), Err)
     }
 
     /// Loads the course of the upload in the station of `finger`, or in all stations for `None`. A course that has only begun
@@ -302,7 +346,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     }
 
     /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. With
-    /// `None` on a device with several fingers, the queries `settings`, `margins` and `flux` are answered by the first finger;
+    /// `None` on a device with several fingers, the queries `settings`, `margins`, `flux` and `surface` are answered by the first finger;
     /// a new calibration point and `tune result`, which are computed for milliseconds, are rejected.
     fn execute_in_commissioning_sessions(
         &mut self,
@@ -315,6 +359,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             | SessionRequest::SettingsLine(_)
             | SessionRequest::Margins
             | SessionRequest::Flux
+            | SessionRequest::DisplaySurface
                 if FINGERS > 1 =>
             {
                 finger.or(Some(FingerIndex::FIRST))

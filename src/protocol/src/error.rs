@@ -21,7 +21,9 @@ use thermal_device::stimulus::{
 };
 use thermal_settings::Range;
 
-use crate::calibrate_settings_set_commands::{FLUX_COMMAND_WORDS, SET_COMMAND_TARGET_WORDS};
+use crate::calibrate_settings_set_commands::{
+    FLUX_COMMAND_WORDS, SET_COMMAND_TARGET_WORDS, SURFACE_COMMAND_WORDS,
+};
 use crate::events::NO_EVENTS_WORD;
 use crate::line_checksum::TwoHexDigits;
 use crate::object::{BACK_WORDS, OBJECT_ARGUMENTS};
@@ -129,10 +131,12 @@ pub enum Error {
     Course(CourseError),
     /// The point of a course in the row with this index is refused, for this reason; the upload goes on.
     CoursePoint(usize, CourseError),
-    /// The word after `set`, quoted here, is none of `steps`, `correction`, `tile` and `flux`.
+    /// The word after `set`, quoted here, is none of `steps`, `correction`, `tile`, `flux` and `surface`.
     UnknownSetting(QuotedWordExcerpt),
     /// The word after `flux`, quoted here, is none of `set`, `none` and `zero`.
     UnknownFluxOrder(QuotedWordExcerpt),
+    /// The word after `surface`, quoted here, is neither `set` nor `nominal`.
+    UnknownSurfaceOrder(QuotedWordExcerpt),
     /// The line lacks the word with this name. The name is `command` if the line has no command, and
     /// `finger (as @0)` if the line must address a single finger but has no address.
     Missing(&'static str),
@@ -179,6 +183,7 @@ impl From<SessionError> for Error {
             SessionError::Refused(refused) => Self::Refused(refused),
             SessionError::Identification(error) => Self::Identification(error),
             SessionError::Point(error) => Self::Point(error),
+            SessionError::ContactPair(error) => Self::ContactPair(error),
         }
     }
 }
@@ -247,6 +252,9 @@ impl fmt::Display for Error {
             }
             Self::UnknownFluxOrder(word) => {
                 write_word_not_in_list(f, "flux", word, &FLUX_COMMAND_WORDS)
+            }
+            Self::UnknownSurfaceOrder(word) => {
+                write_word_not_in_list(f, "surface", word, &SURFACE_COMMAND_WORDS)
             }
             Self::UnknownEventKind(word) => {
                 let known = ["land", "lift", "start", "end", "flux", NO_EVENTS_WORD];

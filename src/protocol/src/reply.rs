@@ -11,16 +11,17 @@ use thermal_device::command::{self, FluxState, Status};
 use thermal_device::safety::{SelfTestReport, SideLine, TripCause};
 use thermal_device::sense::Samples;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
-use thermal_settings::{Calibration, FluxSensor, Tile};
+use thermal_settings::{Calibration, DisplaySurface, FluxSensor, Tile};
 
 use crate::BoardStatus;
+use crate::calibrate_settings_set_commands::NOMINAL_SURFACE_WORD;
 use crate::line_buffer::LineBuffer;
 use crate::request::CONTACT_MODEL_WORDS;
 
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
 const PROTOCOL_VERSION: u32 = 1;
 /// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
-const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course,flux,contact";
+const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course,flux,contact,surface";
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
@@ -117,6 +118,7 @@ fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt:
         }
         SessionReply::Flux(None) => f.write_str("ok flux=none"),
         SessionReply::Flux(Some((sensor, state))) => write_flux_answer(f, sensor, state),
+        SessionReply::DisplaySurface(display) => write_surface_answer(f, display),
         SessionReply::SettingsLines(lines) => write!(f, "ok lines={lines}"),
         SessionReply::Setting(setting) => write_set_line(f, setting),
     }
@@ -143,6 +145,16 @@ fn write_flux_answer(
         None => f.write_str(" w_m2=-")?,
     }
     write!(f, " finger={}", state.knowledge.name())
+}
+
+fn write_surface_answer(f: &mut fmt::Formatter<'_>, display: &DisplaySurface) -> fmt::Result {
+    f.write_str("ok")?;
+    let names = ["conductivity_w_mk", "roughness_um", "slope_rad"];
+    let values = (display.to_array().into_iter()).zip(DisplaySurface::DECIMALS);
+    for (name, (value, decimals)) in names.into_iter().zip(values) {
+        write!(f, " {name}={}", Rounded(value, decimals as usize))?;
+    }
+    Ok(())
 }
 
 fn state_answer_line(status: &Status) -> LineBuffer {
@@ -300,6 +312,14 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
             f.write_str("flux")?;
             let decimals = FluxSensor::DECIMALS.map(|decimals| decimals as usize);
             write_numbers(f, &sensor.to_array(), &decimals)
+        }
+        Setting::DisplaySurface(DisplaySurface::NOMINAL) => {
+            write!(f, "surface {NOMINAL_SURFACE_WORD}")
+        }
+        Setting::DisplaySurface(display) => {
+            f.write_str("surface")?;
+            let decimals = DisplaySurface::DECIMALS.map(|decimals| decimals as usize);
+            write_numbers(f, &display.to_array(), &decimals)
         }
         Setting::Tile(tile) => {
             f.write_str("tile")?;

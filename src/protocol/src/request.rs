@@ -17,6 +17,7 @@ use crate::arguments::{
 };
 use crate::calibrate_settings_set_commands::{
     parse_calibration_point_or_clear, parse_flux, parse_set_arguments, parse_settings_query,
+    parse_surface,
 };
 use crate::events::{parse_switch, parse_telemetry_fields, parse_trigger_output};
 use crate::object::parse_object;
@@ -50,7 +51,7 @@ pub enum Request {
     /// A line `upload`: begin, a row, or commit.
     Upload,
     /// A line about settings or calibration, which the commissioning sessions of the addressed fingers execute:
-    /// `calibrate`, `tune result`, `margins`, `settings`, `set` or `flux`.
+    /// `calibrate`, `tune result`, `margins`, `settings`, `set`, `flux` or `surface`.
     Commissioning(SessionRequest),
     /// The line `save` or `forget`: store the present settings of all fingers, or factory defaults, in flash.
     Storage(StorageOrder),
@@ -112,6 +113,7 @@ impl Request {
         "settings" => Self::Commissioning(parse_settings_query(words)?),
         "set" => Self::Commissioning(SessionRequest::Set(parse_set_arguments(words)?)),
         "flux" => Self::Commissioning(parse_flux(words)?),
+        "surface" => Self::Commissioning(parse_surface(words)?),
         "save" => Self::Storage(StorageOrder::Save),
         "forget" => Self::Storage(StorageOrder::Forget),
     });
@@ -126,7 +128,7 @@ impl Request {
     pub fn parse(line: &str, settings: &Settings) -> Result<Self, Error> {
         let mut words = line.split_ascii_whitespace();
         let name = read_word(&mut words, "command")?;
-        let request = Self::parse_arguments(name, &mut words, &settings.display)?;
+        let request = Self::parse_arguments(name, &mut words, settings.display.surface())?;
         if matches!(request, Self::Upload) {
             // Its arguments depend on the upload so far.
             return Ok(request);

@@ -137,7 +137,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
         (
             "fly",
             "err unknown command 'fly'; known: id board state stream events trigger-out checksum material object finger contact upload mode law arm hold play pulse skin start abort clear cause self-test raw \
-             calibrate tune margins settings set flux save forget",
+             calibrate tune margins settings set flux surface save forget",
         ),
         (
             "material unobtainium-of-the-first-kind",
@@ -186,7 +186,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
         ),
         (
             "set",
-            "err setting missing; known: steps correction tile flux",
+            "err setting missing; known: steps correction tile flux surface",
         ),
         ("flux fit", "err unknown flux 'fit'; known: set none zero"),
         ("flux set", "err gain missing; 0.01 to 1 counts per W/m2"),
@@ -207,6 +207,24 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
             "err resistance '3e3' out of range; 0 to 1000 mm2 K/W",
         ),
         ("flux none 1", "err unexpected '1' after the command"),
+        (
+            "surface rough",
+            "err unknown surface 'rough'; known: set nominal",
+        ),
+        ("surface set", "err conductivity missing; 0.1 to 500 W/mK"),
+        (
+            "surface set 0.09 1 0.1",
+            "err conductivity '0.09' out of range; 0.1 to 500 W/mK",
+        ),
+        (
+            "set surface 36 31 0.1",
+            "err roughness '31' out of range; 0.01 to 30 um",
+        ),
+        (
+            "surface set 36 1 1.6",
+            "err slope '1.6' out of range; 0.001 to 1.5 rad",
+        ),
+        ("surface nominal 1", "err unexpected '1' after the command"),
         ("arm now", "err unexpected 'now' after the command"),
         ("object room 3", "err unexpected '3' after the command"),
         (

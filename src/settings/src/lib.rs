@@ -7,6 +7,7 @@ extern crate std;
 
 mod calibration;
 mod checksum;
+mod display_surface;
 mod flux_sensor;
 mod range;
 mod settings_record;
@@ -20,8 +21,12 @@ pub use calibration::{
     round_to_decimals,
 };
 pub use checksum::{CRC_32, Crc32Digest};
+pub use display_surface::DisplaySurface;
 pub use flux_sensor::FluxSensor;
-pub use range::{ADC_ERROR_STEP_RANGE, CORRECTION_RANGES, FLUX_SENSOR_RANGES, Range, TILE_RANGES};
+pub use range::{
+    ADC_ERROR_STEP_RANGE, CORRECTION_RANGES, DISPLAY_SURFACE_RANGES, FLUX_SENSOR_RANGES, Range,
+    TILE_RANGES,
+};
 pub use settings_record::{
     RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode_settings_record,
     encode_settings_record,
@@ -29,8 +34,6 @@ pub use settings_record::{
 pub use settings_store::{SettingsStore, StoreError};
 pub use tile::Tile;
 pub use triplicated_sealed_flash::{TriplicatedSealedFlash, TriplicatedSealedFlashError};
-
-use contact_model::material::{REFERENCE_DISPLAY, Surface};
 
 /// Control ticks per second of each finger: a tick is 1 ms.
 pub const TICK_HZ: u32 = 1000;
@@ -67,9 +70,9 @@ pub struct Settings {
     /// Gains of the control law `pi-10hz`, which updates the module's current ten times a second; [`Self::set_tile`]
     /// computes them.
     pub gains_10hz: PiGains,
-    /// Surface of the display: thermal conductivity (W/mK), RMS roughness (µm) and mean slope of the asperities (rad).
-    /// The thermal contact resistance between display and skin is computed from these properties.
-    pub display: Surface,
+    /// Surface of the display, from whose conductivity, roughness and slope the thermal contact resistance between display and
+    /// skin is computed.
+    pub display: DisplaySurface,
     /// Steps of the converter's error and corrections of the five thermistors, found by calibration with a reference
     /// thermometer; all zero before the first calibration.
     pub calibration: Calibration,
@@ -239,7 +242,7 @@ impl Default for Settings {
             },
             gains,
             gains_10hz,
-            display: REFERENCE_DISPLAY,
+            display: DisplaySurface::NOMINAL,
             calibration: Calibration::default(),
             flux_sensor: None,
             tile: Tile::FACTORY_DEFAULT,

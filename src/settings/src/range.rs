@@ -4,7 +4,7 @@ use core::fmt;
 
 use contact_model::decimal::Shortest;
 
-use super::{Calibration, FluxSensor, Tile};
+use super::{Calibration, DisplaySurface, FluxSensor, Tile};
 
 /// Allowed range of a quantity in a line from the host or in the record in flash, with its name and unit for error
 /// messages. `Display` writes limits and unit, as in `15 to 42 C`.
@@ -130,6 +130,28 @@ pub static FLUX_SENSOR_RANGES: [Range; 4] = [
         max: 1000.0,
     },
 ];
+/// Allowed ranges of a display's surface, in the order of [`DisplaySurface::to_array`]: from those of glazes to those of metals,
+/// and from polished to blasted ones.
+pub static DISPLAY_SURFACE_RANGES: [Range; 3] = [
+    Range {
+        name: "conductivity",
+        unit: "W/mK",
+        min: 0.1,
+        max: 500.0,
+    },
+    Range {
+        name: "roughness",
+        unit: "um",
+        min: 0.01,
+        max: 30.0,
+    },
+    Range {
+        name: "slope",
+        unit: "rad",
+        min: 0.001,
+        max: 1.5,
+    },
+];
 
 impl Calibration {
     /// The first value of this calibration that lies outside its allowed range, with that range; `None` if all values
@@ -153,6 +175,14 @@ impl Tile {
     #[must_use]
     pub fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
         first_value_out_of_range(TILE_RANGES.iter().zip(self.to_array()))
+    }
+}
+
+impl DisplaySurface {
+    /// The first value of the surface that is outside its allowed range, with that range; `None` if all are inside.
+    #[must_use]
+    pub fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
+        first_value_out_of_range(DISPLAY_SURFACE_RANGES.iter().zip(self.to_array()))
     }
 }
 

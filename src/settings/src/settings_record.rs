@@ -5,10 +5,11 @@
 //! | 2          | version of the layout                                                               |
 //! | 1          | kind: 0 for factory defaults, 1 for settings                                        |
 //! | 1          | number of fingers, 0 for factory defaults                                           |
-//! | 132 or 148 | each finger: 13 steps, 5 times offset, slope and curvature, 5 parameters of the tile; in version 2 also 4 of the heat-flux sensor, all 0 for a finger without one |
+//! | 132 or 160 | each finger: 13 steps, 5 times offset, slope and curvature, 5 parameters of the tile; in version 2 also 4 of the heat-flux sensor, all 0 for a finger without one, and 3 of the display's surface, all 0 for the nominal one |
 //! | 4          | CRC-32 (ISO-HDLC) of all bytes before it, in every version                          |
 //!
-//! Version 2 is written only if a finger has a heat-flux sensor, so that older firmware reads the record of a device without one.
+//! Version 2 is written only if a finger has a heat-flux sensor or a display whose surface is not the nominal one, so that older
+//! firmware reads the record of any other device.
 //!
 //! All fields are little-endian. Each value is an `i32` in units of its last decimal on a `set` line, so that a record
 //! holds exactly what the line does.
@@ -20,23 +21,24 @@ use heapless::Vec;
 
 use super::calibration::power_of_ten;
 use super::{
-    CALIBRATED_ADC_BORDER_COUNT, CRC_32, Calibration, Correction, FluxSensor, Range, Settings, Tile,
+    CALIBRATED_ADC_BORDER_COUNT, CRC_32, Calibration, Correction, DisplaySurface, FluxSensor,
+    Range, Settings, Tile,
 };
 
-const VERSION_WITHOUT_FLUX_SENSORS: u16 = 1;
-const VERSION_WITH_FLUX_SENSORS: u16 = 2;
+const VERSION_1: u16 = 1;
+const VERSION_2: u16 = 2;
 const KIND_FACTORY_DEFAULTS: u8 = 0;
 const KIND_SETTINGS: u8 = 1;
 const HEADER_BYTES: usize = 4;
 const CHECKSUM_BYTES: usize = 4;
 const CORRECTIONS_PER_FINGER: usize = 5;
-const INTEGERS_WITHOUT_FLUX_SENSOR: usize =
-    CALIBRATED_ADC_BORDER_COUNT + 3 * CORRECTIONS_PER_FINGER + 5;
-const INTEGERS_WITH_FLUX_SENSOR: usize = INTEGERS_WITHOUT_FLUX_SENSOR + FluxSensor::DECIMALS.len();
-const RECORD_BYTES_PER_FINGER_MAX: usize = 4 * INTEGERS_WITH_FLUX_SENSOR;
+const INTEGERS_IN_VERSION_1: usize = CALIBRATED_ADC_BORDER_COUNT + 3 * CORRECTIONS_PER_FINGER + 5;
+const INTEGERS_IN_VERSION_2: usize =
+    INTEGERS_IN_VERSION_1 + FluxSensor::DECIMALS.len() + DisplaySurface::DECIMALS.len();
+const RECORD_BYTES_PER_FINGER_MAX: usize = 4 * INTEGERS_IN_VERSION_2;
 /// Largest number of fingers that a device can have.
 const FINGERS_MAX: usize = 10;
-/// Length of the longest record, that of a device with ten fingers: 1488 bytes.
+/// Length of the longest record, that of a device with ten fingers: 1608 bytes.
 pub const RECORD_MAX_BYTES: usize =
     HEADER_BYTES + FINGERS_MAX * RECORD_BYTES_PER_FINGER_MAX + CHECKSUM_BYTES;
 
@@ -45,7 +47,7 @@ pub const RECORD_MAX_BYTES: usize =
 pub type SettingsRecord = Vec<u8, RECORD_MAX_BYTES>;
 
 /// The part of one finger's settings that is stored in flash, because commissioning determines it for each device:
-/// calibration, tile and heat-flux sensor. All other settings always have their factory defaults.
+/// calibration, tile, heat-flux sensor and surface of the display. All other settings always have their factory defaults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredSettings {
     /// Calibration of the finger's sensors, from the commands `calibrate` and `set`: the jumps of the converter's error at
@@ -56,20 +58,23 @@ pub struct StoredSettings {
     pub tile: Tile,
     /// The finger's heat-flux sensor, from the command `flux`; `None` if it is not fitted.
     pub flux_sensor: Option<FluxSensor>,
+    /// Surface of the finger's display, from the command `surface`.
+    pub display: DisplaySurface,
 }
 
 impl StoredSettings {
-    /// Takes calibration, tile and heat-flux sensor, the part that is stored in flash, from a finger's complete `settings`.
+    /// Takes calibration, tile, heat-flux sensor and surface of the display, the part that is stored in flash, from a finger's complete `settings`.
     #[must_use]
     pub const fn from_settings(settings: &Settings) -> Self {
         Self {
             calibration: settings.calibration,
             tile: settings.tile,
             flux_sensor: settings.flux_sensor,
+            display: settings.display,
         }
     }
 
-    /// Complete settings of the finger: the stored calibration, tile and heat-flux sensor, the gains that follow from this
+    /// Complete settings of the finger: the stored calibration, tile, heat-flux sensor and display, the gains that follow from this
     /// tile, and factory defaults for everything else.
     #[must_use]
     #[inline(never)]
@@ -77,6 +82,7 @@ impl StoredSettings {
         let mut settings = Settings {
             calibration: self.calibration,
             flux_sensor: self.flux_sensor,
+            display: self.display,
             ..Settings::default()
         };
         settings.set_tile(self.tile);
@@ -89,6 +95,10 @@ impl StoredSettings {
         let corrections = self.calibration.corrections.into_iter();
         let tile = self.tile.to_array().into_iter();
         let flux_sensor = (self.flux_sensor).map_or(NO_FLUX_SENSOR, |sensor| sensor.to_array());
+        let display = match self.display {
+            DisplaySurface::NOMINAL => NOMINAL_DISPLAY,
+            other => other.to_array(),
+        };
         steps
             .map(|step| (step, Calibration::ADC_ERROR_STEP_DECIMALS))
             .chain(corrections.flat_map(|correction| {
@@ -97,11 +107,12 @@ impl StoredSettings {
             }))
             .chain(tile.map(|value| (value, Tile::DECIMALS as i32)))
             .chain(flux_sensor.into_iter().zip(FluxSensor::DECIMALS))
+            .chain(display.into_iter().zip(DisplaySurface::DECIMALS))
     }
 
-    /// Converts the 37 integers that a record holds for one finger to the stored settings of that finger. The integers
+    /// Converts the integers that a record holds for one finger, 33 or 40, to the stored settings of that finger. The integers
     /// have the order of the record, and each is a value in units of its last decimal. A missing integer counts as 0:
-    /// [`decode_settings_record`] has checked the length of the record, so that only those of the heat-flux sensor can be
+    /// [`decode_settings_record`] has checked the length of the record, so that only those of version 2 can be
     /// missing.
     fn from_record_integers(mut values: impl Iterator<Item = i32>) -> Self {
         let mut next =
@@ -117,21 +128,27 @@ impl StoredSettings {
             flux_sensor: Some(FluxSensor::DECIMALS.map(&mut next))
                 .filter(|values| *values != NO_FLUX_SENSOR)
                 .map(FluxSensor::from_array_rounded),
+            display: Some(DisplaySurface::DECIMALS.map(&mut next))
+                .filter(|values| *values != NOMINAL_DISPLAY)
+                .map_or(DisplaySurface::NOMINAL, DisplaySurface::from_array_rounded),
         }
     }
 
-    /// The first value of calibration, tile or heat-flux sensor that is outside its allowed range, with that range; `None` if all are
+    /// The first value of calibration, tile, heat-flux sensor or display that is outside its allowed range, with that range; `None` if all are
     /// inside.
     fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
         self.calibration
             .first_value_out_of_range()
             .or_else(|| self.tile.first_value_out_of_range())
             .or_else(|| self.flux_sensor?.first_value_out_of_range())
+            .or_else(|| self.display.first_value_out_of_range())
     }
 }
 
 /// What a record holds in place of a heat-flux sensor that is not fitted; a sensor has a gain.
 const NO_FLUX_SENSOR: [f64; 4] = [0.0; 4];
+/// What a record holds in place of the nominal surface of the display.
+const NOMINAL_DISPLAY: [f64; 3] = [0.0; 3];
 
 /// Why bytes from the flash are not a valid record of this device. The device then starts with factory defaults, and
 /// all fingers are tripped by the fault `settings-corrupt`.
@@ -169,7 +186,7 @@ impl fmt::Display for RecordError {
             Self::Version(version) => {
                 write!(
                     f,
-                    "settings have the unknown version {version}; known: {VERSION_WITHOUT_FLUX_SENSORS} {VERSION_WITH_FLUX_SENSORS}"
+                    "settings have the unknown version {version}; known: {VERSION_1} {VERSION_2}"
                 )
             }
             Self::Kind(kind) => write!(f, "settings have the unknown kind {kind}; known: 0 1"),
@@ -202,11 +219,12 @@ pub fn encode_settings_record<const FINGERS: usize>(
     let mut append = |bytes: &[u8]| {
         let _fits = record.extend_from_slice(bytes);
     };
-    let has_flux_sensor = (settings.into_iter().flatten()).any(|one| one.flux_sensor.is_some());
-    let (version, integers_per_finger) = if has_flux_sensor {
-        (VERSION_WITH_FLUX_SENSORS, INTEGERS_WITH_FLUX_SENSOR)
+    let is_version_2 = (settings.into_iter().flatten())
+        .any(|one| one.flux_sensor.is_some() || one.display != DisplaySurface::NOMINAL);
+    let (version, integers_per_finger) = if is_version_2 {
+        (VERSION_2, INTEGERS_IN_VERSION_2)
     } else {
-        (VERSION_WITHOUT_FLUX_SENSORS, INTEGERS_WITHOUT_FLUX_SENSOR)
+        (VERSION_1, INTEGERS_IN_VERSION_1)
     };
     append(&version.to_le_bytes());
     append(&match settings {
@@ -245,8 +263,8 @@ pub fn decode_settings_record<const FINGERS: usize>(
     }
     let [version_low, version_high, kind, fingers] = *header;
     let integers_per_finger = match u16::from_le_bytes([version_low, version_high]) {
-        VERSION_WITH_FLUX_SENSORS => INTEGERS_WITH_FLUX_SENSOR,
-        VERSION_WITHOUT_FLUX_SENSORS => INTEGERS_WITHOUT_FLUX_SENSOR,
+        VERSION_2 => INTEGERS_IN_VERSION_2,
+        VERSION_1 => INTEGERS_IN_VERSION_1,
         version => return Err(RecordError::Version(version)),
     };
     let expected_fingers = match kind {

@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 use arbitrary::{Arbitrary, Unstructured};
 use system_tests::flash::{BYTES, Flash, append, numbered};
 use thermal_display::settings::{
-    Calibration, Correction, FluxSensor, SettingsStore, StoreError, StoredSettings, Tile,
+    Calibration, Correction, DisplaySurface, FluxSensor, SettingsStore, StoreError, StoredSettings,
+    Tile,
 };
 use thermal_sim::FlashCells;
 
@@ -14,10 +15,10 @@ const SAVES: [u32; 8] = [0, 1, 2, 3, 20, 37, 38, 80];
 /// Largest number of events of one input.
 const EVENTS: usize = 24;
 
-/// Stored values of a finger: smallest and largest stored integer, and stored integers per unit. The last four are those of the
-/// heat-flux sensor.
-const VALUES: [(i32, i32, f64); 37] = {
-    let mut values = [(-4_000, 4_000, 1e3); 37];
+/// Stored values of a finger: smallest and largest stored integer, and stored integers per unit. The last seven are those of the
+/// heat-flux sensor and of the display's surface.
+const VALUES: [(i32, i32, f64); 40] = {
+    let mut values = [(-4_000, 4_000, 1e3); 40];
     let mut sensor = 0;
     while sensor < 5 {
         values[13 + 3 * sensor] = (-1_200_000, 1_200_000, 1e6);
@@ -34,10 +35,15 @@ const VALUES: [(i32, i32, f64); 37] = {
     values[34] = (64_000, 4_031_000, 1e3);
     values[35] = (100, 500_000, 1e3);
     values[36] = (0, 1_000_000, 1e3);
+    values[37] = (100, 500_000, 1e3);
+    values[38] = (100, 300_000, 1e4);
+    values[39] = (100, 150_000, 1e5);
     values
 };
-/// Values of a finger in records of version 1, which know no heat-flux sensor.
+/// Values of a finger in records of version 1, which know neither heat-flux sensors nor surfaces of the display.
 const VALUES_IN_VERSION_1: usize = 33;
+/// From this value on they are those of the surface.
+const SURFACE_VALUES_FROM: usize = 37;
 
 #[derive(Arbitrary, Debug)]
 struct Input {
@@ -54,7 +60,7 @@ enum Event {
     Bytes { at: u16, bytes: Vec<u8> },
     /// Appends a record whose checksums are right: values as fractions of their ranges, of both versions, any header, any length.
     Record {
-        values: [i16; 37],
+        values: [i16; 40],
         is_version_1: bool,
         header: Option<[u8; 4]>,
         length: Option<u8>,
@@ -242,15 +248,18 @@ fn settings_in<const FINGERS: usize>(content: &[u8]) -> Option<Option<[StoredSet
 
 /// The settings of a finger with these stored integers, if all are within their ranges.
 fn finger_of(units: &[i32]) -> Option<StoredSettings> {
-    let has_flux_sensor = units[VALUES_IN_VERSION_1..].iter().any(|unit| *unit != 0);
-    let count = if has_flux_sensor {
-        VALUES.len()
-    } else {
-        VALUES_IN_VERSION_1
-    };
+    // All zero stands for no sensor and for the nominal surface; a version 1 has neither.
+    let is_given = |from: usize, to: usize| units.iter().take(to).skip(from).any(|unit| *unit != 0);
+    let has_flux_sensor = is_given(VALUES_IN_VERSION_1, SURFACE_VALUES_FROM);
+    let has_surface = is_given(SURFACE_VALUES_FROM, VALUES.len());
     let mut values = Vec::new();
-    for (unit, (min, max, per_unit)) in units.iter().zip(VALUES).take(count) {
-        if !(min..=max).contains(unit) {
+    for (index, (unit, (min, max, per_unit))) in units.iter().zip(VALUES).enumerate() {
+        let is_checked = match index {
+            ..VALUES_IN_VERSION_1 => true,
+            VALUES_IN_VERSION_1..SURFACE_VALUES_FROM => has_flux_sensor,
+            _ => has_surface,
+        };
+        if is_checked && !(min..=max).contains(unit) {
             return None;
         }
         values.push(f64::from(*unit) / per_unit);
@@ -267,7 +276,14 @@ fn finger_of(units: &[i32]) -> Option<StoredSettings> {
             }),
         },
         tile: Tile::from_array_rounded(std::array::from_fn(|_| next())),
-        flux_sensor: has_flux_sensor
-            .then(|| FluxSensor::from_array_rounded(std::array::from_fn(|_| next()))),
+        flux_sensor: Some(FluxSensor::from_array_rounded(std::array::from_fn(|_| {
+            next()
+        })))
+        .filter(|_| has_flux_sensor),
+        display: Some(DisplaySurface::from_array_rounded(std::array::from_fn(
+            |_| next(),
+        )))
+        .filter(|_| has_surface)
+        .unwrap_or(DisplaySurface::NOMINAL),
     })
 }

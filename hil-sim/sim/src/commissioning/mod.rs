@@ -13,8 +13,9 @@ use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
 use thermal_client::client::PlainCommand;
 use thermal_client::commissioning::SurroundingsError;
+use thermal_plant::parameters::{Tolerance, relative};
 use thermal_plant::{ConfigError, Params};
-use thermal_settings::FluxSensor;
+use thermal_settings::{DisplaySurface, FluxSensor};
 
 use crate::engine::NativeEngine;
 use crate::scene::Scene;
@@ -32,8 +33,11 @@ pub use surroundings::{SimulatedOperator, SimulatedSurroundings, SurroundingsAct
 /// Lines of settings, or why commissioning failed; computed once.
 type SharedSettings = Arc<OnceLock<Result<Vec<String>, CommissionError>>>;
 
-/// The settings of a scene's device as lines: those of commissioning, none if it is not commissioned, and its heat-flux sensor
-/// if it is fitted. Computed by the native engine, once per process for each device.
+/// Error of the conductivity, roughness and slope that the operator measures of a display: a standard deviation of 5 %.
+const SURFACE_MEASUREMENT: Tolerance = relative(0.1).normal();
+
+/// The settings of a scene's device as lines: those of commissioning, none if it is not commissioned, its heat-flux sensor
+/// if it is fitted, and the surface of its display if it was measured. Computed by the native engine, once per process for each device.
 ///
 /// # Errors
 /// The device cannot be commissioned.
@@ -50,6 +54,19 @@ pub fn settings_for_scene(scene: &Scene) -> Result<Vec<String>, CommissionError>
             ..FluxSensor::DESIGNED
         };
         lines.push(PlainCommand::FluxSensor(Some(sensor)).to_string());
+    }
+    if scene.measured_surface {
+        let display = &scene.params.display;
+        let values = [
+            ("conductivity", display.conductivity_w_mk),
+            ("roughness", display.roughness_um),
+            ("slope", display.slope_rad),
+        ];
+        let measured = values.map(|(name, value)| {
+            SURFACE_MEASUREMENT.draw(value, scene.seed, &format!("measured.display.{name}"))
+        });
+        let surface = DisplaySurface::from_array_rounded(measured);
+        lines.push(PlainCommand::DisplaySurface(surface).to_string());
     }
     Ok(lines)
 }

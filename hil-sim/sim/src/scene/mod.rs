@@ -59,6 +59,8 @@ pub struct Scene {
     pub seed: u64,
     /// Whether the device was calibrated and tuned before the scene.
     pub commissioned: bool,
+    /// Whether the operator has measured the surface of the display, and tells the device.
+    pub measured_surface: bool,
     /// The microcontroller before its program starts.
     pub chip: ChipState,
     /// Contact model that the device uses.

@@ -62,6 +62,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         room_c,
         seed: file.seed,
         commissioned: file.device.commissioned,
+        measured_surface: file.device.measured_surface,
         chip: chip(&source, &file.device)?,
         mode,
         law: file

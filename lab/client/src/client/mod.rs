@@ -33,8 +33,8 @@ pub use plain_command::{
 };
 pub use query::{
     Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryContactLaw,
-    QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings,
-    QueryState, TuneResult,
+    QueryDisplaySurface, QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest,
+    QuerySettings, QueryState, TuneResult,
 };
 pub use reply::{
     BoardReport, CalibrationFit, Cause, FluxReport, IdentifiedTile, Identity, RawReadings,
@@ -492,7 +492,8 @@ fn may_be_repeated(line: &str) -> bool {
             | "law"
             | "finger"
             | "margins"
-            | "flux"]
+            | "flux"
+            | "surface"]
             | ["settings", ..]
             | ["upload", "row", ..]
     )

@@ -15,7 +15,7 @@ use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_device::stimulus::{CourseEnd, PlayOrder, TemperatureKind};
 use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, NOMINAL_CONTACT_LAW_WORD};
-use thermal_settings::{CRC_32, FluxSensor};
+use thermal_settings::{CRC_32, DisplaySurface, FluxSensor};
 
 use super::reply::SettingsLine;
 use super::{Command, Fields};
@@ -96,6 +96,8 @@ pub enum PlainCommand {
     FluxSensor(Option<FluxSensor>),
     /// Take the zero of the heat-flux sensor.
     FluxZero,
+    /// The display has this surface.
+    DisplaySurface(DisplaySurface),
     /// Restart, and store the settings or the factory defaults.
     Store(StorageOrder),
     /// Begin an upload: number of rows, direct term in m² K/W.
@@ -241,6 +243,12 @@ impl fmt::Display for PlainCommand {
                 values.try_for_each(|value| write!(f, " {value}"))
             }
             Self::FluxZero => f.write_str("flux zero"),
+            Self::DisplaySurface(DisplaySurface::NOMINAL) => f.write_str("surface nominal"),
+            Self::DisplaySurface(surface) => {
+                f.write_str("surface set")?;
+                let mut values = surface.to_array().into_iter();
+                values.try_for_each(|value| write!(f, " {value}"))
+            }
             Self::Store(order) => f.write_str(order.name()),
             Self::UploadBegin(rows, direct_m2k_w) => {
                 write!(

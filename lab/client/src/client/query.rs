@@ -6,6 +6,7 @@ use contact_model::contact_law::ContactLaw;
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::safety::ThermistorId;
+use thermal_settings::DisplaySurface;
 
 use super::fields::in_table;
 use super::plain_command::thermistor_word;
@@ -69,6 +70,15 @@ queries! {
     QueryRaw = "raw" => RawReadings, RawReadings::read;
     /// Heat-flux sensor, its flux, and what is known of the finger by it; `None` without one.
     QueryFlux = "flux" => Option<FluxReport>, FluxReport::read;
+    /// Surface of the display.
+    QueryDisplaySurface = "surface" => DisplaySurface, |reply: &Fields<'_>| {
+        let values = [
+            reply.number("conductivity_w_mk")?,
+            reply.number("roughness_um")?,
+            reply.number("slope_rad")?,
+        ];
+        Some(DisplaySurface::from_array_rounded(values))
+    };
     /// State of the board.
     QueryBoard = "board" => BoardReport, BoardReport::read;
 }

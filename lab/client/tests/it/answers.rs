@@ -5,8 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use thermal_client::client::{
-    BoardReport, Client, ClientError, FluxReport, PlainCommand, QueryBoard, QueryCause, QueryFlux,
-    QueryIdentity, QueryRaw, QuerySelfTest, QueryState, Telemetry, upload_course,
+    BoardReport, Client, ClientError, FluxReport, PlainCommand, QueryBoard, QueryCause,
+    QueryDisplaySurface, QueryFlux, QueryIdentity, QueryRaw, QuerySelfTest, QueryState, Telemetry,
+    upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
 use thermal_device::events::DeviceEventKind;
@@ -14,6 +15,7 @@ use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_device::stimulus::TemperatureKind;
 use thermal_device::{StateName, TelemetryFields};
+use thermal_settings::DisplaySurface;
 
 use crate::fake_device::{FakeDevice, answers, knows};
 
@@ -449,6 +451,14 @@ fn the_answers_for_diagnosis_are_read() {
         assert_eq!(unknown.w_m2, None);
     }
     assert!(flux(fitted("-3.2", "warm")).is_err());
+    let mut rough = FakeDevice::client(|_| {
+        answers("ok conductivity_w_mk=30.000 roughness_um=1.2500 slope_rad=0.11000")
+    });
+    let surface = DisplaySurface::from_array_rounded([30.0, 1.25, 0.11]);
+    assert_eq!(rough.ask(&QueryDisplaySurface).unwrap(), surface);
+    let lines = [surface, DisplaySurface::NOMINAL].map(PlainCommand::DisplaySurface);
+    let lines = lines.map(|line| line.to_string());
+    assert_eq!(lines, ["surface set 30 1.25 0.11", "surface nominal"]);
     let cause = client.ask(&QueryCause).unwrap().unwrap();
     assert_eq!((cause.fault, cause.tick), (Fault::DisplayHot, 1234));
     assert_eq!((cause.sink_c, cause.asked_a), (None, -6.0));

@@ -11,8 +11,11 @@ mod skin_on_object;
 use core::ops::RangeInclusive;
 
 use contact_model::fixed_point::{
-    Body, Celsius, ChordInterpolation, ContactPair, Force, TissueStateFactors, preset,
+    Body, Celsius, ChordInterpolation, ContactPair, Force, Fraction, TissueStateFactors, preset,
+    saturating_product,
 };
+
+use fixed::types::U16F16;
 
 use crate::estimate::{
     Bodies, FingerContact, FingerEstimator, ForceChange, PreContactTemperatures,
@@ -258,6 +261,17 @@ fn waiting_offset_below_preset(skin: Celsius, preset: Celsius) -> Celsius {
     skin.saturating_sub(preset) >> WAITING_OFFSET_DIVISOR_LOG2
 }
 
+/// As [`waiting_offset_below_preset`], for a display with the layer of a heat-flux sensor on its face, and an object of this
+/// weight: 3/64 of the difference times the weight.
+///
+/// The flux's drop across the layer is unknown before the first contact, because that of fingers differs by a factor of two,
+/// and a display that must cool a strong flux's drop away is at the bridge's limit for 80 ms; to heat takes a quarter of that. An
+/// object of a smaller weight draws its flux down sooner.
+fn waiting_offset_below_layer(skin: Celsius, preset: Celsius, weight: Fraction) -> Celsius {
+    let weighted: Celsius = saturating_product(skin.saturating_sub(preset), weight);
+    (weighted >> 5u32).saturating_add(weighted >> 6u32)
+}
+
 impl ReferenceGenerator {
     /// Discards the contact with the object and the simulation of the skin; only the number of evaluations of `erfcx`
     /// is kept. Called in a tick with invalid readings or a detected fault, because the finger may have landed or
@@ -442,10 +456,12 @@ impl ReferenceGenerator {
             }
             changes.cooling = skin_state_on_display.free_response();
             let setpoint = changes.setpoint(ratio_at_landing, skin, before.skin_above_object);
-            return Reference::limited_to_safe_range(
-                setpoint,
-                setpoint.saturating_sub(waiting_offset_below_preset(skin, setpoint)),
-            );
+            let offset = if before.bodies.resistances.display_layer == U16F16::ZERO {
+                waiting_offset_below_preset(skin, setpoint)
+            } else {
+                waiting_offset_below_layer(skin, setpoint, self.factors.weight)
+            };
+            return Reference::limited_to_safe_range(setpoint, setpoint.saturating_sub(offset));
         };
         let conductances = contact.stored_conductances();
         let changes =

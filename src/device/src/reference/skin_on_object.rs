@@ -17,7 +17,7 @@ use crate::estimate::{Bodies, SkinState, flux_beyond_air};
 pub struct ContactPairFactors {
     /// Fraction of the difference between skin and object temperature by which the skin's surface cools in a long
     /// contact: `e_object / (e_object + e_skin)`, with the thermal effusivities `e`.
-    weight: Fraction,
+    pub weight: Fraction,
     /// Reciprocal of `weight`, `(e_object + e_skin) / e_object`. The cooling of the skin's surface times this factor is
     /// the decrease of the temperature difference between skin and object surface, because the object's surface warms
     /// at the same time.

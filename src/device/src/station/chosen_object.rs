@@ -39,13 +39,18 @@ pub struct ChosenObject {
     default_pair: Option<ContactPair>,
 }
 
+/// Contact constants of the first material on this display.
+fn default_pair(display: &Surface) -> Option<ContactPair> {
+    let [(_, any), ..] = &MATERIALS;
+    ContactPair::new(&SKIN, any, display, TICK_S).ok()
+}
+
 impl ChosenObject {
     /// Nothing chosen yet: no material, the default finger, the object at the room's temperature, the model with contact
     /// resistance.
     /// Computes the default contact constants for the display's surface in `f64`, so it is for the start only.
     #[must_use]
     pub fn new(display: &Surface, display_layer: U16F16) -> Self {
-        let [(_, any), ..] = &MATERIALS;
         let mut chosen = Self {
             material: None,
             finger: AssumedFinger::Thesis,
@@ -55,7 +60,7 @@ impl ChosenObject {
             bodies: Bodies::HALF_SPACES,
             temperature: None,
             mode: ContactModel::default(),
-            default_pair: ContactPair::new(&SKIN, any, display, TICK_S).ok(),
+            default_pair: default_pair(display),
         };
         chosen.choose_finger(AssumedFinger::default());
         chosen.set_display_layer(display_layer);
@@ -99,6 +104,19 @@ impl ChosenObject {
         }
         self.is_half_space = body.is_none();
         self.bodies.are_half_spaces = self.is_half_space && self.finger == AssumedFinger::Thesis;
+    }
+
+    /// The display has this surface; computes in `f64`. Before a material is chosen.
+    pub fn set_display_surface(&mut self, display: &Surface) {
+        self.default_pair = default_pair(display);
+    }
+
+    /// Uses these contact constants, of another surface of the display with the chosen material or, before a choice, with any.
+    pub const fn replace_contact_pair(&mut self, pair: &ContactPair) {
+        self.default_pair = Some(*pair);
+        if let Some(material) = &mut self.material {
+            material.pair = *pair;
+        }
     }
 
     /// The display has a layer of this resistance on its face: its temperature difference per kelvin of scaled flux.

@@ -63,6 +63,13 @@ impl Station {
                 self.require_no_object_presented()?;
                 self.replace_flux_sensor(sensor.as_ref());
             }
+            Command::DisplaySurface(ref pair) => {
+                self.require_no_object_presented()?;
+                self.object.replace_contact_pair(pair);
+                self.reference.forget_resistances();
+                self.forget_learnt_finger(self.object.assumed_finger());
+                self.due.add(DueWork::CONTACT_RESTART);
+            }
             Command::ContactLaw(None) => return Ok(Reply::ContactLaw(self.object.contact_law)),
             Command::ContactLaw(Some(ref law)) => {
                 // Eq. 6-12, which the thesis's finger has on half-spaces, holds for Eq. 6-8 only.

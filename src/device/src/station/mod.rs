@@ -167,7 +167,7 @@ impl Station {
                 finger: FingerEstimator::default(),
             },
             object: ChosenObject::new(
-                &settings.display,
+                settings.display.surface(),
                 flux_sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer),
             ),
             learning: flux_sensor.map(|sensor| FingerLearning::new(sensor, Place::Air)),
@@ -204,13 +204,14 @@ impl Station {
         station
     }
 
-    /// Replaces the thermistor calibration, the gains, the tile's model and the heat-flux sensor by those of `settings`,
+    /// Replaces the thermistor calibration, the gains, the tile's model, heat-flux sensor and display by those of `settings`,
     /// converted from `f64`; everything else stays as [`Station::new`] has made it. Called at the start, with the finger's stored
     /// settings.
     pub(crate) fn apply_settings(&mut self, settings: &Settings) {
         self.sensors
             .replace_calibration_tables(&CalibrationTables::new(settings));
         self.set_control_parameters(&ControlParameters::new(settings));
+        self.object.set_display_surface(settings.display.surface());
         let flux_sensor = settings.flux_sensor.as_ref().map(FluxParameters::new);
         self.replace_flux_sensor(flux_sensor.as_ref());
     }

@@ -24,14 +24,16 @@ fn stored_settings() -> impl Strategy<Value = StoredSettings> {
         100..=500_000,
         0..=1_000_000,
     ));
+    let display = proptest::option::of((100..=500_000, 100..=300_000, 100..=150_000));
     let steps = proptest::array::uniform13(-4000..=4000);
     let all = (
         steps,
         proptest::array::uniform5(correction),
         tile,
         flux_sensor,
+        display,
     );
-    all.prop_map(|(steps, corrections, tile, flux_sensor)| {
+    all.prop_map(|(steps, corrections, tile, flux_sensor, display)| {
         let scaled = |units: i32, per: f64| f64::from(units) / per;
         StoredSettings {
             calibration: Calibration {
@@ -51,6 +53,16 @@ fn stored_settings() -> impl Strategy<Value = StoredSettings> {
                 lag_ms: scaled(lag, 1e3),
                 resistance_mm2k_w: scaled(resistance, 1e3),
             }),
+            display: display.map_or(
+                DisplaySurface::NOMINAL,
+                |(conductivity, roughness, slope)| {
+                    DisplaySurface::from_array_rounded([
+                        scaled(conductivity, 1e3),
+                        scaled(roughness, 1e4),
+                        scaled(slope, 1e5),
+                    ])
+                },
+            ),
         }
     })
 }
@@ -77,7 +89,7 @@ proptest! {
         prop_assert!(decode_settings_record::<1>(&bytes).is_err());
         // Bytes with a valid checksum, then with a valid header too.
         let _any_content = decode_settings_record::<1>(&with_checksum(&bytes));
-        for (version, length) in [(1, 132), (2, 148)] {
+        for (version, length) in [(1, 132), (2, 160)] {
             let mut content = std::vec![version, 0, 1, 1];
             content.extend(bytes.iter().cycle().take(if bytes.is_empty() { 0 } else { length }));
             if let Ok(Some([stored])) = decode_settings_record::<1>(&with_checksum(&content)) {
@@ -134,23 +146,55 @@ fn the_record_of_a_device_with_a_heat_flux_sensor_has_the_documented_layout() {
         &[2, 0, 1, 2],
         &finger[..],
         &sensor.concat(),
+        &[0; 12],
         &finger,
-        &[0; 16],
+        &[0; 28],
     ]
     .concat();
     let bytes = encode_settings_record(Some(&[with, without]));
     assert_eq!(bytes[..], with_checksum(&content)[..]);
-    assert_eq!(bytes.len(), 4 + 2 * 148 + 4);
+    assert_eq!(bytes.len(), 4 + 2 * 160 + 4);
     let decoded = decode_settings_record::<2>(&bytes);
     assert_eq!(decoded, Ok(Some([with, without])));
     // Each version has its length.
-    let long = [&[1, 0, 1, 1], &finger[..], &[0; 16]].concat();
+    let long = [&[1, 0, 1, 1], &finger[..], &[0; 28]].concat();
     let short = [&[2, 0, 1, 1], &finger[..]].concat();
     for content in [long, short] {
         let bytes = with_checksum(&content);
         let wrong = Err(RecordError::Length(bytes.len()));
         assert_eq!(decode_settings_record::<1>(&bytes), wrong);
     }
+}
+
+#[test]
+fn the_record_of_a_display_with_another_surface_has_the_documented_layout() {
+    let stored = StoredSettings {
+        display: DisplaySurface::from_array_rounded([1.2, 0.45, 0.061]),
+        ..StoredSettings::from_settings(&Settings::default())
+    };
+    let tile = [2_957_000, 58_500, 103_000, 100_000, 16_000].map(i32::to_le_bytes);
+    let surface = [1200, 4500, 6100].map(i32::to_le_bytes);
+    let content = [
+        &[2, 0, 1, 1, 0, 0, 0, 0][..],
+        &[0; 108],
+        &tile.concat(),
+        &[0; 16],
+        &surface.concat(),
+    ]
+    .concat();
+    let bytes = encode_settings_record(Some(&[stored]));
+    assert_eq!(bytes[..], with_checksum(&content)[..]);
+    assert_eq!(decode_settings_record(&bytes), Ok(Some([stored])));
+}
+
+#[test]
+fn the_nominal_surface_is_a_rounded_one_within_its_ranges() {
+    let nominal = DisplaySurface::NOMINAL;
+    assert_eq!(
+        DisplaySurface::from_array_rounded(nominal.to_array()),
+        nominal
+    );
+    assert_eq!(nominal.first_value_out_of_range(), None);
 }
 
 #[test]
@@ -199,6 +243,11 @@ fn each_invalid_record_has_its_error_message() {
         changed(4 + 4 * 33, &[0; 4]),
         "stored gain 0 of finger 0 out of range; 0.01 to 1 counts per W/m2"
     );
+    // The slope of the display, rad, with no conductivity and roughness.
+    assert_eq!(
+        changed(4 + 4 * 39, &13_800i32.to_le_bytes()),
+        "stored conductivity 0 of finger 0 out of range; 0.1 to 500 W/mK"
+    );
     assert_eq!(
         decode_settings_record::<1>(&with_checksum(&content[..100])),
         Err(RecordError::Length(104))
@@ -221,6 +270,7 @@ fn stored_settings_determine_the_gains() {
         calibration: Calibration::default(),
         tile,
         flux_sensor: Some(FluxSensor::DESIGNED),
+        display: DisplaySurface::from_array_rounded([30.0, 1.1, 0.12]),
     };
     let settings = stored.to_settings_with_factory_defaults();
     assert_eq!(StoredSettings::from_settings(&settings), stored);

@@ -49,8 +49,12 @@ impl PopulationCase {
             Way::AsItIs => ("", ""),
             Way::Version01 => ("told = \"half-space\"\n", "finger = \"thesis\"\n"),
         };
-        let sensor = match self.population.scenario() {
-            "G" => "flux_sensor = true\n",
+        let sensor = match self.population {
+            // The maker of a display with such a sensor also measures its surface.
+            Population::DesignedSensor | Population::HypotheticalSensor => {
+                "flux_sensor = true\nmeasured_surface = true\n"
+            }
+            Population::KnownSurfaces => "flux_sensor = true\n",
             _ => "",
         };
         let Self {
