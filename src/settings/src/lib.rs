@@ -8,6 +8,7 @@ extern crate std;
 mod calibration;
 mod checksum;
 mod flux_sensor;
+mod persons;
 mod range;
 mod settings_record;
 mod settings_store;
@@ -21,10 +22,11 @@ pub use calibration::{
 };
 pub use checksum::{CRC_32, Crc32Digest};
 pub use flux_sensor::FluxSensor;
+pub use persons::{Person, PersonCode, Persons};
 pub use range::{ADC_ERROR_STEP_RANGE, CORRECTION_RANGES, FLUX_SENSOR_RANGES, Range, TILE_RANGES};
 pub use settings_record::{
-    RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode_settings_record,
-    encode_settings_record,
+    RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredDevice, StoredSettings,
+    decode_settings_record, encode_settings_record,
 };
 pub use settings_store::{SettingsStore, StoreError};
 pub use tile::Tile;

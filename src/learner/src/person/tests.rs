@@ -4,7 +4,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
-use crate::parameters::{PARAMETERS, PRIOR};
+use crate::parameters::PRIOR;
 use crate::tests::contacts::{first_component, learner_of};
 use crate::tests::matrix::least_pivot;
 use crate::tests::random::Random;
@@ -66,17 +66,17 @@ fn enrolled(finger: &Finger, errors: Errors, random: &mut Random) -> (LearnerOut
 fn the_record_has_the_documented_layout() {
     let mut estimate = Estimate::PRIOR;
     estimate.parameters = [0.5, -1.0, 0.25, 9.0, 1.0 / 4096.0, 9.0];
-    // Deviations of 0.49, 0.1, 0.051 and 0.9: 2^(-32/32), 2^(-106/32), 2^(-137/32), 2^(-4/32), rounded up.
-    let deviations = [0.49, 0.1, 0.051, 1.0, 0.9, 1.0];
+    // Deviations of 0.495, 0.1, 0.051 and 0.9 are rounded up to 1/2, 1/8 (1 - 12/64), 1/16 (1 - 11/64) and 1 - 6/64.
+    let deviations = [0.495, 0.1, 0.051, 1.0, 0.9, 1.0];
     for (i, deviation) in deviations.into_iter().enumerate() {
         estimate.covariance[i][i] = deviation * deviation;
     }
-    // With the rounded deviations of 0.5 and 0.100 67, a correlation of 64.2 / 127.
-    let between = 0.025_45;
+    // With the rounded deviations of 0.5 and 0.101 56, a correlation of 64.2 / 127.
+    let between = 0.025_67;
     (estimate.covariance[0][1], estimate.covariance[1][0]) = (between, between);
     let person = PersonPrior::new(&estimate, 3, Place::Pad);
     let expected = [
-        0, 8, 0, 0xf0, 0, 4, 1, 0, 32, 106, 137, 4, 64, 0, 0, 0, 0, 0, 3, 1,
+        0, 8, 0, 0xf0, 0, 4, 1, 0, 32, 108, 139, 6, 64, 0, 0, 0, 0, 0, 3, 1,
     ];
     assert_eq!(person.0, expected);
     assert_eq!(person.parameters(), [0.5, -1.0, 0.25, 1.0 / 4096.0]);
@@ -84,13 +84,13 @@ fn the_record_has_the_documented_layout() {
 }
 
 #[test]
-fn stored_deviations_are_those_of_the_power_of_two_rounded_up() {
+fn stored_deviations_are_32_in_each_octave_rounded_up() {
     for number in 0..=u8::MAX {
-        let exact = (-f64::from(number) / 32.0).exp2();
-        let ratio = f64::from(deviation(number)) / exact;
-        assert!((ratio - 1.0).abs() < 5e-7, "{number}: {ratio}");
+        let (octave, part) = (number / 32, number % 32);
+        let exact = (-f64::from(octave)).exp2() * (1.0 - f64::from(part) / 64.0);
+        assert_eq!(f64::from(deviation(number)), exact);
         // Just below it, and half a level below it.
-        for below in [0.9999f64, 0.99] {
+        for below in [0.9999f64, 0.993] {
             assert_eq!(level((exact * below).powi(2) as f32), number);
         }
     }
@@ -113,7 +113,7 @@ fn the_finger_that_was_learnt_is_adopted_within_the_rounding_of_the_record() {
             worst_parameter = worst_parameter.max(difference.to_num());
             let ratio: f64 =
                 adopted.variances[i].to_num::<f64>() / learnt.variances[i].to_num::<f64>();
-            assert!((0.999_999..1.0443).contains(&ratio), "{seed}, {i}: {ratio}");
+            assert!((0.999_999..1.064).contains(&ratio), "{seed}, {i}: {ratio}");
         }
         for (ours, theirs) in adopted.weights.iter().zip(learnt.weights) {
             worst_weight = worst_weight.max((ours - theirs).abs().to_num());
@@ -148,7 +148,7 @@ fn the_covariance_that_was_learnt_is_adopted() {
         for j in STORED.into_iter().filter(|j| *j != i) {
             let scale = (learnt.covariance[i][i] * learnt.covariance[j][j]).sqrt();
             let difference = learnt.covariance[i][j] - adopted.covariance[i][j];
-            assert!(difference.abs() <= 0.5 * scale * 1.05 / 127.0, "{i} {j}");
+            assert!(difference.abs() <= 0.5 * scale * 1.07 / 127.0, "{i} {j}");
             largest = largest.max(learnt.covariance[i][j].abs() / scale);
         }
     }
@@ -304,7 +304,7 @@ proptest! {
         let again = PersonPrior::new(&estimate, person.contacts(), person.place());
         if place == person.place() {
             for (ours, theirs) in again.deviations().iter().zip(person.deviations()) {
-                prop_assert!((ours / theirs - 1.0).abs() < 0.03);
+                prop_assert!((ours / theirs - 1.0).abs() < 0.035);
             }
         }
     }
