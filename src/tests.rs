@@ -9,6 +9,7 @@ mod device;
 mod flux;
 mod line_queue;
 mod objects;
+mod persons;
 mod station;
 mod storage;
 mod surface;

@@ -211,7 +211,7 @@ fn a_stored_sensor_is_there_after_a_restart() {
     let stored = stored.expect("settings rather than factory defaults");
     let mut restarted = Bench::<2>::new();
     restarted.handler = CommandHandler::from_stored(&stored);
-    restarted.device.restore_settings(&stored);
+    restarted.device.restore_settings(&stored.fingers);
     let has_sensor = |finger| restarted.device.finger_has_flux_sensor(finger);
     assert!(FingerIndex::all().map(has_sensor).eq([false, true]));
     let line = "@1 ok set flux 0.119250 2051.500 4.500 31.250";

@@ -136,7 +136,7 @@ fn a_stored_surface_is_there_after_a_restart() {
     let stored = stored.expect("settings rather than factory defaults");
     let mut restarted = Bench::<2>::new();
     restarted.handler = CommandHandler::from_stored(&stored);
-    restarted.device.restore_settings(&stored);
+    restarted.device.restore_settings(&stored.fingers);
     let line = "@1 ok conductivity_w_mk=30.000 roughness_um=1.2500 slope_rad=0.11000";
     assert_eq!(restarted.send("@1 surface"), line);
     assert_eq!(restarted.send("@0 settings"), "@0 ok lines=8");

@@ -177,7 +177,7 @@ fn create_and_restore_device(
 ) -> DeviceInPlace<FINGERS> {
     let mut device = DeviceInPlace::from_stations(create_stations(places, cause));
     match &storage.settings {
-        Ok(Some(settings)) => device.restore_settings(settings),
+        Ok(Some(stored)) => device.restore_settings(&stored.fingers),
         Ok(None) => {}
         Err(_) => device.trip_all(Fault::SettingsCorrupt),
     }
@@ -224,7 +224,7 @@ fn create_handler(
     storage: &SaveAndLoadResult,
 ) -> &'static mut CommandHandler<FINGERS> {
     place.write(match &storage.settings {
-        Ok(Some(settings)) => CommandHandler::from_stored(settings),
+        Ok(Some(stored)) => CommandHandler::from_stored(stored),
         Ok(None) | Err(_) => CommandHandler::new(Settings::default()),
     })
 }

@@ -222,10 +222,11 @@ impl CommissioningSession {
     /// Takes the mean code of half a second without flux as the zero of the heat-flux sensor.
     #[inline(never)]
     fn take_flux_zero(&mut self, execute: &mut impl ExecuteOnStation) -> Result<(), Refused> {
+        const NO_SENSOR: Refused = Refused::NoFluxSensor("flux zero");
         let command::Reply::FluxZero(code) = execute(Command::FluxZero)? else {
-            return Err(Refused::NoFluxSensor);
+            return Err(NO_SENSOR);
         };
-        let mut sensor = self.settings.flux_sensor.ok_or(Refused::NoFluxSensor)?;
+        let mut sensor = self.settings.flux_sensor.ok_or(NO_SENSOR)?;
         sensor.zero_counts = code.mean_counts();
         let sensor = FluxSensor::from_array_rounded(sensor.to_array());
         self.set_flux_sensor(Some(sensor), execute)

@@ -11,11 +11,12 @@ use contact_model::fixed_point::{
 use contact_model::material::{Material, SKIN, Surface};
 use fixed::types::U16F16;
 use thermal_learner::Flux;
+use thermal_settings::Person;
 
 use crate::control::{ControlParameters, Law};
 use crate::events::EventKinds;
 use crate::identification::{AbortReason, NormalEquationRow};
-use crate::learning::{FingerKnowledge, FluxParameters, RestingCode};
+use crate::learning::{FingerKnowledge, FluxParameters, PersonState, RestingCode};
 use crate::reference::ContactModel;
 use crate::safety::{Fault, PredictedDose, SelfTestReport, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, Samples, ThermistorAverage};
@@ -273,6 +274,11 @@ pub enum Command<'a> {
     /// this surface. What was learnt of the finger is forgotten. Refused while an object is presented, because the finger would
     /// feel the change.
     DisplaySurface(ContactPair),
+    /// Begin to learn the finger of this person, or of an unknown one for `None`. A finger that touches begins a new contact.
+    /// Refused without a heat-flux sensor, and for the thesis's finger.
+    ChoosePerson(Option<Person>),
+    /// Report the chosen person, and what was learnt of the finger. Refused without a heat-flux sensor.
+    Person,
     /// Report the flux, and what is known of the finger by it. Never refused.
     Flux,
     /// Report the mean code of the heat-flux sensor over half a second without flux. Refused while an object is presented, without
@@ -315,6 +321,8 @@ pub enum Reply {
     Average(ThermistorAverage),
     /// Answer to [`Command::Flux`]; `None` without a heat-flux sensor.
     Flux(Option<FluxState>),
+    /// Answer to [`Command::Person`].
+    Person(PersonState),
     /// Answer to [`Command::FluxZero`].
     FluxZero(RestingCode),
     /// Answer to [`Command::NormalEquation`]: one row of the normal equations of the tile's identification.
@@ -343,8 +351,8 @@ pub enum Refused {
     Testing,
     /// `start` was sent before the first command `material`, so there is no object to present.
     NoMaterial,
-    /// The command was [`Command::ContactLaw`], and the assumed finger is the thesis's.
-    NeedsLayeredFinger,
+    /// The command with this name, `contact` or `person`, was sent, and the assumed finger is the thesis's.
+    NeedsLayeredFinger(&'static str),
     /// `start` was sent while an object is already presented.
     AlreadyStarted,
     /// The command with this name, `hold` or `play`, was sent in a state that does not drive the display (in tripped the reply is
@@ -360,8 +368,8 @@ pub enum Refused {
     /// The command with this name, `tune` or `flux zero`, was sent while a finger touches the display; the finger's heat would
     /// distort the result.
     Touched(&'static str),
-    /// The command was [`Command::FluxZero`], and no heat-flux sensor is fitted.
-    NoFluxSensor,
+    /// The command with this name, `flux zero` or `person`, was sent, and no heat-flux sensor is fitted.
+    NoFluxSensor(&'static str),
     /// The command was [`Command::FluxZero`], and the sensor's code cannot be right.
     FluxSensorFault,
     /// The command was [`Command::FluxZero`], and display and room, °C, given here unless their reading is invalid, differ by more

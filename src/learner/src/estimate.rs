@@ -17,7 +17,8 @@ const BETWEEN_CONTACTS: Parameters = [0.05, 0.05, 0.1, 0.02, 0.07, 0.01];
 pub struct Estimate {
     /// The parameters.
     pub parameters: Parameters,
-    covariance: [Parameters; PARAMETERS],
+    /// Their covariance, symmetric.
+    pub covariance: [Parameters; PARAMETERS],
 }
 
 impl Estimate {

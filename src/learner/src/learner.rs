@@ -3,6 +3,7 @@
 use crate::estimate::Estimate;
 use crate::output::LearnerOutput;
 use crate::parameters::{Place, RESISTANCE, Scale};
+use crate::person::PersonPrior;
 use crate::regressors::{Lagged, Signals};
 use crate::sensor::FluxSensor;
 use crate::trust::{Distrust, Judge, Trust};
@@ -21,6 +22,8 @@ const MODEL_ERROR_TICKS: f32 = 50.0;
 const SURFACE_ERROR_K: f32 = 1.5e-3;
 /// Error of the sensor's zero, W/m²: two of its deviations.
 const ZERO_ERROR_W_M2: f32 = 7.0;
+/// Ticks of a contact after which the finger is well enough known to be stored.
+const STORED_FROM_TICKS: u32 = 8000;
 /// Part of the parameters that remains per window once the finger is distrusted.
 const REMAINING_IF_DISTRUSTED: f32 = 0.75;
 /// Unit of [`Resistance`], m² K/W.
@@ -29,13 +32,19 @@ const M2K_W_PER_BIT: f32 = 1e-6 / (1u32 << Resistance::FRAC_NBITS) as f32;
 /// Learns a finger from the flux into the display. All methods are total, take bounded time and do not panic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Learner {
+    place: Place,
     sensor: FluxSensor,
+    person: Option<PersonPrior>,
     scale: Scale,
     signals: Signals,
-    estimate: Estimate,
+    pub(crate) estimate: Estimate,
     judge: Judge,
     /// Of the present contact, modulo 256.
     windows_in_contact: Option<u8>,
+    /// Ticks since landing at the end of the last window with contact.
+    ticks_since_landing: u32,
+    /// Contacts since the restart or the last distrust that were trusted and long enough to be stored.
+    stored_contacts: u8,
 }
 
 impl Default for Learner {
@@ -48,21 +57,36 @@ impl Learner {
     /// A learner for an input with a [`Restart`], which must be its first.
     #[must_use]
     pub const fn new() -> Self {
-        Self::begin(Restart {
-            place: Place::Air,
-            sensor: FluxSensor::UNKNOWN,
-        })
+        Self::of_unknown_finger(Place::Air, FluxSensor::UNKNOWN)
     }
 
-    pub(crate) const fn begin(Restart { place, sensor }: Restart) -> Self {
+    const fn of_unknown_finger(place: Place, sensor: FluxSensor) -> Self {
         Self {
             scale: Scale::new(place, sensor.lag_deviation()),
+            place,
             sensor,
+            person: None,
             signals: Signals::NEW,
             estimate: Estimate::PRIOR,
             judge: Judge::NEW,
             windows_in_contact: None,
+            ticks_since_landing: 0,
+            stored_contacts: 0,
         }
+    }
+
+    pub(crate) fn begin(restart: Restart) -> Self {
+        let mut learner = Self::of_unknown_finger(restart.place, restart.sensor);
+        learner.person = restart.person;
+        learner.estimate = learner.prior();
+        learner
+    }
+
+    /// What is known of the finger before its contacts.
+    fn prior(&self) -> Estimate {
+        self.person.map_or(Estimate::PRIOR, |person| {
+            person.estimate(self.place, &self.scale)
+        })
     }
 
     /// Takes one window's measurements, and returns what is known of the finger after it.
@@ -71,6 +95,7 @@ impl Learner {
             *self = Self::begin(restart);
         }
         let lagged = self.signals.advance(input, &self.sensor);
+        let mut person = None;
         match &input.contact {
             Some(contact) => {
                 if self.windows_in_contact.is_none() {
@@ -80,6 +105,7 @@ impl Learner {
                     .windows_in_contact
                     .map_or(1, |windows| windows.wrapping_add(1));
                 self.windows_in_contact = Some(windows);
+                self.ticks_since_landing = contact.ticks_since_landing;
                 if input.flux_w_m2.is_none() {
                     self.judge.distrust(Distrust::Sensor);
                 }
@@ -92,19 +118,31 @@ impl Learner {
             None => {
                 if self.windows_in_contact.take().is_some() {
                     self.estimate.widen(&self.scale);
+                    person = self.person_after_contact();
                 }
             }
         }
         if let Trust::Mean(why) = self.judge.trust() {
             self.approach_mean(why);
+            self.stored_contacts = 0;
         }
-        self.output(input.sequence)
+        self.output(input.sequence, person)
     }
 
     fn land(&mut self) {
         if !self.judge.land() {
-            self.estimate = Estimate::PRIOR;
+            self.estimate = self.prior();
         }
+    }
+
+    /// What to store of the finger after a contact, if that was trusted and long enough.
+    fn person_after_contact(&mut self) -> Option<PersonPrior> {
+        let is_stored =
+            self.judge.trust() == Trust::Trusted && self.ticks_since_landing >= STORED_FROM_TICKS;
+        is_stored.then(|| {
+            self.stored_contacts = self.stored_contacts.saturating_add(1);
+            PersonPrior::new(&self.estimate, self.stored_contacts, self.place)
+        })
     }
 
     fn learn(&mut self, contact: &Contact, windows: u8, lagged: &Lagged) {
@@ -144,9 +182,9 @@ impl Learner {
         }
     }
 
-    fn output(&self, sequence: u16) -> LearnerOutput {
+    fn output(&self, sequence: u16, person: Option<PersonPrior>) -> LearnerOutput {
         let variances = self.estimate.variances();
         let (parameters, trust) = (&self.estimate.parameters, self.judge.trust());
-        LearnerOutput::new(sequence, parameters, &variances, &self.scale, trust)
+        LearnerOutput::new(sequence, parameters, &variances, &self.scale, trust, person)
     }
 }

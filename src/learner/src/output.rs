@@ -5,6 +5,7 @@ use fixed::traits::Fixed;
 use fixed::types::{I2F30, I4F28, U2F30, U4F28, U10F22};
 
 use crate::parameters::{AIR, PARAMETERS, Parameters, RESISTANCE, SKIN, Scale, relative_weights};
+use crate::person::PersonPrior;
 use crate::trust::Trust;
 
 /// Differences of a finger from the applied one that are not worth the device's time.
@@ -32,6 +33,8 @@ pub struct LearnerOutput {
     pub parameters: [I4F28; PARAMETERS],
     /// Their variances, in prior variances: above 0, at most 1.25.
     pub variances: [I2F30; PARAMETERS],
+    /// What to store of the finger. Some in the first window after a contact of 8 s or more which was trusted to its end.
+    pub person: Option<PersonPrior>,
 }
 
 /// A result in fixed point. The cast saturates, and takes what is not a number for 0.
@@ -47,6 +50,7 @@ impl LearnerOutput {
         variances: &Parameters,
         scale: &Scale,
         trust: Trust,
+        person: Option<PersonPrior>,
     ) -> Self {
         let change = |index: usize| parameters[index] * scale.deviations[index];
         Self {
@@ -58,6 +62,7 @@ impl LearnerOutput {
             trust,
             parameters: parameters.map(to_fixed),
             variances: variances.map(to_fixed),
+            person,
         }
     }
 

@@ -4,6 +4,7 @@ use contact_model::fixed_point::Celsius;
 use fixed::types::{I20F12, U16F16};
 
 use crate::parameters::Place;
+use crate::person::PersonPrior;
 use crate::sensor::FluxSensor;
 
 /// Ticks of 1 ms in a window.
@@ -15,13 +16,15 @@ pub type Flux = I20F12;
 /// Thermal resistance, mm² K/W (1e-6 m² K/W): 0 to 65 536, resolution 1.5e-5.
 pub type Resistance = U16F16;
 
-/// Begins to learn: nothing is known of the finger.
+/// Begins to learn another finger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Restart {
     /// Where the finger is before its contacts.
     pub place: Place,
     /// The sensor that measures its flux.
     pub sensor: FluxSensor,
+    /// What is known of the finger; `None` for nothing.
+    pub person: Option<PersonPrior>,
 }
 
 /// Measurements of one window of ten ticks.

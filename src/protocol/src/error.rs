@@ -19,7 +19,7 @@ use thermal_device::stimulus::{
     COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, CourseEnd, CourseError,
     CourseStart, TemperatureKind,
 };
-use thermal_settings::Range;
+use thermal_settings::{Person, PersonCode, Persons, Range};
 
 use crate::calibrate_settings_set_commands::{
     FLUX_COMMAND_WORDS, SET_COMMAND_TARGET_WORDS, SURFACE_COMMAND_WORDS,
@@ -27,6 +27,7 @@ use crate::calibrate_settings_set_commands::{
 use crate::events::NO_EVENTS_WORD;
 use crate::line_checksum::TwoHexDigits;
 use crate::object::{BACK_WORDS, OBJECT_ARGUMENTS};
+use crate::person::ENROL_CONTACTS;
 use crate::request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, SWITCH_WORDS};
 use crate::upload::UploadError;
 use crate::{ChecksumError, LINE_MAX_BYTES, LineError, Request};
@@ -169,6 +170,16 @@ pub enum Error {
     Identification(IdentificationError),
     /// The calibration point of a `calibrate` line is rejected, for this reason; the calibration is unchanged.
     Point(PointError),
+    /// The word quoted here stands where the code of a person is expected, but is none.
+    NotPersonCode(QuotedWordExcerpt),
+    /// The word quoted here stands where what was learnt of a finger is expected, but is not that.
+    NotPersonData(QuotedWordExcerpt),
+    /// No person with this code is stored.
+    UnknownPerson(PersonCode),
+    /// As many persons are stored as there is room for.
+    NoRoomForPerson,
+    /// `person enrol` was sent, and the finger is learnt from this number of long contacts, which is not enough.
+    NotEnrolled(u8),
 }
 
 impl From<Refused> for Error {
@@ -312,6 +323,29 @@ impl fmt::Display for Error {
             Self::Refused(refused) => write_station_refusal(f, refused),
             Self::Identification(error) => write_identification_error(f, error),
             Self::Point(error) => write_calibration_point_error(f, error),
+            Self::NotPersonCode(word) if word.is_empty() => {
+                f.write_str("person missing; a code of 1 to 8 of A-Z, 0-9")
+            }
+            Self::NotPersonCode(word) => {
+                write!(f, "person {word}: a code is 1 to 8 of A-Z, 0-9")
+            }
+            Self::NotPersonData(word) => {
+                write!(
+                    f,
+                    "data {word} is not {} hexadecimal digits",
+                    2 * Person::FINGER_BYTES
+                )
+            }
+            Self::UnknownPerson(code) => {
+                write!(f, "no person {code} is stored; persons lists those who are")
+            }
+            Self::NoRoomForPerson => {
+                write!(f, "{} persons are stored; forget person CODE", Persons::MAX)
+            }
+            Self::NotEnrolled(contacts) => write!(
+                f,
+                "enrol needs {ENROL_CONTACTS} contacts of 8 s, trusted, since the last choice of finger or person; there are {contacts}"
+            ),
         }
     }
 }
@@ -457,8 +491,11 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         Refused::NotArmed => "start needs arm first",
         Refused::Testing => "the self-test goes on; ask again in a second",
         Refused::NoMaterial => "start needs a material first",
-        Refused::NeedsLayeredFinger => {
-            "contact needs another finger than the thesis's; finger mean first"
+        Refused::NeedsLayeredFinger(command) => {
+            return write!(
+                f,
+                "{command} needs another finger than the thesis's; finger mean first"
+            );
         }
         Refused::AlreadyStarted => "already started; arm takes the object away",
         Refused::NeedsDrivenDisplay(command) => {
@@ -470,7 +507,9 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         Refused::Touched(command) => {
             return write!(f, "{command} needs a display without a finger on it");
         }
-        Refused::NoFluxSensor => "flux zero needs a heat-flux sensor; flux set first",
+        Refused::NoFluxSensor(command) => {
+            return write!(f, "{command} needs a heat-flux sensor; flux set first");
+        }
         Refused::FluxSensorFault => {
             "the code of the heat-flux sensor is at a rail or does not change; look at its wires"
         }

@@ -16,12 +16,13 @@ use thermal_settings::{Calibration, DisplaySurface, FluxSensor, Tile};
 use crate::BoardStatus;
 use crate::calibrate_settings_set_commands::NOMINAL_SURFACE_WORD;
 use crate::line_buffer::LineBuffer;
+use crate::person::{PersonCodes, PersonReply};
 use crate::request::CONTACT_MODEL_WORDS;
 
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
 const PROTOCOL_VERSION: u32 = 1;
 /// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
-const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course,flux,contact,surface";
+const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course,flux,contact,surface,person";
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
@@ -41,6 +42,10 @@ pub enum Reply {
     /// Answer to a request that was executed by the commissioning session of one finger, or by the sessions of all
     /// fingers. The session of a finger is its settings and calibration points.
     Commissioning(SessionReply),
+    /// Answer to the commands `person` and `person enrol`.
+    Person(PersonReply),
+    /// Answer to the command `persons`.
+    Persons(PersonCodes),
     /// The line was `save` or `forget`, and may be executed. The caller must now restart the device, which stores the
     /// settings and only then sends the answer, `ok` or an error.
     Restart(StorageOrder),
@@ -63,6 +68,8 @@ impl fmt::Display for Reply {
             Self::Board(status) => status.fmt(f),
             Self::Station(reply) => write_station_reply(f, reply),
             Self::Commissioning(reply) => write_session_reply(f, reply),
+            Self::Person(reply) => reply.fmt(f),
+            Self::Persons(codes) => write!(f, "ok persons={codes}"),
             Self::Restart(_) => f.write_str("ok"),
         }
     }
@@ -82,10 +89,11 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
         command::Reply::ContactLaw(law) => write_contact_law(f, law),
         // No line from the host requests a material's properties.
         command::Reply::Material(_) => f.write_str("ok"),
-        // No line from the host requests averages, normal equations and flux, which commissioning sessions evaluate.
+        // Averages, normal equations and flux are evaluated by commissioning sessions, persons by the handler.
         command::Reply::Done
         | command::Reply::Average(_)
         | command::Reply::Flux(_)
+        | command::Reply::Person(_)
         | command::Reply::FluxZero(_)
         | command::Reply::NormalEquation(_) => f.write_str("ok"),
     }

@@ -21,6 +21,7 @@ use crate::calibrate_settings_set_commands::{
 };
 use crate::events::{parse_switch, parse_telemetry_fields, parse_trigger_output};
 use crate::object::parse_object;
+use crate::person::{PersonRequest, parse_forget, parse_person};
 use crate::stimulus::{Pulse, parse_hold, parse_play, parse_pulse, parse_skin};
 
 /// A line from the host after parsing: a command with its arguments, which are within their ranges.
@@ -53,6 +54,8 @@ pub enum Request {
     /// A line about settings or calibration, which the commissioning sessions of the addressed fingers execute:
     /// `calibrate`, `tune result`, `margins`, `settings`, `set`, `flux` or `surface`.
     Commissioning(SessionRequest),
+    /// A line about persons: `person`, `persons` or `forget person`.
+    Person(PersonRequest),
     /// The line `save` or `forget`: store the present settings of all fingers, or factory defaults, in flash.
     Storage(StorageOrder),
 }
@@ -90,6 +93,8 @@ impl Request {
         "object" => parse_object(words)?,
         "finger" => Self::Station(Command::Finger(words.next().map(parse_finger).transpose()?)),
         "contact" => Self::Station(Command::ContactLaw(parse_contact_law(words)?)),
+        "person" => parse_person(words)?,
+        "persons" => Self::Person(PersonRequest::List),
         "upload" => Self::Upload,
         "mode" => Self::Station(Command::Mode(parse_contact_model(words)?)),
         "law" => Self::Station(Command::Law(words.next().map(parse_control_law_word).transpose()?)),
@@ -115,7 +120,7 @@ impl Request {
         "flux" => Self::Commissioning(parse_flux(words)?),
         "surface" => Self::Commissioning(parse_surface(words)?),
         "save" => Self::Storage(StorageOrder::Save),
-        "forget" => Self::Storage(StorageOrder::Forget),
+        "forget" => parse_forget(words)?,
     });
 
     /// Parses a line from the host without its address. `settings` give the surface of the display, on which the

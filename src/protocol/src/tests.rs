@@ -10,11 +10,11 @@ use std::vec::Vec;
 use contact_model::fixed_point::{Celsius, Force};
 
 use super::{
-    ANSWER_MAX_BYTES, BoardStatus, Error, LINE_MAX_BYTES, LineError, LineReader, Reply, Request,
-    TelemetryLine,
+    ANSWER_MAX_BYTES, BoardStatus, Error, LINE_MAX_BYTES, LineError, LineReader, PersonCodes,
+    PersonReply, PersonRequest, Reply, Request, TelemetryLine,
 };
 use contact_model::contact_law::ContactLaw;
-use thermal_commissioning::IdentificationError;
+use thermal_commissioning::{IdentificationError, StorageOrder};
 use thermal_device::command::{self, Command, FluxState, ObjectBody, Status};
 use thermal_device::command::{AssumedFinger, ChosenContactLaw};
 use thermal_device::control::Law;
@@ -26,7 +26,7 @@ use thermal_device::safety::{
 };
 use thermal_device::sense::SupplyVoltage;
 use thermal_device::{Flux, StateName, Telemetry, TelemetryFields};
-use thermal_settings::Settings;
+use thermal_settings::{Person, PersonCode, Persons, Settings};
 
 fn parse(line: &str) -> Result<Request, Error> {
     Request::parse(line, &Settings::default())
@@ -36,6 +36,49 @@ fn refusal(line: &str) -> String {
     let answer = parse(line).expect_err(line).to_string();
     assert!(answer.len() <= ANSWER_MAX_BYTES, "{answer}");
     answer
+}
+
+#[test]
+fn each_line_about_persons_is_parsed() {
+    let code = |word: &str| PersonCode::new(word).expect("a code");
+    let finger = core::array::from_fn(|i| [0x01, 0x23, 0x45, 0x67, 0x89, 0xab, 0xcd, 0xef][i % 8]);
+    let person = Person {
+        code: code("ABCDEFGH"),
+        finger,
+    };
+    for (line, request) in [
+        ("person", PersonRequest::Query),
+        ("person P07", PersonRequest::Choose(Some(code("P07")))),
+        ("person none", PersonRequest::Choose(None)),
+        ("person enrol P07", PersonRequest::Enrol(code("P07"))),
+        (
+            "person ABCDEFGH 0123456789abcdef0123456789ABCDEF01234567",
+            PersonRequest::Store(person),
+        ),
+        ("persons", PersonRequest::List),
+        ("forget person 7", PersonRequest::Forget(code("7"))),
+    ] {
+        assert_eq!(parse(line), Ok(Request::Person(request)), "{line}");
+    }
+    assert_eq!(parse("forget"), Ok(Request::Storage(StorageOrder::Forget)));
+    let reply = PersonReply {
+        person: Some(person),
+        contacts: 255,
+    };
+    assert_eq!(
+        Reply::Person(reply).to_string(),
+        "ok person=ABCDEFGH contacts=255 data=0123456789ABCDEF0123456789ABCDEF01234567"
+    );
+    let mut persons = Persons::new();
+    let listed = |persons: &Persons| Reply::Persons(PersonCodes::new(persons)).to_string();
+    assert_eq!(listed(&persons), "ok persons=none");
+    for number in 0..16 {
+        let code = code(&std::format!("ABCDEF{number:02}"));
+        assert!(persons.insert(Person { code, ..person }));
+    }
+    let list = listed(&persons);
+    assert!(list.starts_with("ok persons=ABCDEF00,ABCDEF01,") && list.ends_with(",ABCDEF15"));
+    assert!(list.len() <= ANSWER_MAX_BYTES);
 }
 
 #[test]
@@ -136,7 +179,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id board state stream events trigger-out checksum material object finger contact upload mode law arm hold play pulse skin start abort clear cause self-test raw \
+            "err unknown command 'fly'; known: id board state stream events trigger-out checksum material object finger contact person persons upload mode law arm hold play pulse skin start abort clear cause self-test raw \
              calibrate tune margins settings set flux surface save forget",
         ),
         (
@@ -225,6 +268,36 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
             "err slope '1.6' out of range; 0.001 to 1.5 rad",
         ),
         ("surface nominal 1", "err unexpected '1' after the command"),
+        (
+            "person p07",
+            "err person 'p07': a code is 1 to 8 of A-Z, 0-9",
+        ),
+        (
+            "person enrol ABCDEFGHI",
+            "err person 'ABCDEFGHI': a code is 1 to 8 of A-Z, 0-9",
+        ),
+        (
+            "person enrol",
+            "err person missing; a code of 1 to 8 of A-Z, 0-9",
+        ),
+        (
+            "forget person",
+            "err person missing; a code of 1 to 8 of A-Z, 0-9",
+        ),
+        (
+            "person P07 0123456789abcdef0123456789abcdef0123456",
+            "err data '0123456789abcdef0123' is not 40 hexadecimal digits",
+        ),
+        (
+            "person P07 0123456789abcdef0123456789abcdef0123456+",
+            "err data '0123456789abcdef0123' is not 40 hexadecimal digits",
+        ),
+        ("person none P07", "err unexpected 'P07' after the command"),
+        ("persons P07", "err unexpected 'P07' after the command"),
+        (
+            "forget persons",
+            "err unexpected 'persons' after the command",
+        ),
         ("arm now", "err unexpected 'now' after the command"),
         ("object room 3", "err unexpected '3' after the command"),
         (

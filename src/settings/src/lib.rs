@@ -9,6 +9,7 @@ mod calibration;
 mod checksum;
 mod display_surface;
 mod flux_sensor;
+mod persons;
 mod range;
 mod settings_record;
 mod settings_store;
@@ -23,13 +24,14 @@ pub use calibration::{
 pub use checksum::{CRC_32, Crc32Digest};
 pub use display_surface::DisplaySurface;
 pub use flux_sensor::FluxSensor;
+pub use persons::{Person, PersonCode, Persons};
 pub use range::{
     ADC_ERROR_STEP_RANGE, CORRECTION_RANGES, DISPLAY_SURFACE_RANGES, FLUX_SENSOR_RANGES, Range,
     TILE_RANGES,
 };
 pub use settings_record::{
-    RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode_settings_record,
-    encode_settings_record,
+    RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredDevice, StoredSettings,
+    decode_settings_record, encode_settings_record,
 };
 pub use settings_store::{SettingsStore, StoreError};
 pub use tile::Tile;

@@ -6,12 +6,14 @@
 //! | 1          | kind: 0 for factory defaults, 1 for settings                                        |
 //! | 1          | number of fingers, 0 for factory defaults                                           |
 //! | 132 or 160 | each finger: 13 steps, 5 times offset, slope and curvature, 5 parameters of the tile; in version 2 also 4 of the heat-flux sensor, all 0 for a finger without one, and 3 of the display's surface, all 0 for the nominal one |
+//! | 1          | number of persons, 1 to 16; in version 2 only, and only if there are persons            |
+//! | 28         | each person: code, 8 characters or zeros, and 20 bytes of what was learnt of the finger |
 //! | 4          | CRC-32 (ISO-HDLC) of all bytes before it, in every version                          |
 //!
-//! Version 2 is written only if a finger has a heat-flux sensor or a display whose surface is not the nominal one, so that older
-//! firmware reads the record of any other device.
+//! Version 2 is written only if a finger has a heat-flux sensor or a display whose surface is not the nominal one, or a person is
+//! stored, so that older firmware reads the record of any other device.
 //!
-//! All fields are little-endian. Each value is an `i32` in units of its last decimal on a `set` line, so that a record
+//! All fields are little-endian. Each value of a finger is an `i32` in units of its last decimal on a `set` line, so that a record
 //! holds exactly what the line does.
 
 use core::fmt;
@@ -22,7 +24,7 @@ use heapless::Vec;
 use super::calibration::power_of_ten;
 use super::{
     CALIBRATED_ADC_BORDER_COUNT, CRC_32, Calibration, Correction, DisplaySurface, FluxSensor,
-    Range, Settings, Tile,
+    Person, PersonCode, Persons, Range, Settings, Tile,
 };
 
 const VERSION_1: u16 = 1;
@@ -38,13 +40,34 @@ const INTEGERS_IN_VERSION_2: usize =
 const RECORD_BYTES_PER_FINGER_MAX: usize = 4 * INTEGERS_IN_VERSION_2;
 /// Largest number of fingers that a device can have.
 const FINGERS_MAX: usize = 10;
-/// Length of the longest record, that of a device with ten fingers: 1608 bytes.
+const PERSONS_MAX_BYTES: usize = 1 + Persons::MAX * Person::BYTES;
+/// Length of the longest record, that of a device with ten fingers and sixteen persons, in whole words: 2060 bytes.
 pub const RECORD_MAX_BYTES: usize =
-    HEADER_BYTES + FINGERS_MAX * RECORD_BYTES_PER_FINGER_MAX + CHECKSUM_BYTES;
+    (HEADER_BYTES + FINGERS_MAX * RECORD_BYTES_PER_FINGER_MAX + PERSONS_MAX_BYTES + CHECKSUM_BYTES)
+        .next_multiple_of(4);
 
 /// The bytes of one record as they are written to flash: the stored settings of all fingers, or the order to use
 /// factory defaults, between a header and a checksum.
 pub type SettingsRecord = Vec<u8, RECORD_MAX_BYTES>;
+
+/// The stored settings of a device: those of each finger, and the persons.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StoredDevice<const FINGERS: usize> {
+    /// Each finger's.
+    pub fingers: [StoredSettings; FINGERS],
+    /// Persons whose fingers were learnt.
+    pub persons: Persons,
+}
+
+impl<const FINGERS: usize> From<[StoredSettings; FINGERS]> for StoredDevice<FINGERS> {
+    /// No persons.
+    fn from(fingers: [StoredSettings; FINGERS]) -> Self {
+        Self {
+            fingers,
+            persons: Persons::new(),
+        }
+    }
+}
 
 /// The part of one finger's settings that is stored in flash, because commissioning determines it for each device:
 /// calibration, tile, heat-flux sensor and surface of the display. All other settings always have their factory defaults.
@@ -175,6 +198,10 @@ pub enum RecordError {
         /// The value in the record that is out of range, in the unit of `allowed`.
         value: f64,
     },
+    /// The record has this number of persons, which is none from 1 to 16.
+    Persons(u8),
+    /// The person with this index, from 0, has no valid code.
+    PersonCode(u8),
 }
 
 impl fmt::Display for RecordError {
@@ -191,6 +218,16 @@ impl fmt::Display for RecordError {
             }
             Self::Kind(kind) => write!(f, "settings have the unknown kind {kind}; known: 0 1"),
             Self::Fingers(fingers) => write!(f, "settings are those of {fingers} fingers"),
+            Self::Persons(persons) => {
+                write!(
+                    f,
+                    "settings are of {persons} persons; 1 to {}",
+                    Persons::MAX
+                )
+            }
+            Self::PersonCode(index) => {
+                write!(f, "person {index} has no code of 1 to 8 of A-Z, 0-9")
+            }
             Self::OutOfRange {
                 finger,
                 allowed,
@@ -211,7 +248,7 @@ impl fmt::Display for RecordError {
 #[must_use]
 #[inline(never)]
 pub fn encode_settings_record<const FINGERS: usize>(
-    settings: Option<&[StoredSettings; FINGERS]>,
+    settings: Option<&StoredDevice<FINGERS>>,
 ) -> SettingsRecord {
     const { assert!(FINGERS <= FINGERS_MAX) };
     let mut record = SettingsRecord::new();
@@ -219,9 +256,11 @@ pub fn encode_settings_record<const FINGERS: usize>(
     let mut append = |bytes: &[u8]| {
         let _fits = record.extend_from_slice(bytes);
     };
+    let persons = settings.map_or(&[][..], |settings| settings.persons.as_slice());
+    let settings = settings.map(|settings| &settings.fingers);
     let is_version_2 = (settings.into_iter().flatten())
         .any(|one| one.flux_sensor.is_some() || one.display != DisplaySurface::NOMINAL);
-    let (version, integers_per_finger) = if is_version_2 {
+    let (version, integers_per_finger) = if is_version_2 || !persons.is_empty() {
         (VERSION_2, INTEGERS_IN_VERSION_2)
     } else {
         (VERSION_1, INTEGERS_IN_VERSION_1)
@@ -237,6 +276,13 @@ pub fn encode_settings_record<const FINGERS: usize>(
     }) {
         append(&(libm::round(value * power_of_ten(decimals)) as i32).to_le_bytes());
     }
+    if !persons.is_empty() {
+        append(&[persons.len() as u8]);
+    }
+    for person in persons {
+        append(&person.code.to_bytes());
+        append(&person.finger);
+    }
     let checksum = CRC_32.checksum(&record);
     let _fits = record.extend_from_slice(&checksum.to_le_bytes());
     record
@@ -250,7 +296,7 @@ pub fn encode_settings_record<const FINGERS: usize>(
 #[inline(never)]
 pub fn decode_settings_record<const FINGERS: usize>(
     bytes: &[u8],
-) -> Result<Option<[StoredSettings; FINGERS]>, RecordError> {
+) -> Result<Option<StoredDevice<FINGERS>>, RecordError> {
     let wrong_length = RecordError::Length(bytes.len());
     let (content, checksum) = bytes
         .split_last_chunk::<CHECKSUM_BYTES>()
@@ -275,18 +321,23 @@ pub fn decode_settings_record<const FINGERS: usize>(
     if usize::from(fingers) != expected_fingers {
         return Err(RecordError::Fingers(fingers));
     }
-    if values.len() != expected_fingers * 4 * integers_per_finger {
+    let (values, persons) = values
+        .split_at_checked(expected_fingers * 4 * integers_per_finger)
+        .ok_or(wrong_length)?;
+    let may_have_persons = kind == KIND_SETTINGS && integers_per_finger == INTEGERS_IN_VERSION_2;
+    if !persons.is_empty() && !may_have_persons {
         return Err(wrong_length);
     }
     if kind == KIND_FACTORY_DEFAULTS {
         return Ok(None);
     }
+    let persons = decode_persons(persons, wrong_length)?;
     let (words, _) = values.as_chunks::<4>();
     let mut words = words.iter().map(|word| i32::from_le_bytes(*word));
-    let settings = core::array::from_fn(|_| {
+    let fingers = core::array::from_fn(|_| {
         StoredSettings::from_record_integers(words.by_ref().take(integers_per_finger))
     });
-    for (finger, one) in (0..).zip(&settings) {
+    for (finger, one) in (0..).zip(&fingers) {
         if let Some((allowed, value)) = one.first_value_out_of_range() {
             return Err(RecordError::OutOfRange {
                 finger,
@@ -295,7 +346,30 @@ pub fn decode_settings_record<const FINGERS: usize>(
             });
         }
     }
-    Ok(Some(settings))
+    Ok(Some(StoredDevice { fingers, persons }))
+}
+
+/// The persons at the end of a record: nothing, or their number and each of them.
+fn decode_persons(bytes: &[u8], wrong_length: RecordError) -> Result<Persons, RecordError> {
+    let mut persons = Persons::new();
+    let Some((number, bytes)) = bytes.split_first() else {
+        return Ok(persons);
+    };
+    if !(1..=Persons::MAX).contains(&usize::from(*number)) {
+        return Err(RecordError::Persons(*number));
+    }
+    let (all, rest) = bytes.as_chunks::<{ Person::BYTES }>();
+    if all.len() != usize::from(*number) || !rest.is_empty() {
+        return Err(wrong_length);
+    }
+    for (index, bytes) in (0..).zip(all) {
+        let [c0, c1, c2, c3, c4, c5, c6, c7, finger @ ..] = *bytes;
+        let code = PersonCode::from_bytes([c0, c1, c2, c3, c4, c5, c6, c7])
+            .ok_or(RecordError::PersonCode(index))?;
+        // There is room for all; of two with the same code the later one counts.
+        let _has_room = persons.insert(Person { code, finger });
+    }
+    Ok(persons)
 }
 
 #[cfg(test)]

@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 use arbitrary::{Arbitrary, Unstructured};
 use system_tests::flash::{BYTES, Flash, append, numbered};
 use thermal_display::settings::{
-    Calibration, Correction, DisplaySurface, FluxSensor, SettingsStore, StoreError, StoredSettings,
-    Tile,
+    Calibration, Correction, DisplaySurface, FluxSensor, Person, PersonCode, Persons,
+    SettingsStore, StoreError, StoredDevice, StoredSettings, Tile,
 };
 use thermal_sim::FlashCells;
 
@@ -62,6 +62,7 @@ enum Event {
     Record {
         values: [i16; 40],
         is_version_1: bool,
+        persons: Vec<([u8; 8], [u8; 20])>,
         header: Option<[u8; 4]>,
         length: Option<u8>,
     },
@@ -73,7 +74,7 @@ enum Event {
 #[derive(Clone)]
 struct History<const FINGERS: usize> {
     cells: FlashCells,
-    written: Vec<Option<[StoredSettings; FINGERS]>>,
+    written: Vec<Option<StoredDevice<FINGERS>>>,
 }
 
 static ONE: OnceLock<Vec<History<1>>> = OnceLock::new();
@@ -129,7 +130,7 @@ impl<const FINGERS: usize> History<FINGERS> {
     }
 
     /// Saves settings as a device does that was just switched on.
-    fn save(&mut self, settings: Option<[StoredSettings; FINGERS]>) -> Result<(), String> {
+    fn save(&mut self, settings: Option<StoredDevice<FINGERS>>) -> Result<(), String> {
         let flash = Flash::new(self.cells.clone());
         let done = SettingsStore::new(flash.clone()).save(settings.as_ref());
         self.cells = flash.cells();
@@ -137,9 +138,7 @@ impl<const FINGERS: usize> History<FINGERS> {
         done.map_err(|error| format!("{error:?}"))
     }
 
-    fn load(
-        &self,
-    ) -> Result<Option<[StoredSettings; FINGERS]>, StoreError<system_tests::flash::Dead>> {
+    fn load(&self) -> Result<Option<StoredDevice<FINGERS>>, StoreError<system_tests::flash::Dead>> {
         SettingsStore::new(Flash::new(self.cells.clone())).load()
     }
 
@@ -158,15 +157,16 @@ impl<const FINGERS: usize> History<FINGERS> {
             Event::Record {
                 values,
                 is_version_1,
+                persons,
                 header,
                 length,
             } => {
                 let count = if *is_version_1 {
                     VALUES_IN_VERSION_1
                 } else {
-                    37
+                    VALUES.len()
                 };
-                self.append_record(&values[..count], *header, *length);
+                self.append_record(&values[..count], persons, *header, *length);
             }
             Event::Save { number, cut } => {
                 if let Some((nth, seed)) = cut {
@@ -174,7 +174,7 @@ impl<const FINGERS: usize> History<FINGERS> {
                         .cut_power_at(u64::from(*nth) + 1, u64::from(*seed));
                 }
                 let settings = numbered(u32::from(*number));
-                let done = self.save(settings);
+                let done = self.save(settings.clone());
                 self.cells.power_up();
                 if done.is_ok() {
                     assert_eq!(self.load().ok(), Some(settings), "stored, but not found");
@@ -184,7 +184,13 @@ impl<const FINGERS: usize> History<FINGERS> {
     }
 
     /// Appends a record, which counts as written if it is valid.
-    fn append_record(&mut self, fractions: &[i16], header: Option<[u8; 4]>, length: Option<u8>) {
+    fn append_record(
+        &mut self,
+        fractions: &[i16],
+        persons: &[([u8; 8], [u8; 20])],
+        header: Option<[u8; 4]>,
+        length: Option<u8>,
+    ) {
         let units: Vec<_> = fractions
             .iter()
             .zip(VALUES)
@@ -202,6 +208,24 @@ impl<const FINGERS: usize> History<FINGERS> {
         let header = header.unwrap_or([version, 0, 1, FINGERS as u8]);
         let mut content = header.to_vec();
         (0..FINGERS).for_each(|_| content.extend(units.iter().flat_map(|unit| unit.to_le_bytes())));
+        if let Ok(count @ 1..) = u8::try_from(persons.len()) {
+            content.push(count);
+            for (code, finger) in persons {
+                // Any bytes, or the code of that many letters.
+                let code = match code {
+                    [0, letters, ..] => std::array::from_fn(|i| {
+                        if i < usize::from(letters % 9) {
+                            b'A'
+                        } else {
+                            0
+                        }
+                    }),
+                    any => *any,
+                };
+                content.extend(code);
+                content.extend(finger);
+            }
+        }
         let length = length.map_or(content.len(), usize::from);
         content.resize(length, 0);
         self.written.extend(settings_in(&content));
@@ -220,14 +244,14 @@ impl<const FINGERS: usize> History<FINGERS> {
     /// Settings can be stored, whatever the cells hold.
     fn check_save(&mut self) {
         let settings = numbered(1000);
-        let done = self.save(settings);
+        let done = self.save(settings.clone());
         assert!(done.is_ok(), "cannot be saved: {done:?}");
         assert_eq!(self.load().ok(), Some(settings), "stored, but not found");
     }
 }
 
 /// The settings that a record with this content before its checksum holds, if it is a valid one.
-fn settings_in<const FINGERS: usize>(content: &[u8]) -> Option<Option<[StoredSettings; FINGERS]>> {
+fn settings_in<const FINGERS: usize>(content: &[u8]) -> Option<Option<StoredDevice<FINGERS>>> {
     let (header, values) = content.split_first_chunk::<4>()?;
     let count = match header {
         [1, 0, ..] => VALUES_IN_VERSION_1,
@@ -237,13 +261,37 @@ fn settings_in<const FINGERS: usize>(content: &[u8]) -> Option<Option<[StoredSet
     if header[2..] == [0, 0] && values.is_empty() {
         return Some(None);
     }
-    if header[2..] != [1, FINGERS as u8] || values.len() != 4 * count * FINGERS {
+    let (values, persons) = values.split_at_checked(4 * count * FINGERS)?;
+    if header[2..] != [1, FINGERS as u8] || (count == VALUES_IN_VERSION_1 && !persons.is_empty()) {
         return None;
     }
     let (units, _) = values.as_chunks::<4>();
     let units: Vec<_> = units.iter().map(|unit| i32::from_le_bytes(*unit)).collect();
     let fingers: Option<Vec<_>> = units.chunks(count).map(finger_of).collect();
-    Some(fingers?.try_into().ok())
+    Some(Some(StoredDevice {
+        fingers: fingers?.try_into().ok()?,
+        persons: persons_in(persons)?,
+    }))
+}
+
+/// The persons at the end of a record.
+fn persons_in(content: &[u8]) -> Option<Persons> {
+    let mut persons = Persons::new();
+    let Some((count, content)) = content.split_first() else {
+        return Some(persons);
+    };
+    if !(1..=16).contains(count) || content.len() != 28 * usize::from(*count) {
+        return None;
+    }
+    for person in content.as_chunks::<28>().0 {
+        let (code, finger) = person.split_at(8);
+        let letters = code.iter().take_while(|byte| **byte != 0);
+        let word: String = letters.map(|byte| char::from(*byte)).collect();
+        let code = PersonCode::new(&word).filter(|known| known.to_bytes() == *code)?;
+        let finger = finger.try_into().ok()?;
+        assert!(persons.insert(Person { code, finger }), "16 fit");
+    }
+    Some(persons)
 }
 
 /// The settings of a finger with these stored integers, if all are within their ranges.

@@ -18,7 +18,7 @@ use thermal_learner::Learner;
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::comparator::ComparatorTest as PlantTest;
 use thermal_protocol::{CommandHandler, Error, LineReader, OutgoingLine, Reply, UnsolicitedLine};
-use thermal_settings::{Settings, StoredSettings, decode_settings_record};
+use thermal_settings::{Settings, StoredDevice, StoredSettings, decode_settings_record};
 
 use super::{BAUD, DeviceReset, Engine};
 use crate::World;
@@ -80,7 +80,7 @@ pub struct NativeDevice<const FINGERS: usize> {
     /// Edges of the trigger input with the milliseconds whose ticks report them.
     trigger_edges: VecDeque<(u64, TriggerEdge)>,
     /// Settings in the simulated flash.
-    stored: Option<[StoredSettings; FINGERS]>,
+    stored: Option<StoredDevice<FINGERS>>,
     /// Time since the first boundary, ns.
     now_ns: u64,
     /// Boundaries of fingers so far, on a device with five.
@@ -203,14 +203,15 @@ impl NativeFiveFingers {
 impl<const FINGERS: usize> NativeDevice<FINGERS> {
     /// The settings in the flash; `None` if none were saved.
     #[must_use]
-    pub const fn stored_settings(&self) -> Option<&[StoredSettings; FINGERS]> {
-        self.stored.as_ref()
+    pub fn stored_settings(&self) -> Option<&[StoredSettings; FINGERS]> {
+        self.stored.as_ref().map(|stored| &stored.fingers)
     }
 
     /// The device just after power-up with these settings in its flash.
     #[must_use]
     pub fn with_stored_settings(mut self, stored: [StoredSettings; FINGERS]) -> Self {
-        self.device.restore_settings(&stored);
+        let stored = StoredDevice::from(stored);
+        self.device.restore_settings(&stored.fingers);
         self.handler = CommandHandler::from_stored(&stored);
         self.stored = Some(stored);
         self.read_chip();
@@ -357,7 +358,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         }
         self.handler = match &self.stored {
             Some(stored) => {
-                self.device.restore_settings(stored);
+                self.device.restore_settings(&stored.fingers);
                 CommandHandler::from_stored(stored)
             }
             None => CommandHandler::new(Settings::default()),

@@ -11,17 +11,20 @@
 
 mod flux_parameters;
 mod flux_reading;
+mod person_state;
 mod resting_code;
 mod window_sums;
 
 use contact_model::fixed_point::Celsius;
 use thermal_learner::{Distrust, Flux, LearnerInput, LearnerOutput, Place, Restart, Trust};
+use thermal_settings::Person;
 
 use crate::estimate::{FluxPerMm2, filter_change};
 use crate::low_pass::LowPass;
 use crate::sense::CONTACT_DEBOUNCE_TICKS;
 pub use flux_parameters::FluxParameters;
 use flux_reading::FluxReading;
+pub use person_state::PersonState;
 pub use resting_code::RestingCode;
 use resting_code::RestingCodes;
 use window_sums::WindowSums;
@@ -130,6 +133,7 @@ pub struct FingerLearning {
     skin_offset: Celsius,
     included_offset: Celsius,
     knowledge: FingerKnowledge,
+    person: PersonState,
 }
 
 impl FingerLearning {
@@ -154,17 +158,20 @@ impl FingerLearning {
             skin_offset: Celsius::ZERO,
             included_offset: Celsius::ZERO,
             knowledge: FingerKnowledge::Learnt(Trust::Learning),
+            person: PersonState::new(None),
         }
     }
 
-    /// Forgets the finger, because another one may follow, which is at `place` before its contacts.
-    pub fn restart(&mut self, place: Place) {
+    /// Forgets the finger, because another one may follow, which is at `place` before its contacts: that of a person, or of an
+    /// unknown one.
+    pub fn restart(&mut self, place: Place, person: Option<Person>) {
         self.restart = Some(place);
         self.is_asked = false;
         self.output = None;
         self.applied = None;
         self.skin_offset = Celsius::ZERO;
         self.knowledge = FingerKnowledge::Learnt(Trust::Learning);
+        self.person = PersonState::new(person);
     }
 
     /// Skin before contact as its thermistor has it, from the filtered temperature `skin`, which contains the learnt offset.
@@ -256,6 +263,9 @@ impl FingerLearning {
             Some(answer) => FingerKnowledge::Learnt(answer.trust),
             None => self.knowledge,
         };
+        if let Some(answer) = &answer {
+            self.person.note(answer);
+        }
         self.sequence = self.sequence.wrapping_add(1);
         self.is_asked = true;
         self.input = Some(LearnerInput {
@@ -263,6 +273,7 @@ impl FingerLearning {
             restart: (self.restart.take()).map(|place| Restart {
                 place,
                 sensor: self.parameters.sensor,
+                person: self.person.prior(),
             }),
             flux_w_m2: sums.mean_flux(),
             contact,
@@ -332,6 +343,12 @@ impl FingerLearning {
     #[must_use]
     pub const fn resting_code(&self) -> Option<RestingCode> {
         self.resting.last()
+    }
+
+    /// What is known of the person.
+    #[must_use]
+    pub const fn person(&self) -> &PersonState {
+        &self.person
     }
 
     /// What is known of the finger.

@@ -176,7 +176,7 @@ fn a_missing_answer_and_one_for_another_window_end_in_the_mean_finger() {
 fn an_answer_from_before_a_restart_is_void_and_nothing_is_late() {
     let mut learning = taught();
     let input = learning.take_input().expect("an input");
-    learning.restart(Place::Pad);
+    learning.restart(Place::Pad, None);
     learning.put_output(&answer(&input));
     assert_eq!(window(&mut learning, Some(CONTACT)), None);
     assert_eq!(

@@ -74,11 +74,16 @@ impl Station {
             Command::ContactLaw(Some(ref law)) => {
                 // Eq. 6-12, which the thesis's finger has on half-spaces, holds for Eq. 6-8 only.
                 if !self.object.assumed_finger().is_layered() {
-                    return Err(Refused::NeedsLayeredFinger);
+                    return Err(Refused::NeedsLayeredFinger("contact"));
                 }
                 self.object.choose_contact_law(law);
                 self.reference.forget_resistances();
                 self.forget_learnt_finger(self.object.assumed_finger());
+                self.due.add(DueWork::CONTACT_RESTART);
+            }
+            Command::Person => return Ok(Reply::Person(self.person_state()?)),
+            Command::ChoosePerson(person) => {
+                self.choose_person(person)?;
                 self.due.add(DueWork::CONTACT_RESTART);
             }
             Command::Material(ref material) => {

@@ -3,13 +3,15 @@
 use contact_model::fixed_point::{Celsius, TissueStateFactors, TissueWeights, product};
 use fixed::types::U16F16;
 use thermal_learner::{LearnerInput, LearnerOutput, Place};
+use thermal_settings::Person;
 
 use super::{DueWork, Station};
 use crate::command::{AssumedFinger, FluxState, Refused};
 use crate::estimate::ForceChange;
 use crate::events::DeviceEventKind;
 use crate::learning::{
-    FingerKnowledge, FingerLearning, FluxParameters, RestingCode, StateAtEnd, TickOfContact,
+    FingerKnowledge, FingerLearning, FluxParameters, PersonState, RestingCode, StateAtEnd,
+    TickOfContact,
 };
 
 /// Largest difference of display and room at which the flux from display to air counts as none, K: some 3 W/m².
@@ -64,7 +66,10 @@ impl Station {
 
     /// Mean code of the heat-flux sensor, at a time at which no flux is expected.
     pub(super) fn flux_zero(&self) -> Result<RestingCode, Refused> {
-        let learning = self.learning.as_ref().ok_or(Refused::NoFluxSensor)?;
+        let learning = self
+            .learning
+            .as_ref()
+            .ok_or(Refused::NoFluxSensor("flux zero"))?;
         if self.contact.touching() {
             return Err(Refused::Touched("flux zero"));
         }
@@ -116,8 +121,26 @@ impl Station {
     /// Begins to learn another finger.
     pub(super) fn forget_learnt_finger(&mut self, finger: AssumedFinger) {
         if let Some(learning) = &mut self.learning {
-            learning.restart(place(finger));
+            learning.restart(place(finger), None);
         }
+    }
+
+    /// Begins to learn the finger of this person, or of an unknown one.
+    pub(super) fn choose_person(&mut self, person: Option<Person>) -> Result<(), Refused> {
+        let finger = self.object.assumed_finger();
+        if !finger.is_layered() {
+            return Err(Refused::NeedsLayeredFinger("person"));
+        }
+        let learning = (self.learning.as_mut()).ok_or(Refused::NoFluxSensor("person"))?;
+        learning.restart(place(finger), person);
+        Ok(())
+    }
+
+    /// The chosen person, and what was learnt since.
+    pub(super) fn person_state(&self) -> Result<PersonState, Refused> {
+        let learning = self.learning.as_ref();
+        let learning = learning.ok_or(Refused::NoFluxSensor("person"))?;
+        Ok(*learning.person())
     }
 
     /// Adds the last tick to the learner's window, with the sensor's code at its end. At a window's end, takes over what was learnt

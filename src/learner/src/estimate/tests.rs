@@ -7,28 +7,11 @@ use super::*;
 use crate::parameters::Place;
 use crate::regressors::Signals;
 use crate::tests::contacts::sensor;
+use crate::tests::matrix::least_pivot;
 use crate::tests::random::Random;
 use crate::tests::simulation::{Errors, Finger, OBJECTS, Scene, display_resistance_m2k_w, sound};
 
 const UPDATES: usize = 1_000_000;
-
-/// Smallest pivot of the elimination of a symmetric matrix in `f64`: positive if and only if the matrix is.
-fn least_pivot(matrix: &[Parameters; PARAMETERS]) -> f64 {
-    let mut left = matrix.map(|row| row.map(f64::from));
-    let mut least = f64::INFINITY;
-    for k in 0..PARAMETERS {
-        let eliminated = left[k];
-        let pivot = eliminated[k];
-        least = least.min(pivot);
-        for row in &mut left[k + 1..] {
-            let factor = row[k] / pivot;
-            for (element, above) in row.iter_mut().zip(eliminated) {
-                *element -= factor * above;
-            }
-        }
-    }
-    least
-}
 
 #[test]
 fn covariance_stays_positive_over_a_million_updates() {

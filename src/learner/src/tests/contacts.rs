@@ -10,7 +10,9 @@ use relaxation_fit::{Back, impedance};
 
 use super::random::Random;
 use super::simulation::*;
-use crate::{Distrust, FluxSensor, Learner, LearnerOutput, Place, Resistance, Restart, Trust};
+use crate::{
+    Distrust, FluxSensor, Learner, LearnerOutput, PersonPrior, Place, Resistance, Restart, Trust,
+};
 
 const FINGERS: u64 = 40;
 
@@ -23,8 +25,16 @@ pub fn sensor() -> FluxSensor {
 
 /// A learner with that sensor of a finger at this place.
 pub fn new_learner(place: Place) -> Learner {
-    let sensor = sensor();
-    Learner::begin(Restart { place, sensor })
+    learner_of(place, None)
+}
+
+/// A learner with that sensor of a finger at this place, of which this is known.
+pub fn learner_of(place: Place, person: Option<PersonPrior>) -> Learner {
+    Learner::begin(Restart {
+        place,
+        sensor: sensor(),
+        person,
+    })
 }
 
 pub fn learnt(scene: &Scene<'_>, random: &mut Random, phase: usize) -> Vec<LearnerOutput> {

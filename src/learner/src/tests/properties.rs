@@ -5,16 +5,21 @@ use std::vec::Vec;
 use contact_model::fixed_point::{Celsius, WEIGHTS};
 use proptest::prelude::*;
 
-use super::contacts::{learnt, new_learner, sensor};
+use super::contacts::{learner_of, learnt, new_learner, sensor};
 use super::random::Random;
 use super::simulation::*;
 use crate::{
-    Contact, Distrust, Flux, FluxSensor, Learner, LearnerInput, LearnerOutput, Place, Resistance,
-    Restart, Trust,
+    Contact, Distrust, Flux, FluxSensor, Learner, LearnerInput, LearnerOutput, PersonPrior, Place,
+    Resistance, Restart, Trust,
 };
 
 fn place() -> impl Strategy<Value = Place> {
     prop_oneof![Just(Place::Air), Just(Place::Pad)]
+}
+
+/// Nothing, or any bytes.
+fn person() -> impl Strategy<Value = Option<PersonPrior>> {
+    prop::option::of(any::<[u8; PersonPrior::BYTES]>().prop_map(PersonPrior))
 }
 
 /// Any bits, and values near those of contacts.
@@ -50,9 +55,10 @@ fn contact() -> impl Strategy<Value = Contact> {
 }
 
 fn input() -> impl Strategy<Value = LearnerInput> {
-    let restart = place().prop_map(|place| Restart {
+    let restart = (place(), person()).prop_map(|(place, person)| Restart {
         place,
         sensor: sensor(),
+        person,
     });
     let restart = prop::option::weighted(0.02, restart);
     (
@@ -92,10 +98,11 @@ proptest! {
         lag_us in prop_oneof![any::<u32>(), 0..100_000u32],
         resistance in any::<u32>(),
         place in place(),
+        person in person(),
         inputs in prop::collection::vec(input(), 1..300),
     ) {
         let sensor = FluxSensor::new(lag_us, Resistance::from_bits(resistance));
-        let mut learner = Learner::begin(Restart { place, sensor });
+        let mut learner = Learner::begin(Restart { place, sensor, person });
         for input in inputs {
             let output = learner.advance(&input);
             prop_assert_eq!(output.sequence, input.sequence);
@@ -191,6 +198,7 @@ fn finger_is_kept_between_contacts_with_wider_deviations_until_a_restart() {
         restart: Some(Restart {
             place: Place::Air,
             sensor: sensor(),
+            person: None,
         }),
         ..LIFTED
     };
@@ -198,11 +206,15 @@ fn finger_is_kept_between_contacts_with_wider_deviations_until_a_restart() {
 }
 
 #[test]
-fn a_restart_brings_place_and_sensor() {
-    let (place, sensor) = (Place::Pad, sensor());
-    let (mut restarted, mut begun) = (Learner::new(), new_learner(place));
+fn a_restart_brings_place_sensor_and_person() {
+    let (place, sensor, person) = (Place::Pad, sensor(), Some(PersonPrior([77; 20])));
+    let (mut restarted, mut begun) = (Learner::new(), learner_of(place, person));
     let first = LearnerInput {
-        restart: Some(Restart { place, sensor }),
+        restart: Some(Restart {
+            place,
+            sensor,
+            person,
+        }),
         ..LIFTED
     };
     assert_eq!(restarted.advance(&first), begun.advance(&LIFTED));
