@@ -51,6 +51,7 @@ impl PopulationCase {
         };
         let sensor = match self.population.scenario() {
             "G" => "flux_sensor = true\n",
+            "H" => "flux_sensor = true\nenrolled = true\n",
             _ => "",
         };
         let Self {
