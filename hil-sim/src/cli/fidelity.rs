@@ -85,7 +85,7 @@ enum Chosen {
 
 impl Chosen {
     /// All scenarios.
-    const EACH: [Self; 9] = [
+    const EACH: [Self; 10] = [
         Self::Cases(Scenario::A),
         Self::Cases(Scenario::B),
         Self::Cases(Scenario::C),
@@ -94,6 +94,7 @@ impl Chosen {
         Self::Populations("E"),
         Self::Populations("F"),
         Self::Populations("G"),
+        Self::Populations("H"),
         Self::Populations("I"),
     ];
 

@@ -3,6 +3,7 @@
 //!
 //! The device has the parts and the converter of a scene's device, with other noise.
 
+mod enrolment;
 mod frequency_response;
 mod operator;
 mod setup;
@@ -25,6 +26,7 @@ pub use thermal_client::commissioning::{
     CalibrationPoint, CommissionError, CommissioningEvent, CommissioningRecord,
 };
 
+pub use enrolment::with_person;
 pub use frequency_response::FrequencyResponse;
 pub use operator::{commission, restore};
 pub use setup::CommissioningSetup;

@@ -63,6 +63,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         seed: file.seed,
         commissioned: file.device.commissioned,
         measured_surface: file.device.measured_surface,
+        enrolled: enrolled(&source, &file.device)?,
         chip: chip(&source, &file.device)?,
         mode,
         law: file
@@ -134,6 +135,16 @@ fn assumed_finger(file: &File, params: &Params, draws: &Draws) -> AssumedFinger 
         }
         None => AssumedFinger::Mean,
     }
+}
+
+/// Whether the finger was enrolled, which needs a heat-flux sensor.
+fn enrolled(source: &Source<'_>, device: &file::Device) -> Result<bool, SceneError> {
+    let enrolled = *device.enrolled.get_ref();
+    if enrolled && !device.flux_sensor {
+        let problem = "device.enrolled = true without device.flux_sensor = true; a finger is learnt by the sensor only";
+        return Err(source.error(Some(device.enrolled.span()), problem));
+    }
+    Ok(enrolled)
 }
 
 /// The microcontroller before its program starts.

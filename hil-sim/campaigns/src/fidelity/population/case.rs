@@ -55,6 +55,9 @@ impl PopulationCase {
                 "flux_sensor = true\nmeasured_surface = true\n"
             }
             Population::KnownSurfaces => "flux_sensor = true\n",
+            Population::EnrolledDesigned | Population::EnrolledHypothetical => {
+                "flux_sensor = true\nmeasured_surface = true\nenrolled = true\n"
+            }
             _ => "",
         };
         let Self {

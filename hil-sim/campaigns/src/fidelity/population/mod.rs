@@ -42,6 +42,12 @@ named_enum! {
         /// The same with surfaces of display and skin that are rough and conduct as the device assumes.
         #[serde(rename = "G-known-surfaces")]
         KnownSurfaces = "G-known-surfaces",
+        /// As `G-designed`, with the finger enrolled on the device on another day.
+        #[serde(rename = "H-designed")]
+        EnrolledDesigned = "H-designed",
+        /// As `G-hypothetical`, likewise.
+        #[serde(rename = "H-hypothetical")]
+        EnrolledHypothetical = "H-hypothetical",
         /// Contact laws under the nominal layered finger, on an otherwise nominal plant.
         #[serde(rename = "I")]
         ContactLaws = "I",
@@ -92,13 +98,14 @@ const fn aim(since: Since, percent: f64, aim_mk: f64) -> Aim {
 }
 
 impl Population {
-    /// The scenario's name on the command line; F, G and I have several populations.
+    /// The scenario's name on the command line; F to I have several populations.
     #[must_use]
     pub const fn scenario(self) -> &'static str {
         match self {
             Self::Objects => "E",
             Self::FingerBox | Self::DrawnFingers => "F",
             Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => "G",
+            Self::EnrolledDesigned | Self::EnrolledHypothetical => "H",
             Self::ContactLaws | Self::ToldContactLaws => "I",
         }
     }
@@ -118,6 +125,8 @@ impl Population {
             Self::HypotheticalSensor => {
                 "as F-draw, first contact with a hypothetical sensor of 1 %"
             }
+            Self::EnrolledDesigned => "as G-designed, finger enrolled on another day",
+            Self::EnrolledHypothetical => "as G-hypothetical, finger enrolled on another day",
             Self::KnownSurfaces => "as G-hypothetical, surfaces in contact as the device assumes",
             Self::ContactLaws => {
                 "contact laws of contact.draw; nominal layered finger, six objects"
@@ -139,11 +148,18 @@ impl Population {
             aim(Ms500, 50.0, 15.0),
             aim(Ms500, 95.0, 40.0),
         ];
+        const ENROLLED: [Aim; 4] = [
+            aim(Ms50, 50.0, 20.0),
+            aim(Ms50, 95.0, 50.0),
+            aim(Ms500, 50.0, 15.0),
+            aim(Ms500, 95.0, 40.0),
+        ];
         match self {
             Self::Objects => &OBJECTS,
             Self::FingerBox => &FINGER_BOX,
             Self::DrawnFingers => &DRAWN_FINGERS,
             Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => &FIRST_CONTACT,
+            Self::EnrolledDesigned | Self::EnrolledHypothetical => &ENROLLED,
             Self::ContactLaws | Self::ToldContactLaws => &[],
         }
     }
@@ -155,6 +171,8 @@ impl Population {
             Self::DesignedSensor
             | Self::HypotheticalSensor
             | Self::KnownSurfaces
+            | Self::EnrolledDesigned
+            | Self::EnrolledHypothetical
             | Self::ToldContactLaws => &[Way::AsItIs],
             _ => &Way::ALL,
         }
@@ -179,18 +197,24 @@ impl Population {
         let mut cases = Vec::new();
         for number in 0..draws {
             // A scene file holds 63 bits.
-            // G has the fingers and devices of F.
+            // G and H have the fingers and devices of F.
             let stream = match self {
-                Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => {
-                    Self::DrawnFingers.scenario()
-                }
+                Self::DesignedSensor
+                | Self::HypotheticalSensor
+                | Self::KnownSurfaces
+                | Self::EnrolledDesigned
+                | Self::EnrolledHypothetical => Self::DrawnFingers.scenario(),
                 other => other.scenario(),
             };
             let own = stream_seed(seed, &format!("{stream} {number}")) >> 1;
             let (of_device, tables) = match self {
                 Self::FingerBox => (own, layered("") + &device(own)),
-                Self::DrawnFingers | Self::DesignedSensor => (own, drawn_finger(own)),
-                Self::HypotheticalSensor => (own, drawn_finger(own) + &hypothetical_sensor(own)),
+                Self::DrawnFingers | Self::DesignedSensor | Self::EnrolledDesigned => {
+                    (own, drawn_finger(own))
+                }
+                Self::HypotheticalSensor | Self::EnrolledHypothetical => {
+                    (own, drawn_finger(own) + &hypothetical_sensor(own))
+                }
                 Self::KnownSurfaces => {
                     let hypothetical = drawn_finger(own) + &hypothetical_sensor(own);
                     (own, hypothetical + &known_surfaces())

@@ -44,6 +44,8 @@ fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
         Population::DesignedSensor,
         Population::HypotheticalSensor,
         Population::KnownSurfaces,
+        Population::EnrolledDesigned,
+        Population::EnrolledHypothetical,
     ] {
         let cases = population.cases(1, 2);
         assert_eq!(cases.len(), 12);
@@ -76,7 +78,8 @@ fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
         let drawn = scenes[0].draws.finger.is_some();
         assert_eq!(drawn, population != Population::FingerBox);
         let with_sensor = scenes[0].params.flux.is_some();
-        assert_eq!(with_sensor, population.scenario() == "G");
+        assert_eq!(with_sensor, ["G", "H"].contains(&population.scenario()));
+        assert_eq!(scenes[0].enrolled, population.scenario() == "H");
     }
 }
 
