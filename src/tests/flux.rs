@@ -34,7 +34,7 @@ fn step<const FINGERS: usize>(
     for (code, tick) in codes.into_iter().zip(0u16..) {
         let count = |counts: u16| counts * SCANS_PER_TICK as u16 + tick % 2;
         if bench.device.finger_has_flux_sensor(finger) {
-            bench.device.note_flux_code(finger, code);
+            bench.device.note_flux_code(finger, Some(code));
         }
         let samples = Samples {
             force: count(force),

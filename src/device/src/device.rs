@@ -102,9 +102,10 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
         self.station(finger).has_flux_sensor()
     }
 
-    /// Notes the code of a finger's heat-flux sensor, 0 to 4095, for its next tick. To be called before each tick of a finger
-    /// that [has such a sensor](Self::finger_has_flux_sensor), and for no other.
-    pub fn note_flux_code(&mut self, finger: FingerIndex<FINGERS>, code: u16) {
+    /// Notes the code of a finger's heat-flux sensor, 0 to 4095; `None` if its conversion has not ended, as in the first tick. To be
+    /// called before each tick of a finger that [has such a sensor](Self::finger_has_flux_sensor), and for no other.
+    #[inline]
+    pub fn note_flux_code(&mut self, finger: FingerIndex<FINGERS>, code: Option<u16>) {
         self.station_mut(finger).note_flux_code(code);
     }
 

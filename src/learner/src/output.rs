@@ -72,24 +72,25 @@ impl LearnerOutput {
             && self.resistance_factor.abs_diff(other.resistance_factor) <= RESISTANCE_TOLERANCE
     }
 
-    /// The next output on the way to the mean finger if the learner does not answer: to a twentieth in ten windows, as the learner
-    /// itself goes there.
-    #[must_use]
-    pub fn nearer_to_mean(&self) -> Self {
-        let change = self.resistance_factor.saturating_sub(I4F28::ONE);
-        Self {
-            weights: self.weights.map(|weight| {
-                I2F30::ONE.saturating_add(remaining(weight.saturating_sub(I2F30::ONE)))
-            }),
-            air_change: remaining(self.air_change),
-            skin_offset_k: remaining(self.skin_offset_k),
-            resistance_factor: I4F28::ONE.saturating_add(remaining(change)),
-            ..*self
+    /// Goes a step on the way to the mean finger, as if the learner did not answer: to a twentieth in ten windows, as the learner
+    /// itself goes there. Returns whether something has changed.
+    pub fn approach_mean(&mut self) -> bool {
+        let before = (self.air_change, self.skin_offset_k, self.resistance_factor);
+        let mut has_changed = false;
+        for weight in &mut self.weights {
+            let next = approached(*weight, I2F30::ONE);
+            has_changed |= next != *weight;
+            *weight = next;
         }
+        self.air_change = approached(self.air_change, I4F28::ZERO);
+        self.skin_offset_k = approached(self.skin_offset_k, Celsius::ZERO);
+        self.resistance_factor = approached(self.resistance_factor, I4F28::ONE);
+        has_changed | ((self.air_change, self.skin_offset_k, self.resistance_factor) != before)
     }
 }
 
-/// Three quarters of a change; nothing of one of three units or less.
-fn remaining<T: Fixed<Bits = i32>>(change: T) -> T {
-    T::from_bits(change.to_bits() / 4 * 3)
+/// The mean value and three quarters of the change from it; of one of three units or less nothing.
+fn approached<T: Fixed<Bits = i32>>(value: T, mean: T) -> T {
+    let change = value.to_bits().saturating_sub(mean.to_bits());
+    T::from_bits(mean.to_bits().saturating_add(change / 4 * 3))
 }

@@ -1,37 +1,39 @@
 //! Learning of the finger that touches, from a sensor of the heat flux between skin and display.
 //!
 //! ```text
-//! code of the sensor, estimates of the last tick -> sums of a window of ten ticks -> LearnerInput -> learner
-//!                                                                                                     |
-//!                       bodies, skin state, skin before contact <- in the last tick of the next window
+//! code of the sensor, surface and force of the last tick -> sums of a window of ten ticks -> LearnerInput -> learner
+//!                                                                                                            |
+//!                              bodies, skin state, skin before contact <- in the last tick of the next window
 //! ```
 //!
 //! The learner runs outside of the control path. What it has found is applied ten ticks after its input was taken, however
 //! soon it was there, so that its computing time changes nothing.
 
+mod code_faults;
 mod flux_parameters;
-mod flux_reading;
 mod resting_code;
 mod window_sums;
 
 use contact_model::fixed_point::Celsius;
-use thermal_learner::{Distrust, Flux, LearnerInput, LearnerOutput, Place, Restart, Trust};
+use thermal_learner::{
+    Distrust, Flux, LearnerInput, LearnerOutput, Place, Restart, Trust, WINDOW_TICKS,
+};
 
-use crate::estimate::{FluxPerMm2, filter_change};
-use crate::low_pass::LowPass;
 use crate::sense::CONTACT_DEBOUNCE_TICKS;
+use code_faults::{CodeFault, CodeFaults, within_range};
 pub use flux_parameters::FluxParameters;
-use flux_reading::FluxReading;
 pub use resting_code::RestingCode;
 use resting_code::RestingCodes;
+pub use window_sums::StateAtEnd;
 use window_sums::WindowSums;
-pub use window_sums::{StateAtEnd, TickOfContact};
 
 /// What the host is told about the finger that is learnt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FingerKnowledge {
     /// No sensor of the heat flux is fitted: the assumed finger.
     NoSensor,
+    /// The converter has not converted the sensor's voltage: the assumed finger until the next contact without such a tick.
+    NoCode,
     /// The sensor reads beyond its range, or the same for too long: the assumed finger until the next contact without such codes.
     SensorFault,
     /// The learner has not answered in time: the assumed finger until this contact has ended.
@@ -42,10 +44,11 @@ pub enum FingerKnowledge {
 
 impl FingerKnowledge {
     /// All with their words in the protocol. Those with a reason are on the way to the assumed finger, or there.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 11] = [
+    pub const PROTOCOL_WORDS: [(&'static str, Self); 12] = [
         ("assumed", Self::NoSensor),
         ("learning", Self::Learnt(Trust::Learning)),
         ("trusted", Self::Learnt(Trust::Trusted)),
+        ("no-code", Self::NoCode),
         ("sensor-range", Self::SensorFault),
         ("sensor", Self::Learnt(Trust::Mean(Distrust::Sensor))),
         ("between", Self::Learnt(Trust::Mean(Distrust::Between))),
@@ -67,6 +70,7 @@ impl FingerKnowledge {
     pub const fn name(self) -> &'static str {
         match self {
             Self::NoSensor => "assumed",
+            Self::NoCode => "no-code",
             Self::SensorFault => "sensor-range",
             Self::Late => "late",
             Self::Learnt(Trust::Learning) => "learning",
@@ -84,35 +88,25 @@ impl FingerKnowledge {
 }
 
 /// What was measured at the end of a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Measured {
-    /// Flux out of the skin; `None` if it is not valid.
-    pub flux: Option<Flux>,
+#[derive(Clone, Copy, Debug)]
+struct Measured {
+    /// Code of the sensor, within the range of sound wires; 0 before the first.
+    code: u16,
     /// Surface of the display, °C.
-    pub surface: Option<Celsius>,
-}
-
-impl Measured {
-    /// Before the first tick.
-    const NOTHING: Self = Self {
-        flux: Some(Flux::ZERO),
-        surface: None,
-    };
+    surface: Celsius,
 }
 
 /// Learning of one finger: the sensor, the present window, and what was asked and answered.
 #[derive(Clone, Debug)]
 pub struct FingerLearning {
-    parameters: FluxParameters,
-    reading: FluxReading,
-    resting: RestingCodes,
-    /// The last two ticks, for which it is not known yet whether the finger presses.
+    /// The last two ticks, for which it is not known yet whether the finger pressed: a force off zero counts when it has lasted.
     undecided: [Measured; CONTACT_DEBOUNCE_TICKS as usize],
-    /// Flux that the device assumes, W/mm², behind the sensor's lag.
-    modelled_behind_lag: LowPass,
-    /// Ticks since the finger has lifted.
-    lifted_ticks: u32,
+    /// Ticks in which the flux still counts if the finger has lifted.
+    counting_ticks: u32,
     sums: WindowSums,
+    parameters: FluxParameters,
+    faults: CodeFaults,
+    resting: RestingCodes,
     /// Number of the last window.
     sequence: u16,
     /// The place of another finger that may follow, for the next input.
@@ -126,9 +120,6 @@ pub struct FingerLearning {
     was_late: bool,
     /// The finger that was applied last; `None` for the assumed one.
     applied: Option<LearnerOutput>,
-    /// Skin offset that was learnt, and how much of it the filtered temperature of the skin before contact contains, K.
-    skin_offset: Celsius,
-    included_offset: Celsius,
     knowledge: FingerKnowledge,
 }
 
@@ -137,13 +128,15 @@ impl FingerLearning {
     #[must_use]
     pub fn new(parameters: &FluxParameters, place: Place) -> Self {
         Self {
-            parameters: *parameters,
-            reading: FluxReading::new(parameters),
-            resting: RestingCodes::default(),
-            undecided: [Measured::NOTHING; CONTACT_DEBOUNCE_TICKS as usize],
-            modelled_behind_lag: LowPass::new(parameters.lag),
-            lifted_ticks: u32::MAX,
+            undecided: [Measured {
+                code: 0,
+                surface: Celsius::ZERO,
+            }; CONTACT_DEBOUNCE_TICKS as usize],
+            counting_ticks: 0,
             sums: WindowSums::default(),
+            parameters: *parameters,
+            faults: CodeFaults::default(),
+            resting: RestingCodes::default(),
             sequence: 0,
             restart: Some(place),
             input: None,
@@ -151,8 +144,6 @@ impl FingerLearning {
             output: None,
             was_late: false,
             applied: None,
-            skin_offset: Celsius::ZERO,
-            included_offset: Celsius::ZERO,
             knowledge: FingerKnowledge::Learnt(Trust::Learning),
         }
     }
@@ -163,131 +154,98 @@ impl FingerLearning {
         self.is_asked = false;
         self.output = None;
         self.applied = None;
-        self.skin_offset = Celsius::ZERO;
         self.knowledge = FingerKnowledge::Learnt(Trust::Learning);
     }
 
-    /// Skin before contact as its thermistor has it, from the filtered temperature `skin`, which contains the learnt offset.
-    #[must_use]
-    pub const fn skin_without_offset(&self, skin: Celsius) -> Celsius {
-        skin.saturating_sub(self.included_offset)
-    }
-
-    /// The change of the skin's filtered temperature in this tick, K, that lets it follow the thermistor's reading and the learnt
-    /// offset, where the filter itself has followed the reading alone. `is_filtered` is whether it has done so in this tick;
-    /// without an estimate of the skin nothing is included.
-    pub fn skin_change(&mut self, has_estimate: bool, is_filtered: bool) -> Celsius {
-        if !has_estimate {
-            self.included_offset = Celsius::ZERO;
-            return Celsius::ZERO;
-        }
-        if !is_filtered {
-            return Celsius::ZERO;
-        }
-        // The filter has taken the included offset back by its share, which `filter_change` towards the offset makes up for.
-        let lost = filter_change(Celsius::ZERO.saturating_sub(self.included_offset));
-        let change = filter_change(self.skin_offset.saturating_sub(self.included_offset));
-        self.included_offset = self.included_offset.saturating_add(change);
-        change.saturating_sub(lost)
-    }
-
-    /// Takes the measurements at the end of the last tick, the sensor's code and the display's surface, and returns those of the
-    /// tick before [`CONTACT_DEBOUNCE_TICKS`] others, of which it is known by now whether the finger pressed: a force off zero
-    /// counts when it has lasted.
-    pub fn take(&mut self, code: u16, surface: Option<Celsius>) -> Measured {
-        let [decided, next] = self.undecided;
-        let flux = self.reading.convert(code);
-        let rests = flux.is_some() && self.is_lifted_for_long();
-        self.resting.add(rests.then_some(code));
-        self.undecided = [next, Measured { flux, surface }];
-        decided
-    }
-
-    /// What the flux of the last tick was beyond the `modelled` one, W/mm²: slow differences as the sensor sees them, while the
-    /// model alone shows what is quicker than the sensor. Nothing without contact, and for a finger that is not trusted.
-    pub fn flux_beyond_model(&mut self, modelled: Option<FluxPerMm2>) -> FluxPerMm2 {
-        let is_trusted = matches!(
-            self.knowledge,
-            FingerKnowledge::Learnt(Trust::Learning | Trust::Trusted)
-        );
-        let [_, Measured { flux, .. }] = self.undecided;
-        let Some((modelled, flux)) = modelled.zip(flux).filter(|_| is_trusted) else {
-            self.modelled_behind_lag.set_output(FluxPerMm2::ZERO);
-            return FluxPerMm2::ZERO;
+    /// Adds a tick: the sensor's code, the display's surface and whether the finger presses, all of the last tick. Code and surface
+    /// count two ticks later, when it is known whether the finger pressed. Returns whether the window is complete, which
+    /// [`Self::end_window`] must then end. `is_steady` is asked while the finger presses: no jump of the force, and no limited
+    /// set-point.
+    #[inline(always)]
+    pub fn add_tick(
+        &mut self,
+        code: Option<u16>,
+        surface: Option<Celsius>,
+        presses: bool,
+        is_steady: impl FnOnce() -> bool,
+    ) -> bool {
+        let [decided, last] = self.undecided;
+        let code = match code {
+            Some(code) => within_range(code),
+            None => {
+                self.sums.codes.is_one_missing = true;
+                last.code
+            }
         };
-        self.modelled_behind_lag.update_by_input(modelled);
-        let measured = i64::from(flux.to_bits()) << (FluxPerMm2::FRAC_NBITS - Flux::FRAC_NBITS);
-        // A flux has 32 bits, and a million mm² are a m².
-        let measured = FluxPerMm2::from_bits((measured / 1_000_000) as i32);
-        measured.saturating_sub(self.modelled_behind_lag.output())
-    }
-
-    /// Whether the finger has been lifted for so long that a flux is none of its.
-    const fn is_lifted_for_long(&self) -> bool {
-        self.lifted_ticks > self.parameters.ticks_after_lifting
-    }
-
-    /// Adds a tick: its flux, and what was estimated at its end, if the finger pressed. Returns whether the window is complete.
-    pub fn add_tick(&mut self, flux: Option<Flux>, contact: Option<TickOfContact>) -> bool {
-        self.lifted_ticks = match contact {
-            Some(_) => 0,
-            None => self.lifted_ticks.saturating_add(1),
+        let surface = surface.unwrap_or(last.surface);
+        self.undecided = [last, Measured { code, surface }];
+        self.counting_ticks = if presses {
+            self.parameters.ticks_after_lifting + 1
+        } else {
+            self.counting_ticks.saturating_sub(1)
         };
-        let counts = !self.is_lifted_for_long();
-        let flux = flux.map(|flux| if counts { flux } else { Flux::ZERO });
-        self.sums.add(flux, contact);
-        self.sums.is_complete()
+        let counts = self.counting_ticks != 0;
+        self.sums.codes.add(decided.code, last.code, counts);
+        let contact = presses.then(|| (decided.surface, is_steady()));
+        self.sums.add(contact)
     }
 
     /// Ends a complete window: offers the next input, and returns the finger to be applied now, if it differs enough from the
     /// one that was applied last. That is the answer to the input before; if it is missing, one that is nearer to the assumed finger, until
     /// a window without contact. So it is while the sensor's code cannot be right.
-    #[cold]
-    #[inline(never)]
-    pub fn end_window(&mut self, state: &StateAtEnd) -> Option<LearnerOutput> {
-        let answer = self.output.take();
+    pub fn end_window(&mut self, state: &StateAtEnd) -> Option<&LearnerOutput> {
         let sums = core::mem::take(&mut self.sums);
         let contact = sums.contact(state);
+        self.judge_codes(&sums);
+        let fault = self.faults.present();
         self.was_late &= contact.is_some();
-        self.was_late |= self.is_asked && answer.is_none();
-        self.knowledge = match &answer {
-            _ if self.reading.is_faulty() => FingerKnowledge::SensorFault,
+        self.was_late |= self.is_asked && self.output.is_none();
+        self.knowledge = match (fault, &self.output) {
+            (Some(CodeFault::Missing), _) => FingerKnowledge::NoCode,
+            (Some(CodeFault::Range), _) => FingerKnowledge::SensorFault,
             _ if self.was_late => FingerKnowledge::Late,
-            Some(answer) => FingerKnowledge::Learnt(answer.trust),
-            None => self.knowledge,
+            (None, Some(answer)) => FingerKnowledge::Learnt(answer.trust),
+            (None, None) => self.knowledge,
         };
         self.sequence = self.sequence.wrapping_add(1);
         self.is_asked = true;
+        let (codes, ticks) = sums.codes.counting();
         self.input = Some(LearnerInput {
             sequence: self.sequence,
             restart: (self.restart.take()).map(|place| Restart {
                 place,
                 sensor: self.parameters.sensor,
             }),
-            flux_w_m2: sums.mean_flux(),
+            flux_w_m2: (fault.is_none()).then(|| self.parameters.mean_flux(codes, ticks)),
             contact,
         });
-        let next = match &self.applied {
-            applied if self.was_late || self.reading.is_faulty() => applied
-                .and_then(|applied| Some(applied.nearer_to_mean()).filter(|next| *next != applied)),
-            Some(applied) => answer.filter(|answer| !applied.is_nearly(answer)),
-            None => answer,
+        let is_new = if self.was_late || fault.is_some() {
+            (self.applied.as_mut()).is_some_and(LearnerOutput::approach_mean)
+        } else {
+            let is_known = |answer| {
+                (self.applied.as_ref())
+                    .is_some_and(|applied: &LearnerOutput| applied.is_nearly(answer))
+            };
+            let is_new = (self.output.as_ref()).is_some_and(|answer| !is_known(answer));
+            if is_new {
+                self.applied = self.output;
+            }
+            is_new
         };
-        if next.is_some() {
-            self.applied = next;
-        }
-        next
+        self.output = None;
+        self.applied.as_ref().filter(|_| is_new)
     }
 
-    /// Notes the change of the skin before contact that the learnt offset makes now, K.
-    pub fn adopt_skin_offset(&mut self, offset: Celsius, has_estimate: bool) -> Celsius {
-        self.skin_offset = offset;
-        if !has_estimate {
-            return Celsius::ZERO;
+    /// Looks for codes of a window that cannot be right, and notes its sum if the finger was lifted. Not of the first window, which
+    /// has ticks from before the first code.
+    fn judge_codes(&mut self, sums: &WindowSums) {
+        if self.sequence == 0 && !self.is_asked {
+            return;
         }
-        let change = offset.saturating_sub(self.included_offset);
-        self.included_offset = offset;
-        change
+        self.faults.judge(&sums.codes);
+        let (_, counting_ticks) = sums.codes.counting();
+        let rests = self.faults.present().is_none() && counting_ticks == 0;
+        self.resting.add(rests.then_some(sums.codes.sum()));
     }
 
     /// Whether there is an input that the learner has not taken.
@@ -309,16 +267,13 @@ impl FingerLearning {
         }
     }
 
-    /// How much of the learnt skin offset the filtered temperature of the skin contains, K.
-    #[must_use]
-    pub const fn included_offset(&self) -> Celsius {
-        self.included_offset
-    }
-
-    /// The last flux, W/m²; `None` if the sensor's code cannot be right.
+    /// The last flux, W/m²; `None` before the first code, and if the sensor's codes cannot be right.
     #[must_use]
     pub fn flux(&self) -> Option<Flux> {
-        self.reading.last()
+        let [_, Measured { code, .. }] = self.undecided;
+        let ticks = WINDOW_TICKS;
+        (code != 0 && self.faults.present().is_none())
+            .then(|| self.parameters.mean_flux(ticks * u32::from(code), ticks))
     }
 
     /// Mean code of the last half second without contact.

@@ -9,18 +9,11 @@ const W_M2_PER_SCALED_K: i64 = 36_999;
 /// `sqrt(dt) / e_skin`, mm² K/W: a resistance, K per K of scaled flux, times this is a thermal resistance.
 const MM2K_W_PER_SCALED: U16F16 = U16F16::lit("27.028");
 
-/// A tick in which the finger presses on the display.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TickOfContact {
-    /// Skin before contact, as its thermistor has it, less the surface of the display, K.
-    pub skin_above_display: Celsius,
-    /// Whether the finger may be learnt from this tick: no jump of the force, and no limited set-point.
-    pub is_steady: bool,
-}
-
 /// What is known at the end of a window with contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StateAtEnd {
+    /// Skin before contact, as its thermistor has it, °C; `None` without an estimate.
+    pub skin: Option<Celsius>,
     /// Scaled flux that the air took from the assumed finger's skin before contact, K.
     pub scaled_air_flux: Celsius,
     /// Contact resistance of an average skin with the display at the mean force, K per K of scaled flux; `None` before the
@@ -30,54 +23,64 @@ pub struct StateAtEnd {
     pub ticks_since_landing: u64,
 }
 
-/// Sums over the ticks of the present window.
-#[derive(Clone, Debug)]
-pub struct WindowSums {
-    ticks: u32,
-    /// `None` once the flux of a tick was not valid.
-    flux: Option<i64>,
-    skin_above_display: i64,
-    touching_ticks: u8,
-    is_steady: bool,
+/// Sums of the sensor's codes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CodeSums {
+    /// Over the ticks in which the flux counts as none, and over the others.
+    by_counting: [u32; 2],
+    counting_ticks: u32,
+    /// The bits in which a code differed from the one before.
+    pub changed_bits: u16,
+    /// Whether a tick had no code.
+    pub is_one_missing: bool,
 }
 
-impl Default for WindowSums {
-    fn default() -> Self {
-        Self {
-            ticks: 0,
-            flux: Some(0),
-            skin_above_display: 0,
-            touching_ticks: 0,
-            is_steady: true,
-        }
+impl CodeSums {
+    /// Adds the code of a tick, with the one before, and whether its flux counts.
+    #[inline(always)]
+    pub const fn add(&mut self, code: u16, before: u16, counts: bool) {
+        self.by_counting[counts as usize] += code as u32;
+        self.counting_ticks += counts as u32;
+        self.changed_bits |= code ^ before;
     }
+
+    /// Sum of all codes.
+    #[must_use]
+    pub const fn sum(&self) -> u32 {
+        self.by_counting[0] + self.by_counting[1]
+    }
+
+    /// Sum of the codes whose flux counts, and their number.
+    #[must_use]
+    pub const fn counting(&self) -> (u32, u32) {
+        (self.by_counting[1], self.counting_ticks)
+    }
+}
+
+/// Sums over the ticks of the present window. They are all that a tick costs; what follows from them is found once a window.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WindowSums {
+    ticks: u32,
+    /// The sensor's codes.
+    pub codes: CodeSums,
+    /// Display's surface in the ticks in which the finger pressed.
+    surface: i64,
+    touching_ticks: u8,
+    is_unsteady: bool,
 }
 
 impl WindowSums {
-    /// Adds a tick: its flux, if it is valid, and the contact.
-    pub fn add(&mut self, flux: Option<Flux>, contact: Option<TickOfContact>) {
+    /// Adds a tick. In one in which the finger presses: the surface of the display, °C, and whether the finger may be learnt from
+    /// this tick: no jump of the force, and no limited set-point. Returns whether the window is complete.
+    #[inline(always)]
+    pub fn add(&mut self, contact: Option<(Celsius, bool)>) -> bool {
         self.ticks += 1;
-        let flux = flux.map(|flux| i64::from(flux.to_bits()));
-        self.flux = self.flux.zip(flux).map(|(sum, flux)| sum + flux);
-        if let Some(contact) = contact {
-            self.skin_above_display += i64::from(contact.skin_above_display.to_bits());
-            self.touching_ticks = self.touching_ticks.saturating_add(1);
-            self.is_steady &= contact.is_steady;
+        if let Some((surface, is_steady)) = contact {
+            self.surface += i64::from(surface.to_bits());
+            self.touching_ticks = self.touching_ticks.wrapping_add(1);
+            self.is_unsteady |= !is_steady;
         }
-    }
-
-    /// Whether all ticks were added.
-    #[must_use]
-    pub const fn is_complete(&self) -> bool {
         self.ticks >= WINDOW_TICKS
-    }
-
-    /// Mean flux; `None` if that of a tick was not valid.
-    #[must_use]
-    pub fn mean_flux(&self) -> Option<Flux> {
-        // A mean of 32-bit numbers has 32 bits.
-        let mean = self.flux? / i64::from(WINDOW_TICKS);
-        Some(Flux::from_bits(mean as i32))
     }
 
     /// The contact of the window, if it had one.
@@ -86,7 +89,11 @@ impl WindowSums {
         if self.touching_ticks == 0 {
             return None;
         }
-        let mean = self.skin_above_display / i64::from(WINDOW_TICKS);
+        let skin = i64::from(state.skin?.to_bits()) * i64::from(self.touching_ticks);
+        // Ten differences of temperatures, less four bits, which are 4 uK: a division of 32 bits.
+        const FEWER: u32 = 4;
+        let sum = ((skin - self.surface) >> FEWER) as i32;
+        let mean = sum / WINDOW_TICKS as i32 * (1 << FEWER);
         let air_bits = i64::from(state.scaled_air_flux.to_bits()) * W_M2_PER_SCALED_K;
         let air_bits = air_bits >> (I10F22::FRAC_NBITS - I20F12::FRAC_NBITS);
         let resistance = state.resistance.map_or(Resistance::ZERO, |scaled| {
@@ -94,11 +101,11 @@ impl WindowSums {
         });
         Some(Contact {
             touching_ticks: self.touching_ticks,
-            skin_above_display_k: Celsius::from_bits(mean as i32),
+            skin_above_display_k: Celsius::from_bits(mean),
             air_flux_w_m2: Flux::from_bits(air_bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32),
             resistance_mm2k_w: resistance,
             ticks_since_landing: state.ticks_since_landing.min(u32::MAX.into()) as u32,
-            is_steady: self.is_steady && state.resistance.is_some(),
+            is_steady: !self.is_unsteady && state.resistance.is_some(),
         })
     }
 }
@@ -117,48 +124,49 @@ mod tests {
     use super::*;
 
     const STATE: StateAtEnd = StateAtEnd {
+        skin: Some(Celsius::ZERO),
         scaled_air_flux: Celsius::ZERO,
         resistance: Some(U16F16::ONE),
         ticks_since_landing: 30,
     };
 
-    fn tick() -> impl Strategy<Value = (Option<i32>, Option<(i32, bool)>)> {
-        let contact = prop::option::of((any::<i32>(), prop::bool::weighted(0.9)));
-        (prop::option::weighted(0.98, any::<i32>()), contact)
-    }
-
     proptest! {
         #[test]
-        fn means_are_those_of_the_ticks(ticks in prop::collection::vec(tick(), WINDOW_TICKS as usize)) {
+        fn means_are_those_of_the_ticks(
+            skin_c in -20.0..60.0,
+            ticks in prop::collection::vec(prop::option::of((-20.0..60.0, prop::bool::weighted(0.9))), WINDOW_TICKS as usize),
+        ) {
             let mut sums = WindowSums::default();
-            for (flux, contact) in &ticks {
-                prop_assert!(!sums.is_complete());
-                let contact = contact.map(|(above, is_steady)| TickOfContact {
-                    skin_above_display: Celsius::from_bits(above),
-                    is_steady,
-                });
-                sums.add(flux.map(Flux::from_bits), contact);
+            for (number, contact) in (1..).zip(&ticks) {
+                let contact = contact.map(|(surface_c, is_steady)| (Celsius::from_num(surface_c), is_steady));
+                prop_assert_eq!(sums.add(contact), number == WINDOW_TICKS);
             }
-            prop_assert!(sums.is_complete());
-            let mean = |values: &[i32]| values.iter().map(|one| f64::from(*one)).sum::<f64>() / 10.0;
-            let flux: Option<Vec<i32>> = ticks.iter().map(|tick| tick.0).collect();
-            match (&flux, sums.mean_flux()) {
-                (None, None) => {}
-                (Some(flux), Some(found)) => {
-                    prop_assert!((mean(flux) - f64::from(found.to_bits())).abs() <= 1.0);
-                }
-                (_, found) => prop_assert!(false, "{found:?}"),
-            }
-            let contacts: Vec<_> = ticks.iter().filter_map(|tick| tick.1).collect();
-            let found = sums.contact(&STATE);
+            let state = StateAtEnd { skin: Some(Celsius::from_num(skin_c)), ..STATE };
+            let contacts: Vec<_> = ticks.iter().flatten().collect();
+            let found = sums.contact(&state);
             prop_assert_eq!(found.is_some(), !contacts.is_empty());
+            prop_assert_eq!(sums.contact(&StateAtEnd { skin: None, ..state }), None);
             if let Some(found) = found {
-                let above: Vec<_> = contacts.iter().map(|contact| contact.0).collect();
-                let apart = mean(&above) - f64::from(found.skin_above_display_k.to_bits());
-                prop_assert!(apart.abs() <= 1.0, "{}", apart);
+                let above_k = contacts.iter().map(|contact| skin_c - contact.0).sum::<f64>() / 10.0;
+                let apart_k = above_k - found.skin_above_display_k.to_num::<f64>();
+                prop_assert!(apart_k.abs() <= 5e-6, "{}", apart_k);
                 prop_assert_eq!(usize::from(found.touching_ticks), contacts.len());
                 prop_assert_eq!(found.is_steady, contacts.iter().all(|contact| contact.1));
             }
+        }
+
+        #[test]
+        fn codes_are_added_by_whether_they_count(ticks in prop::collection::vec((0..4096u16, any::<bool>()), 10)) {
+            let (mut sums, mut before) = (CodeSums::default(), ticks[0].0);
+            for (code, counts) in &ticks {
+                sums.add(*code, before, *counts);
+                before = *code;
+            }
+            let counting = ticks.iter().filter(|tick| tick.1);
+            let sum = |ticks: &mut dyn Iterator<Item = &(u16, bool)>| ticks.map(|tick| u32::from(tick.0)).sum::<u32>();
+            prop_assert_eq!(sums.counting(), (sum(&mut counting.clone()), counting.count() as u32));
+            prop_assert_eq!(sums.sum(), sum(&mut ticks.iter()));
+            prop_assert_eq!(sums.changed_bits != 0, ticks.iter().any(|tick| tick.0 != ticks[0].0));
         }
     }
 
@@ -181,11 +189,7 @@ mod tests {
             .expected_display_resistance(&OwnResistances::NONE);
         let exact_m2k_w = contact_resistance(&SKIN.surface, &REFERENCE_DISPLAY, pressure_pa);
         let mut sums = WindowSums::default();
-        let contact = TickOfContact {
-            skin_above_display: Celsius::ONE,
-            is_steady: true,
-        };
-        sums.add(None, Some(contact));
+        sums.add(Some((Celsius::ONE, true)));
         let state = StateAtEnd {
             scaled_air_flux: Celsius::from_num(-0.003),
             resistance: Some(scaled),
