@@ -44,7 +44,7 @@ fn step<const FINGERS: usize>(
         bench.device.step_finger(finger, &samples);
         if let Some(input) = bench.device.take_learner_input(finger) {
             let output = learner.advance(&input);
-            bench.device.put_learner_output(finger, &output);
+            bench.device.put_learner_output(finger, output);
         }
     }
 }

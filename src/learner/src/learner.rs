@@ -36,6 +36,9 @@ pub struct Learner {
     judge: Judge,
     /// Of the present contact, modulo 256.
     windows_in_contact: Option<u8>,
+    /// Whether the estimate has changed since the last output. Most windows without contact and most of a long one leave it.
+    has_changed: bool,
+    output: LearnerOutput,
 }
 
 impl Default for Learner {
@@ -62,13 +65,18 @@ impl Learner {
             estimate: Estimate::PRIOR,
             judge: Judge::NEW,
             windows_in_contact: None,
+            has_changed: true,
+            output: LearnerOutput::MEAN,
         }
     }
 
     /// Takes one window's measurements, and returns what is known of the finger after it.
-    pub fn advance(&mut self, input: &LearnerInput) -> LearnerOutput {
+    pub fn advance(&mut self, input: &LearnerInput) -> &LearnerOutput {
         if let Some(restart) = input.restart {
-            *self = Self::begin(restart);
+            *self = Self {
+                output: self.output,
+                ..Self::begin(restart)
+            };
         }
         let lagged = self.signals.advance(input, &self.sensor);
         match &input.contact {
@@ -92,6 +100,7 @@ impl Learner {
             None => {
                 if self.windows_in_contact.take().is_some() {
                     self.estimate.widen(&self.scale);
+                    self.has_changed = true;
                 }
             }
         }
@@ -104,6 +113,7 @@ impl Learner {
     fn land(&mut self) {
         if !self.judge.land() {
             self.estimate = Estimate::PRIOR;
+            self.has_changed = true;
         }
     }
 
@@ -127,6 +137,7 @@ impl Learner {
         let zero_k = factor * resistance_m2k_w * ZERO_ERROR_W_M2;
         let variance_k2 =
             (model_k2 + zero_k * zero_k + SURFACE_ERROR_K * SURFACE_ERROR_K) / f32::from(every);
+        self.has_changed = true;
         let innovation = self.estimate.update(&measurement, variance_k2, &self.scale);
         let parameters = &self.estimate.parameters;
         let state = (resistance_m2k_w, ticks);
@@ -137,6 +148,7 @@ impl Learner {
     /// Takes the parameters towards those of the mean finger, in some 100 ms so that set-points do not jump. That the contact
     /// is better than usual is kept.
     fn approach_mean(&mut self, why: Distrust) {
+        self.has_changed = true;
         for (index, parameter) in self.estimate.parameters.iter_mut().enumerate() {
             if index != RESISTANCE || why != Distrust::Wet {
                 *parameter *= REMAINING_IF_DISTRUSTED;
@@ -144,9 +156,13 @@ impl Learner {
         }
     }
 
-    fn output(&self, sequence: u16) -> LearnerOutput {
-        let variances = self.estimate.variances();
-        let (parameters, trust) = (&self.estimate.parameters, self.judge.trust());
-        LearnerOutput::new(sequence, parameters, &variances, &self.scale, trust)
+    fn output(&mut self, sequence: u16) -> &LearnerOutput {
+        if self.has_changed {
+            let revision = self.output.revision.wrapping_add(1);
+            self.output = LearnerOutput::new(revision, &self.estimate, &self.scale);
+            self.has_changed = false;
+        }
+        (self.output.sequence, self.output.trust) = (sequence, self.judge.trust());
+        &self.output
     }
 }

@@ -4,7 +4,8 @@ use contact_model::fixed_point::{Celsius, WEIGHTS};
 use fixed::traits::Fixed;
 use fixed::types::{I2F30, I4F28, U2F30, U4F28, U10F22};
 
-use crate::parameters::{AIR, PARAMETERS, Parameters, RESISTANCE, SKIN, Scale, relative_weights};
+use crate::estimate::Estimate;
+use crate::parameters::{AIR, PARAMETERS, RESISTANCE, SKIN, Scale, relative_weights};
 use crate::trust::Trust;
 
 /// Differences of a finger from the applied one that are not worth the device's time.
@@ -18,6 +19,8 @@ const RESISTANCE_TOLERANCE: U4F28 = U4F28::lit("0x.002");
 pub struct LearnerOutput {
     /// Number of the input's window.
     pub sequence: u16,
+    /// Counts the changes of what follows, but for the trust.
+    pub revision: u16,
     /// Weights of the tissue over those of the mean finger, 0.4 to 2, for `TissueWeights`.
     pub weights: [I2F30; WEIGHTS],
     /// Relative change of the flux that the air took before contact, -1 to 1.5.
@@ -39,25 +42,43 @@ fn to_fixed<T: Fixed<Bits = i32>>(value: f32) -> T {
     T::from_bits((value * (1u32 << T::FRAC_NBITS) as f32) as i32)
 }
 
+/// Results in fixed point. In a loop: `map` unrolls.
+fn all_to_fixed<T: Fixed<Bits = i32>, const N: usize>(values: &[f32; N]) -> [T; N] {
+    let mut all = [T::ZERO; N];
+    for (fixed, value) in all.iter_mut().zip(values) {
+        *fixed = to_fixed(*value);
+    }
+    all
+}
+
 impl LearnerOutput {
-    /// Converts parameters and variances within their limits.
-    pub fn new(
-        sequence: u16,
-        parameters: &Parameters,
-        variances: &Parameters,
-        scale: &Scale,
-        trust: Trust,
-    ) -> Self {
+    /// The mean finger, before the first output.
+    pub(crate) const MEAN: Self = Self {
+        sequence: 0,
+        revision: 0,
+        weights: [I2F30::ONE; WEIGHTS],
+        air_change: I4F28::ZERO,
+        skin_offset_k: Celsius::ZERO,
+        resistance_factor: I4F28::ONE,
+        trust: Trust::Learning,
+        parameters: [I4F28::ZERO; PARAMETERS],
+        variances: [I2F30::ZERO; PARAMETERS],
+    };
+
+    /// What is known, before it has a window's number and trust. Parameters and variances are within their limits.
+    pub fn new(revision: u16, estimate: &Estimate, scale: &Scale) -> Self {
+        let parameters = &estimate.parameters;
         let change = |index: usize| parameters[index] * scale.deviations[index];
         Self {
-            sequence,
-            weights: relative_weights(parameters).map(to_fixed),
+            sequence: 0,
+            revision,
+            weights: all_to_fixed(&relative_weights(parameters)),
             air_change: to_fixed(change(AIR)),
             skin_offset_k: to_fixed(change(SKIN)),
             resistance_factor: to_fixed(1.0 + change(RESISTANCE)),
-            trust,
-            parameters: parameters.map(to_fixed),
-            variances: variances.map(to_fixed),
+            trust: Trust::Learning,
+            parameters: all_to_fixed(parameters),
+            variances: all_to_fixed(&estimate.variances()),
         }
     }
 

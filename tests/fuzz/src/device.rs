@@ -143,7 +143,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
         let outputs = self.device.step_finger(finger, samples);
         if let Some(input) = self.device.take_learner_input(finger) {
             let output = self.learners[finger.index()].advance(&input);
-            self.device.put_learner_output(finger, &output);
+            self.device.put_learner_output(finger, output);
         }
         let Status {
             state, setpoint, ..

@@ -266,7 +266,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         let outputs = self.device.step_finger(index, &samples);
         if let Some(input) = self.device.take_learner_input(index) {
             let output = finger.learner.advance(&input);
-            self.device.put_learner_output(index, &output);
+            self.device.put_learner_output(index, output);
         }
         match outputs.comparator_test {
             ComparatorTest::None => {}

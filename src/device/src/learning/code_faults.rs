@@ -2,8 +2,6 @@
 
 use thermal_learner::WINDOW_TICKS;
 
-use super::window_sums::CodeSums;
-
 /// Codes of sound wires. Beyond them the amplifier is at a rail: under more flux than its range, which copper takes from some
 /// fingers in the first ticks, or with a broken wire.
 const LOWEST: u16 = 64;
@@ -11,14 +9,9 @@ const HIGHEST: u16 = 4031;
 /// Windows at a rail, 50 ms, after which the flux is not known well enough, or a wire is broken. A flux that was beyond the range
 /// for so long is some per cent larger than what was read.
 const AT_RAIL_WINDOWS_MAX: u8 = 5;
-/// Windows, 100 ms, after which a code that has not changed is that of a converter which does not convert: noise alone changes it
-/// in almost every tick.
+/// Windows with one and the same code, 100 ms, after which the converter does not convert: noise alone changes its code in almost
+/// every tick.
 const UNCHANGED_WINDOWS_MAX: u8 = 10;
-
-/// A code at a rail counts as the nearest one of sound wires.
-pub fn within_range(code: u16) -> u16 {
-    code.clamp(LOWEST, HIGHEST)
-}
 
 /// Why the codes cannot be right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,27 +25,33 @@ pub enum CodeFault {
 /// Counts the windows whose codes look wrong.
 #[derive(Clone, Debug, Default)]
 pub struct CodeFaults {
+    last_sum: u32,
     at_rail_windows: u8,
     unchanged_windows: u8,
     present: Option<CodeFault>,
 }
 
 impl CodeFaults {
-    /// Judges the codes of a window.
-    pub fn judge(&mut self, codes: &CodeSums) {
+    /// Judges the codes of a window: their sum, the last one, and whether one was missing. Returns their sum; a mean at a rail counts as
+    /// the nearest code of sound wires.
+    pub fn judge(&mut self, sum: u32, last: u16, is_one_missing: bool) -> u32 {
         let counted = |count: u8, is_so| if is_so { count.saturating_add(1) } else { 0 };
-        let ends = [LOWEST, HIGHEST].map(|end| WINDOW_TICKS * u32::from(end));
-        self.at_rail_windows = counted(self.at_rail_windows, ends.contains(&codes.sum()));
-        self.unchanged_windows = counted(self.unchanged_windows, codes.changed_bits == 0);
-        self.present = if codes.is_one_missing {
-            Some(CodeFault::Missing)
-        } else if self.at_rail_windows >= AT_RAIL_WINDOWS_MAX
-            || self.unchanged_windows >= UNCHANGED_WINDOWS_MAX
-        {
-            Some(CodeFault::Range)
-        } else {
-            None
+        let is_unchanged = sum == self.last_sum && sum == WINDOW_TICKS * u32::from(last);
+        self.last_sum = sum;
+        self.unchanged_windows = counted(self.unchanged_windows, is_unchanged);
+        let within = sum.clamp(
+            WINDOW_TICKS * u32::from(LOWEST),
+            WINDOW_TICKS * u32::from(HIGHEST),
+        );
+        self.at_rail_windows = counted(self.at_rail_windows, within != sum);
+        let is_beyond = self.at_rail_windows >= AT_RAIL_WINDOWS_MAX
+            || self.unchanged_windows >= UNCHANGED_WINDOWS_MAX;
+        self.present = match (is_one_missing, is_beyond) {
+            (true, _) => Some(CodeFault::Missing),
+            (false, true) => Some(CodeFault::Range),
+            (false, false) => None,
         };
+        within
     }
 
     /// The fault of the last window.
@@ -66,48 +65,55 @@ impl CodeFaults {
 mod tests {
     use super::*;
 
-    /// Codes of the same window, over and over: after how many windows there is which fault.
-    fn first_fault(codes: [u16; 10]) -> Option<(u32, CodeFault)> {
-        let mut faults = CodeFaults::default();
-        (1..=20).find_map(|window| {
-            let mut sums = CodeSums::default();
-            for (tick, code) in codes.into_iter().enumerate() {
-                sums.add(within_range(code), within_range(codes[(tick + 9) % 10]), tick % 2 == 0);
+    #[test]
+    fn means_that_stay_at_a_rail_are_faults_and_count_as_the_end_of_the_range() {
+        for (sum, within) in [(0, 640), (639, 640), (40_311, 40_310), (40_950, 40_310)] {
+            let mut faults = CodeFaults::default();
+            for _ in 0..3 {
+                for window in 1..=8 {
+                    // The last code differs, as with noise.
+                    assert_eq!(faults.judge(sum, 1, false), within);
+                    let fault = (window >= 5).then_some(CodeFault::Range);
+                    assert_eq!(faults.present(), fault, "{sum}, {window}");
+                }
+                assert_eq!(faults.judge(20_485, 2048, false), 20_485);
+                assert_eq!(faults.present(), None);
             }
-            faults.judge(&sums);
-            faults.present().map(|fault| (window, fault))
-        })
+        }
+        let mut faults = CodeFaults::default();
+        for _ in 0..20 {
+            for sum in [640, 40_310] {
+                assert_eq!(faults.judge(sum, 1, false), sum);
+                assert_eq!(faults.present(), None);
+            }
+        }
     }
 
     #[test]
-    fn codes_that_stay_at_a_rail_or_do_not_change_are_faults() {
-        let alternating = |low, high| core::array::from_fn(|tick| if tick % 2 == 0 { low } else { high });
-        for (low, high) in [(0, 63), (0, 64), (4031, 4032), (4032, u16::MAX)] {
-            assert_eq!(first_fault(alternating(low, high)), Some((5, CodeFault::Range)));
-        }
-        for (low, high) in [(0, 65), (4030, 4095), (2048, 2049)] {
-            assert_eq!(first_fault(alternating(low, high)), None);
-        }
-        assert_eq!(first_fault([2048; 10]), Some((10, CodeFault::Range)));
-    }
-
-    #[test]
-    fn a_window_of_right_codes_ends_the_fault() {
+    fn a_code_that_does_not_change_is_a_fault() {
         let mut faults = CodeFaults::default();
         for _ in 0..3 {
-            for window in 1..=8 {
-                let mut sums = CodeSums::default();
-                (0..10).for_each(|_| sums.add(HIGHEST, HIGHEST, true));
-                faults.judge(&sums);
-                assert_eq!(faults.present().is_some(), window >= 5, "{window}");
+            for window in 0..20 {
+                faults.judge(20_480, 2048, false);
+                let fault = (window >= 10).then_some(CodeFault::Range);
+                assert_eq!(faults.present(), fault, "{window}");
             }
-            let mut sums = CodeSums::default();
-            (0..10).for_each(|_| sums.add(2048, 2049, true));
-            faults.judge(&sums);
+            faults.judge(20_480, 2047, false);
             assert_eq!(faults.present(), None);
-            sums.is_one_missing = true;
-            faults.judge(&sums);
-            assert_eq!(faults.present(), Some(CodeFault::Missing));
+            faults.judge(20_490, 2049, false);
+        }
+        for window in 0..40 {
+            faults.judge(20_480 + window % 2, 2048, false);
+            assert_eq!(faults.present(), None);
+        }
+    }
+
+    #[test]
+    fn a_missing_code_is_a_fault_of_its_window() {
+        let mut faults = CodeFaults::default();
+        for is_missing in [true, true, false, true, false] {
+            faults.judge(20_485, 2048, is_missing);
+            assert_eq!(faults.present(), is_missing.then_some(CodeFault::Missing));
         }
     }
 }

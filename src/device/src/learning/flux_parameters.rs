@@ -8,8 +8,10 @@ use thermal_settings::FluxSensor;
 
 use crate::TICK_S;
 
-/// How many lags of the sensor its flux counts after the finger has lifted: what is left of the contact's is then below 1 %.
+/// How many lags of the sensor its flux counts after the window of the lifting: what is left of the contact's is then below 1 %.
 const LAGS_AFTER_LIFTING: f64 = 5.0;
+
+const WINDOW_MS: f64 = WINDOW_TICKS as f64 * 1e3 * TICK_S;
 
 /// What ticks and learner need of the sensor's settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +20,8 @@ pub struct FluxParameters {
     zero: I28F4,
     /// W/m² per count in each tick of a window, over the window's ticks.
     w_m2_per_count_and_tick: U8F24,
-    /// Ticks after lifting in which the flux still counts.
-    pub(super) ticks_after_lifting: u32,
+    /// Windows after that of the lifting in which the flux still counts.
+    pub(super) windows_after_lifting: u32,
     /// The sensor for the learner.
     pub(super) sensor: thermal_learner::FluxSensor,
     /// Resistance of the layer: its temperature difference per kelvin of scaled flux.
@@ -36,7 +38,7 @@ impl FluxParameters {
             w_m2_per_count_and_tick: to_fixed(
                 1.0 / (sensor.counts_per_w_m2 * f64::from(WINDOW_TICKS)),
             ),
-            ticks_after_lifting: (LAGS_AFTER_LIFTING * sensor.lag_ms * 1e-3 / TICK_S) as u32,
+            windows_after_lifting: (LAGS_AFTER_LIFTING * sensor.lag_ms / WINDOW_MS) as u32,
             sensor: thermal_learner::FluxSensor::new(
                 (1e3 * sensor.lag_ms) as u32,
                 to_fixed(sensor.resistance_mm2k_w),
@@ -45,10 +47,10 @@ impl FluxParameters {
         }
     }
 
-    /// Mean flux of a window, if the codes of so many of its ticks have this sum and no flux is counted in the others.
+    /// Mean flux of a window whose codes have this sum.
     #[must_use]
-    pub fn mean_flux(&self, codes: u32, ticks: u32) -> Flux {
-        let zeros = i64::from(self.zero.to_bits()) * i64::from(ticks);
+    pub fn mean_flux(&self, codes: u32) -> Flux {
+        let zeros = i64::from(self.zero.to_bits()) * i64::from(WINDOW_TICKS);
         let above_zeros = (i64::from(codes) << I28F4::FRAC_NBITS) - zeros;
         let bits = above_zeros * i64::from(self.w_m2_per_count_and_tick.to_bits());
         // From 4 + 24 binary places to 12. Settings have at most 100 W/m² per count of 4095, which fits.
@@ -64,15 +66,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn mean_flux_is_that_of_the_codes_less_the_zero_over_the_gain(
-            codes in prop::collection::vec(64..4032u16, 0..=WINDOW_TICKS as usize),
+        fn mean_flux_is_the_mean_code_less_the_zero_over_the_gain(
+            sum in 640..=40_310u32,
             zero in 1500.0..2500.0,
             gain in prop_oneof![Just(0.1192), 0.01..1.0],
         ) {
             let sensor = FluxSensor { counts_per_w_m2: gain, zero_counts: zero, ..FluxSensor::DESIGNED };
-            let sum = codes.iter().map(|code| u32::from(*code)).sum();
-            let flux = FluxParameters::new(&sensor).mean_flux(sum, codes.len() as u32);
-            let exact: f64 = codes.iter().map(|code| (f64::from(*code) - zero) / gain).sum::<f64>() / 10.0;
+            let flux = FluxParameters::new(&sensor).mean_flux(sum);
+            let exact = (f64::from(sum) / 10.0 - zero) / gain;
             // Rounded are the zero, to a sixteenth of a count, and the reciprocal of the gain.
             let error = 0.5 / f64::from(1 << I28F4::FRAC_NBITS) / gain + exact.abs() * 1e-6 + 1e-3;
             prop_assert!((flux.to_num::<f64>() - exact).abs() <= error, "{flux} for {exact}");

@@ -14,18 +14,16 @@ mod flux_parameters;
 mod resting_code;
 mod window_sums;
 
-use contact_model::fixed_point::Celsius;
 use thermal_learner::{
     Distrust, Flux, LearnerInput, LearnerOutput, Place, Restart, Trust, WINDOW_TICKS,
 };
 
-use crate::sense::CONTACT_DEBOUNCE_TICKS;
-use code_faults::{CodeFault, CodeFaults, within_range};
+use code_faults::{CodeFault, CodeFaults};
 pub use flux_parameters::FluxParameters;
 pub use resting_code::RestingCode;
 use resting_code::RestingCodes;
-pub use window_sums::StateAtEnd;
 use window_sums::WindowSums;
+pub use window_sums::{MeasuredTick, StateAtEnd};
 
 /// What the host is told about the finger that is learnt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,26 +85,17 @@ impl FingerKnowledge {
     }
 }
 
-/// What was measured at the end of a tick.
-#[derive(Clone, Copy, Debug)]
-struct Measured {
-    /// Code of the sensor, within the range of sound wires; 0 before the first.
-    code: u16,
-    /// Surface of the display, °C.
-    surface: Celsius,
-}
-
 /// Learning of one finger: the sensor, the present window, and what was asked and answered.
 #[derive(Clone, Debug)]
 pub struct FingerLearning {
-    /// The last two ticks, for which it is not known yet whether the finger pressed: a force off zero counts when it has lasted.
-    undecided: [Measured; CONTACT_DEBOUNCE_TICKS as usize],
-    /// Ticks in which the flux still counts if the finger has lifted.
-    counting_ticks: u32,
     sums: WindowSums,
+    /// The last code; 0 before the first.
+    code: u16,
     parameters: FluxParameters,
     faults: CodeFaults,
     resting: RestingCodes,
+    /// Windows in which the flux still counts if the finger has lifted.
+    counting_windows: u32,
     /// Number of the last window.
     sequence: u16,
     /// The place of another finger that may follow, for the next input.
@@ -115,7 +104,10 @@ pub struct FingerLearning {
     input: Option<LearnerInput>,
     /// Whether the learner must answer that input before the present window ends, and its answer.
     is_asked: bool,
-    output: Option<LearnerOutput>,
+    answer: Option<Trust>,
+    /// The finger of the last answer, and whether it was not compared with the applied one yet.
+    learnt: Option<LearnerOutput>,
+    is_new: bool,
     /// Whether an answer was missing since the last window without contact.
     was_late: bool,
     /// The finger that was applied last; `None` for the assumed one.
@@ -128,20 +120,19 @@ impl FingerLearning {
     #[must_use]
     pub fn new(parameters: &FluxParameters, place: Place) -> Self {
         Self {
-            undecided: [Measured {
-                code: 0,
-                surface: Celsius::ZERO,
-            }; CONTACT_DEBOUNCE_TICKS as usize],
-            counting_ticks: 0,
             sums: WindowSums::default(),
+            code: 0,
             parameters: *parameters,
             faults: CodeFaults::default(),
             resting: RestingCodes::default(),
+            counting_windows: 0,
             sequence: 0,
             restart: Some(place),
             input: None,
             is_asked: false,
-            output: None,
+            answer: None,
+            learnt: None,
+            is_new: false,
             was_late: false,
             applied: None,
             knowledge: FingerKnowledge::Learnt(Trust::Learning),
@@ -152,100 +143,91 @@ impl FingerLearning {
     pub fn restart(&mut self, place: Place) {
         self.restart = Some(place);
         self.is_asked = false;
-        self.output = None;
+        self.answer = None;
+        self.learnt = None;
         self.applied = None;
         self.knowledge = FingerKnowledge::Learnt(Trust::Learning);
     }
 
-    /// Adds a tick: the sensor's code, the display's surface and whether the finger presses, all of the last tick. Code and surface
-    /// count two ticks later, when it is known whether the finger pressed. Returns whether the window is complete, which
-    /// [`Self::end_window`] must then end. `is_steady` is asked while the finger presses: no jump of the force, and no limited
-    /// set-point.
+    /// Notes the sensor's code, or that its conversion has not ended, and returns the one that counts.
     #[inline(always)]
-    pub fn add_tick(
-        &mut self,
-        code: Option<u16>,
-        surface: Option<Celsius>,
-        presses: bool,
-        is_steady: impl FnOnce() -> bool,
-    ) -> bool {
-        let [decided, last] = self.undecided;
-        let code = match code {
-            Some(code) => within_range(code),
-            None => {
-                self.sums.codes.is_one_missing = true;
-                last.code
-            }
-        };
-        let surface = surface.unwrap_or(last.surface);
-        self.undecided = [last, Measured { code, surface }];
-        self.counting_ticks = if presses {
-            self.parameters.ticks_after_lifting + 1
-        } else {
-            self.counting_ticks.saturating_sub(1)
-        };
-        let counts = self.counting_ticks != 0;
-        self.sums.codes.add(decided.code, last.code, counts);
-        let contact = presses.then(|| (decided.surface, is_steady()));
-        self.sums.add(contact)
+    pub const fn note_code(&mut self, code: Option<u16>) -> u16 {
+        match code {
+            Some(code) => self.code = code,
+            None => self.sums.is_code_missing = true,
+        }
+        self.code
+    }
+
+    /// Adds a tick. Returns whether the window is complete, which [`Self::end_window`] must then end.
+    #[inline(always)]
+    pub fn add_tick(&mut self, tick: &MeasuredTick) -> bool {
+        self.sums.add(tick)
     }
 
     /// Ends a complete window: offers the next input, and returns the finger to be applied now, if it differs enough from the
     /// one that was applied last. That is the answer to the input before; if it is missing, one that is nearer to the assumed finger, until
     /// a window without contact. So it is while the sensor's code cannot be right.
     pub fn end_window(&mut self, state: &StateAtEnd) -> Option<&LearnerOutput> {
-        let sums = core::mem::take(&mut self.sums);
-        let contact = sums.contact(state);
-        self.judge_codes(&sums);
-        let fault = self.faults.present();
+        let contact = self.sums.contact(state);
+        let flux_w_m2 = self.flux_of_window();
+        self.sums = self.sums.next();
+        let (answer, fault) = (self.answer.take(), self.faults.present());
         self.was_late &= contact.is_some();
-        self.was_late |= self.is_asked && self.output.is_none();
-        self.knowledge = match (fault, &self.output) {
+        self.was_late |= self.is_asked && answer.is_none();
+        self.knowledge = match (fault, answer) {
             (Some(CodeFault::Missing), _) => FingerKnowledge::NoCode,
             (Some(CodeFault::Range), _) => FingerKnowledge::SensorFault,
             _ if self.was_late => FingerKnowledge::Late,
-            (None, Some(answer)) => FingerKnowledge::Learnt(answer.trust),
+            (None, Some(trust)) => FingerKnowledge::Learnt(trust),
             (None, None) => self.knowledge,
         };
         self.sequence = self.sequence.wrapping_add(1);
         self.is_asked = true;
-        let (codes, ticks) = sums.codes.counting();
         self.input = Some(LearnerInput {
             sequence: self.sequence,
             restart: (self.restart.take()).map(|place| Restart {
                 place,
                 sensor: self.parameters.sensor,
             }),
-            flux_w_m2: (fault.is_none()).then(|| self.parameters.mean_flux(codes, ticks)),
+            flux_w_m2,
             contact,
         });
-        let is_new = if self.was_late || fault.is_some() {
-            (self.applied.as_mut()).is_some_and(LearnerOutput::approach_mean)
-        } else {
-            let is_known = |answer| {
-                (self.applied.as_ref())
-                    .is_some_and(|applied: &LearnerOutput| applied.is_nearly(answer))
-            };
-            let is_new = (self.output.as_ref()).is_some_and(|answer| !is_known(answer));
-            if is_new {
-                self.applied = self.output;
-            }
-            is_new
-        };
-        self.output = None;
-        self.applied.as_ref().filter(|_| is_new)
+        if self.was_late || fault.is_some() {
+            self.is_new = true;
+            let applied = self.applied.as_mut()?;
+            return applied.approach_mean().then_some(applied);
+        }
+        let learnt = (self.learnt.as_ref()).filter(|_| core::mem::take(&mut self.is_new))?;
+        if (self.applied.as_ref()).is_some_and(|applied| applied.is_nearly(learnt)) {
+            return None;
+        }
+        Some(self.applied.insert(*learnt))
     }
 
-    /// Looks for codes of a window that cannot be right, and notes its sum if the finger was lifted. Not of the first window, which
-    /// has ticks from before the first code.
-    fn judge_codes(&mut self, sums: &WindowSums) {
+    /// Mean flux of the window, 0 without contact; `None` if the codes cannot be right. Notes the codes if the finger has lifted.
+    fn flux_of_window(&mut self) -> Option<Flux> {
+        self.counting_windows = if self.sums.has_contact() {
+            self.parameters.windows_after_lifting + 1
+        } else {
+            self.counting_windows.saturating_sub(1)
+        };
+        // The first window has fewer codes.
         if self.sequence == 0 && !self.is_asked {
-            return;
+            return Some(Flux::ZERO);
         }
-        self.faults.judge(&sums.codes);
-        let (_, counting_ticks) = sums.codes.counting();
-        let rests = self.faults.present().is_none() && counting_ticks == 0;
-        self.resting.add(rests.then_some(sums.codes.sum()));
+        let sums = &self.sums;
+        let codes = (self.faults).judge(sums.codes(), self.code, sums.is_code_missing);
+        let is_valid = self.faults.present().is_none();
+        let counts = self.counting_windows != 0;
+        self.resting.add((is_valid && !counts).then_some(codes));
+        is_valid.then(|| {
+            if counts {
+                self.parameters.mean_flux(codes)
+            } else {
+                Flux::ZERO
+            }
+        })
     }
 
     /// Whether there is an input that the learner has not taken.
@@ -262,18 +244,21 @@ impl FingerLearning {
     /// Keeps the learner's answer for the end of the present window. One to an earlier input than the last is void, and one from
     /// before a restart.
     pub fn put_output(&mut self, output: &LearnerOutput) {
-        if output.sequence == self.sequence && self.is_asked {
-            self.output = Some(*output);
+        if output.sequence != self.sequence || !self.is_asked {
+            return;
+        }
+        self.answer = Some(output.trust);
+        if (self.learnt.as_ref()).is_none_or(|learnt| learnt.revision != output.revision) {
+            self.learnt = Some(*output);
+            self.is_new = true;
         }
     }
 
     /// The last flux, W/m²; `None` before the first code, and if the sensor's codes cannot be right.
     #[must_use]
     pub fn flux(&self) -> Option<Flux> {
-        let [_, Measured { code, .. }] = self.undecided;
-        let ticks = WINDOW_TICKS;
-        (code != 0 && self.faults.present().is_none())
-            .then(|| self.parameters.mean_flux(ticks * u32::from(code), ticks))
+        let is_valid = self.code != 0 && self.faults.present().is_none();
+        is_valid.then(|| (self.parameters).mean_flux(WINDOW_TICKS * u32::from(self.code)))
     }
 
     /// Mean code of the last half second without contact.

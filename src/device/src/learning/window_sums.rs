@@ -4,6 +4,8 @@ use contact_model::fixed_point::Celsius;
 use fixed::types::{I10F22, I20F12, U16F16};
 use thermal_learner::{Contact, Flux, Resistance, WINDOW_TICKS};
 
+use crate::sense::CONTACT_DEBOUNCE_TICKS;
+
 /// `e_skin / sqrt(dt)`, W/(K m²): a scaled flux, K, times this is a heat flux.
 const W_M2_PER_SCALED_K: i64 = 36_999;
 /// `sqrt(dt) / e_skin`, mm² K/W: a resistance, K per K of scaled flux, times this is a thermal resistance.
@@ -21,101 +23,108 @@ pub struct StateAtEnd {
     pub resistance: Option<U16F16>,
     /// Ticks since landing.
     pub ticks_since_landing: u64,
+    /// Whether the finger may be learnt from this window: no jump of the force, and no limited set-point.
+    pub is_steady: bool,
 }
 
-/// Sums of the sensor's codes.
+/// What was measured in a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeasuredTick {
+    /// Code of the sensor.
+    pub code: u16,
+    /// Surface of the display, °C.
+    pub surface: Celsius,
+    /// Whether the finger pressed in the ticks that end with this one.
+    pub presses: bool,
+}
+
+/// Code and surface over some ticks. A surface has four bits less, 4 uK, so that ten have 32 bits.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct CodeSums {
-    /// Over the ticks in which the flux counts as none, and over the others.
-    by_counting: [u32; 2],
-    counting_ticks: u32,
-    /// The bits in which a code differed from the one before.
-    pub changed_bits: u16,
-    /// Whether a tick had no code.
-    pub is_one_missing: bool,
+struct Measured {
+    codes: u32,
+    surface: i32,
 }
 
-impl CodeSums {
-    /// Adds the code of a tick, with the one before, and whether its flux counts.
-    #[inline(always)]
-    pub const fn add(&mut self, code: u16, before: u16, counts: bool) {
-        self.by_counting[counts as usize] += code as u32;
-        self.counting_ticks += counts as u32;
-        self.changed_bits |= code ^ before;
-    }
-
-    /// Sum of all codes.
-    #[must_use]
-    pub const fn sum(&self) -> u32 {
-        self.by_counting[0] + self.by_counting[1]
-    }
-
-    /// Sum of the codes whose flux counts, and their number.
-    #[must_use]
-    pub const fn counting(&self) -> (u32, u32) {
-        (self.by_counting[1], self.counting_ticks)
-    }
-}
+/// Bits by which surfaces are shortened.
+const FEWER: u32 = 4;
 
 /// Sums over the ticks of the present window. They are all that a tick costs; what follows from them is found once a window.
+///
+/// It is known [`CONTACT_DEBOUNCE_TICKS`] ticks later whether the finger pressed in a tick: a force off zero counts when it has
+/// lasted. So codes and surfaces are those of ten ticks that begin and end so much earlier.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WindowSums {
     ticks: u32,
-    /// The sensor's codes.
-    pub codes: CodeSums,
-    /// Display's surface in the ticks in which the finger pressed.
-    surface: i64,
-    touching_ticks: u8,
-    is_unsteady: bool,
+    present: Measured,
+    of_window: Measured,
+    touching_ticks: u32,
+    /// Whether a tick had no code.
+    pub is_code_missing: bool,
 }
 
 impl WindowSums {
-    /// Adds a tick. In one in which the finger presses: the surface of the display, °C, and whether the finger may be learnt from
-    /// this tick: no jump of the force, and no limited set-point. Returns whether the window is complete.
+    /// Adds a tick. Returns whether the window is complete.
     #[inline(always)]
-    pub fn add(&mut self, contact: Option<(Celsius, bool)>) -> bool {
+    pub fn add(&mut self, tick: &MeasuredTick) -> bool {
+        self.present.codes += u32::from(tick.code);
+        self.present.surface += tick.surface.to_bits() >> FEWER;
+        self.touching_ticks += u32::from(tick.presses);
         self.ticks += 1;
-        if let Some((surface, is_steady)) = contact {
-            self.surface += i64::from(surface.to_bits());
-            self.touching_ticks = self.touching_ticks.wrapping_add(1);
-            self.is_unsteady |= !is_steady;
+        if self.ticks == WINDOW_TICKS - CONTACT_DEBOUNCE_TICKS {
+            self.of_window = core::mem::take(&mut self.present);
         }
         self.ticks >= WINDOW_TICKS
+    }
+
+    /// The next window.
+    #[must_use]
+    pub fn next(&self) -> Self {
+        Self {
+            present: self.present,
+            ..Self::default()
+        }
+    }
+
+    /// Sum of the ten codes.
+    #[must_use]
+    pub const fn codes(&self) -> u32 {
+        self.of_window.codes
+    }
+
+    /// Whether the finger pressed in a tick.
+    #[must_use]
+    pub const fn has_contact(&self) -> bool {
+        self.touching_ticks != 0
     }
 
     /// The contact of the window, if it had one.
     #[must_use]
     pub fn contact(&self, state: &StateAtEnd) -> Option<Contact> {
-        if self.touching_ticks == 0 {
+        if !self.has_contact() {
             return None;
         }
-        let skin = i64::from(state.skin?.to_bits()) * i64::from(self.touching_ticks);
-        // Ten differences of temperatures, less four bits, which are 4 uK: a division of 32 bits.
-        const FEWER: u32 = 4;
-        let sum = ((skin - self.surface) >> FEWER) as i32;
-        let mean = sum / WINDOW_TICKS as i32 * (1 << FEWER);
+        // In the window of a landing the surface before it counts, too, which is nearly the same.
+        let surface = self.of_window.surface / WINDOW_TICKS as i32 * (1 << FEWER);
+        let above = state.skin?.saturating_sub(Celsius::from_bits(surface));
+        let of_tick = Celsius::from_bits(above.to_bits() / WINDOW_TICKS as i32);
         let air_bits = i64::from(state.scaled_air_flux.to_bits()) * W_M2_PER_SCALED_K;
         let air_bits = air_bits >> (I10F22::FRAC_NBITS - I20F12::FRAC_NBITS);
         let resistance = state.resistance.map_or(Resistance::ZERO, |scaled| {
             scaled.saturating_mul(MM2K_W_PER_SCALED)
         });
         Some(Contact {
-            touching_ticks: self.touching_ticks,
-            skin_above_display_k: Celsius::from_bits(mean),
+            touching_ticks: self.touching_ticks as u8,
+            skin_above_display_k: of_tick.saturating_mul_int(self.touching_ticks as i32),
             air_flux_w_m2: Flux::from_bits(air_bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32),
             resistance_mm2k_w: resistance,
             ticks_since_landing: state.ticks_since_landing.min(u32::MAX.into()) as u32,
-            is_steady: !self.is_unsteady && state.resistance.is_some(),
+            is_steady: state.is_steady && state.resistance.is_some(),
         })
     }
 }
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
-
-    use std::vec::Vec;
-
     use contact_model::fixed_point::OwnResistances;
     use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
     use contact_model::reference::contact_resistance;
@@ -128,45 +137,48 @@ mod tests {
         scaled_air_flux: Celsius::ZERO,
         resistance: Some(U16F16::ONE),
         ticks_since_landing: 30,
+        is_steady: true,
     };
 
-    proptest! {
-        #[test]
-        fn means_are_those_of_the_ticks(
-            skin_c in -20.0..60.0,
-            ticks in prop::collection::vec(prop::option::of((-20.0..60.0, prop::bool::weighted(0.9))), WINDOW_TICKS as usize),
-        ) {
-            let mut sums = WindowSums::default();
-            for (number, contact) in (1..).zip(&ticks) {
-                let contact = contact.map(|(surface_c, is_steady)| (Celsius::from_num(surface_c), is_steady));
-                prop_assert_eq!(sums.add(contact), number == WINDOW_TICKS);
-            }
-            let state = StateAtEnd { skin: Some(Celsius::from_num(skin_c)), ..STATE };
-            let contacts: Vec<_> = ticks.iter().flatten().collect();
-            let found = sums.contact(&state);
-            prop_assert_eq!(found.is_some(), !contacts.is_empty());
-            prop_assert_eq!(sums.contact(&StateAtEnd { skin: None, ..state }), None);
-            if let Some(found) = found {
-                let above_k = contacts.iter().map(|contact| skin_c - contact.0).sum::<f64>() / 10.0;
-                let apart_k = above_k - found.skin_above_display_k.to_num::<f64>();
-                prop_assert!(apart_k.abs() <= 5e-6, "{}", apart_k);
-                prop_assert_eq!(usize::from(found.touching_ticks), contacts.len());
-                prop_assert_eq!(found.is_steady, contacts.iter().all(|contact| contact.1));
-            }
-        }
+    fn tick() -> impl Strategy<Value = MeasuredTick> {
+        (0..4096u16, -20.0..60.0, any::<bool>()).prop_map(|(code, surface_c, presses)| MeasuredTick {
+            code,
+            surface: Celsius::from_num(surface_c),
+            presses,
+        })
+    }
 
+    proptest! {
+        /// Code and surface are those of two ticks earlier.
         #[test]
-        fn codes_are_added_by_whether_they_count(ticks in prop::collection::vec((0..4096u16, any::<bool>()), 10)) {
-            let (mut sums, mut before) = (CodeSums::default(), ticks[0].0);
-            for (code, counts) in &ticks {
-                sums.add(*code, before, *counts);
-                before = *code;
+        fn sums_are_those_of_the_ticks(skin_c in -20.0..60.0, ticks in prop::collection::vec(tick(), 50)) {
+            let mut sums = WindowSums::default();
+            for (number, tick) in ticks.iter().enumerate() {
+                let is_complete = sums.add(tick);
+                prop_assert_eq!(is_complete, number % 10 == 9);
+                if !is_complete {
+                    continue;
+                }
+                let measured = &ticks[(number - 9).saturating_sub(2)..number - 1];
+                let codes: u32 = measured.iter().map(|tick| u32::from(tick.code)).sum();
+                prop_assert_eq!(sums.codes(), codes);
+                let pressed = ticks[number - 9..=number].iter().filter(|tick| tick.presses).count();
+                let state = StateAtEnd { skin: Some(Celsius::from_num(skin_c)), ..STATE };
+                let found = sums.contact(&state);
+                prop_assert_eq!(found.is_some(), pressed > 0);
+                prop_assert_eq!(sums.contact(&StateAtEnd { skin: None, ..state }), None);
+                if let Some(found) = found {
+                    prop_assert_eq!(usize::from(found.touching_ticks), pressed);
+                    prop_assert!(found.is_steady);
+                    let unsteady = StateAtEnd { is_steady: false, ..state };
+                    prop_assert!(sums.contact(&unsteady).is_some_and(|contact| !contact.is_steady));
+                    let surface_c = measured.iter().map(|tick| tick.surface.to_num::<f64>()).sum::<f64>() / 10.0;
+                    let apart_k = (skin_c - surface_c) * pressed as f64 / 10.0
+                        - found.skin_above_display_k.to_num::<f64>();
+                    prop_assert!(apart_k.abs() <= 1e-5, "{}", apart_k);
+                }
+                sums = sums.next();
             }
-            let counting = ticks.iter().filter(|tick| tick.1);
-            let sum = |ticks: &mut dyn Iterator<Item = &(u16, bool)>| ticks.map(|tick| u32::from(tick.0)).sum::<u32>();
-            prop_assert_eq!(sums.counting(), (sum(&mut counting.clone()), counting.count() as u32));
-            prop_assert_eq!(sums.sum(), sum(&mut ticks.iter()));
-            prop_assert_eq!(sums.changed_bits != 0, ticks.iter().any(|tick| tick.0 != ticks[0].0));
         }
     }
 
@@ -189,7 +201,12 @@ mod tests {
             .expected_display_resistance(&OwnResistances::NONE);
         let exact_m2k_w = contact_resistance(&SKIN.surface, &REFERENCE_DISPLAY, pressure_pa);
         let mut sums = WindowSums::default();
-        sums.add(Some((Celsius::ONE, true)));
+        let tick = MeasuredTick {
+            code: 0,
+            surface: Celsius::ONE,
+            presses: true,
+        };
+        sums.add(&tick);
         let state = StateAtEnd {
             scaled_air_flux: Celsius::from_num(-0.003),
             resistance: Some(scaled),

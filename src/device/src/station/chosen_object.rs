@@ -2,7 +2,7 @@
 
 use contact_model::contact_law::ContactLaw;
 use contact_model::fixed_point::{
-    Body, Celsius, ContactPair, FingerBody, Fraction, OwnResistances, ScaledBody,
+    Body, Celsius, ContactPair, Fraction, OwnResistances, ScaledBody,
 };
 use contact_model::material::{MATERIALS, SKIN, Surface};
 use fixed::types::{I4F28, U16F16};

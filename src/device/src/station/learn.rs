@@ -2,13 +2,14 @@
 
 use contact_model::fixed_point::{Celsius, TissueStateFactors, TissueWeights, product};
 use fixed::types::U16F16;
-use thermal_learner::{LearnerInput, LearnerOutput, Place};
+use thermal_learner::{LearnerInput, LearnerOutput, Place, WINDOW_TICKS};
 
 use super::{DueWork, Station};
 use crate::command::{AssumedFinger, FluxState, Refused};
-use crate::estimate::ForceChange;
 use crate::events::DeviceEventKind;
-use crate::learning::{FingerKnowledge, FingerLearning, FluxParameters, RestingCode, StateAtEnd};
+use crate::learning::{
+    FingerKnowledge, FingerLearning, FluxParameters, MeasuredTick, RestingCode, StateAtEnd,
+};
 
 /// Largest difference of display and room at which the flux from display to air counts as none, K: some 3 W/m².
 const ZERO_DIFFERENCE_MAX: Celsius = Celsius::lit("0.3");
@@ -80,26 +81,19 @@ impl Station {
 
     /// [`crate::Device::note_flux_code`]. Adds the last tick to the learner's window.
     #[inline(always)]
-    pub(crate) fn note_flux_code(&mut self, code: Option<u16>) {
+    pub(crate) fn note_flux_code(&mut self, code: Option<u16>) -> bool {
         let Some(learning) = &mut self.learning else {
-            return;
+            return false;
         };
-        let surface = self.estimator.plate.surface();
-        let presses = self.contact.is_force_nonzero_debounced();
-        let is_steady = || {
-            let contact = self.estimator.finger.contact();
-            contact.is_some_and(|contact| contact.force_change() != ForceChange::New)
-                && !(self.last.reference).is_some_and(|reference| reference.limited)
+        let tick = MeasuredTick {
+            code: learning.note_code(code),
+            surface: self.estimator.plate.surface().unwrap_or_default(),
+            presses: self.contact.is_force_nonzero_debounced(),
         };
-        if learning.add_tick(code, surface, presses, is_steady) {
+        if learning.add_tick(&tick) {
             self.due.add(DueWork::FLUX_WINDOW);
         }
-    }
-
-    /// [`crate::Device::finger_has_learner_input`].
-    pub(crate) fn has_learner_input(&self) -> bool {
-        let learning = self.learning.as_ref();
-        learning.is_some_and(|learning| learning.has_input())
+        learning.has_input()
     }
 
     /// [`crate::Device::take_learner_input`].
@@ -150,6 +144,9 @@ impl Station {
             scaled_air_flux: product(above_room, assumed.body().air),
             resistance: conductances.map(|both| both.expected_display_resistance(resistances)),
             ticks_since_landing: contact.map_or(0, |contact| contact.ticks_since_landing()),
+            is_steady: contact.is_some_and(|contact| {
+                !contact.force_means().have_jumped_within(WINDOW_TICKS)
+            }) && !(self.last.reference).is_some_and(|reference| reference.limited),
         };
         let before = learning.knowledge();
         let learnt = learning.end_window(&state).filter(|_| assumed.is_layered());
