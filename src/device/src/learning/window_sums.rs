@@ -141,10 +141,12 @@ mod tests {
     };
 
     fn tick() -> impl Strategy<Value = MeasuredTick> {
-        (0..4096u16, -20.0..60.0, any::<bool>()).prop_map(|(code, surface_c, presses)| MeasuredTick {
-            code,
-            surface: Celsius::from_num(surface_c),
-            presses,
+        (0..4096u16, -20.0..60.0, any::<bool>()).prop_map(|(code, surface_c, presses)| {
+            MeasuredTick {
+                code,
+                surface: Celsius::from_num(surface_c),
+                presses,
+            }
         })
     }
 
@@ -173,8 +175,8 @@ mod tests {
                     let unsteady = StateAtEnd { is_steady: false, ..state };
                     prop_assert!(sums.contact(&unsteady).is_some_and(|contact| !contact.is_steady));
                     let surface_c = measured.iter().map(|tick| tick.surface.to_num::<f64>()).sum::<f64>() / 10.0;
-                    let apart_k = (skin_c - surface_c) * pressed as f64 / 10.0
-                        - found.skin_above_display_k.to_num::<f64>();
+                    let above_k: f64 = (skin_c - surface_c) * pressed as f64 / 10.0;
+                    let apart_k = above_k - found.skin_above_display_k.to_num::<f64>();
                     prop_assert!(apart_k.abs() <= 1e-5, "{}", apart_k);
                 }
                 sums = sums.next();

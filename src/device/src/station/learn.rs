@@ -144,9 +144,9 @@ impl Station {
             scaled_air_flux: product(above_room, assumed.body().air),
             resistance: conductances.map(|both| both.expected_display_resistance(resistances)),
             ticks_since_landing: contact.map_or(0, |contact| contact.ticks_since_landing()),
-            is_steady: contact.is_some_and(|contact| {
-                !contact.force_means().have_jumped_within(WINDOW_TICKS)
-            }) && !(self.last.reference).is_some_and(|reference| reference.limited),
+            is_steady: contact
+                .is_some_and(|contact| !contact.force_means().have_jumped_within(WINDOW_TICKS))
+                && !(self.last.reference).is_some_and(|reference| reference.limited),
         };
         let before = learning.knowledge();
         let learnt = learning.end_window(&state).filter(|_| assumed.is_layered());
