@@ -157,7 +157,7 @@ mod app {
             return;
         };
         let output = cx.local.learner.advance(&input);
-        device.lock(|device| device.put_learner_output(FINGER, &output));
+        device.lock(|device| device.put_learner_output(FINGER, output));
     }
 
     #[task(priority = 1, shared = [device, &task_liveness], local = [console])]

@@ -64,11 +64,10 @@ impl ControlLoop {
         };
         self.window_watchdog.feed();
         // All that a sensor needs in one place, so that a tick without one asks once.
-        if device.finger_has_flux_sensor(finger) {
-            device.note_flux_code(finger, self.flux_converter.take_code_and_start_next());
-            if device.finger_has_learner_input(finger) {
-                start_learner();
-            }
+        if device.finger_has_flux_sensor(finger)
+            && device.note_flux_code(finger, self.flux_converter.take_code_and_start_next())
+        {
+            start_learner();
         }
         let stage = &mut self.stages[finger.index()];
         let inputs = DigitalInputs {

@@ -35,7 +35,7 @@ fn step<const FINGERS: usize>(
     for (code, tick) in codes.into_iter().zip(0u16..) {
         let count = |counts: u16| counts * SCANS_PER_TICK as u16 + tick % 2;
         if bench.device.finger_has_flux_sensor(finger) {
-            bench.device.note_flux_code(finger, code);
+            bench.device.note_flux_code(finger, Some(code));
         }
         let samples = Samples {
             force: count(force),
@@ -45,7 +45,7 @@ fn step<const FINGERS: usize>(
         bench.device.step_finger(finger, &samples);
         if let Some(input) = bench.device.take_learner_input(finger) {
             let output = learner.advance(&input);
-            bench.device.put_learner_output(finger, &output);
+            bench.device.put_learner_output(finger, output);
         }
     }
 }

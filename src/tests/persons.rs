@@ -24,11 +24,15 @@ fn windows<const FINGERS: usize>(
 ) -> Option<Restart> {
     let mut begun = None;
     for tick in 0..20 {
-        bench.device.note_flux_code(finger, 2048 + tick % 2);
+        bench.device.note_flux_code(finger, Some(2048 + tick % 2));
         bench.device.step_finger(finger, &samples(tick % 2));
         if let Some(input) = bench.device.take_learner_input(finger) {
             begun = input.restart.or(begun);
-            let output = change(Learner::new().advance(&input));
+            let output = LearnerOutput {
+                revision: input.sequence,
+                ..*Learner::new().advance(&input)
+            };
+            let output = change(output);
             bench.device.put_learner_output(finger, &output);
         }
     }

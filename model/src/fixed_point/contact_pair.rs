@@ -81,7 +81,7 @@ impl ContactPair {
         self.with_pressure_term(law.power(log2_relative_pressure))
     }
 
-    #[inline]
+    #[inline(never)]
     fn with_pressure_term(&self, log2: Log2) -> Contact {
         let pressure_term = MantissaExponent::from_log2(log2);
         Contact {

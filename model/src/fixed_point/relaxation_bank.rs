@@ -106,7 +106,8 @@ impl<const FAST: usize, const SLOW: usize> StateFactors<FAST, SLOW> {
         for ((own, from), to) in factors.fast.iter_mut().zip(from.fast).zip(to.fast) {
             *own = ratio(from.input_gain, to.input_gain);
         }
-        for ((own, from), to) in factors.slow.iter_mut().zip(from.slow).zip(to.slow) {
+        let slow = factors.slow.iter_mut().zip(from.slow).zip(to.slow);
+        for ((own, from), to) in slow.take(to.slow_count) {
             *own = ratio(from.input_gain, to.input_gain);
         }
         factors
@@ -304,15 +305,16 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
     /// Makes the state, which the relaxations `from` of [`StateFactors::new`] have made, the one that the relaxations `to`
     /// would have made by the same fluxes; error of each state at most 2^-30 times the state before, per call, and of the
     /// surface the resolution of the states' sum.
+    #[inline(never)]
     pub fn rescale(&mut self, factors: &StateFactors<FAST, SLOW>, to: &Relaxations<'_>) {
         let (mut fast_sum, mut slow_sum) = (Celsius::ZERO, Celsius::ZERO);
-        for (state, factor) in self.fast.iter_mut().zip(factors.fast) {
+        for ((state, factor), _) in self.fast.iter_mut().zip(factors.fast).zip(to.fast) {
             *state = rescaled(*state, factor);
             fast_sum = fast_sum.saturating_add(celsius(*state));
         }
         let mut decay = I10F54::ZERO;
         let slow = self.slow.iter_mut().zip(factors.slow);
-        for ((state, factor), relaxation) in slow.zip(to.slow) {
+        for ((state, factor), relaxation) in slow.zip(to.slow).take(to.slow_count) {
             *state = limited(rescaled(*state, factor));
             slow_sum = slow_sum.saturating_add(celsius(*state));
             decay += celsius(*state).wide_mul(relaxation.decay);

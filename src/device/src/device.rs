@@ -102,16 +102,12 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
         self.station(finger).has_flux_sensor()
     }
 
-    /// Notes the code of a finger's heat-flux sensor, 0 to 4095, for its next tick. To be called before each tick of a finger
-    /// that [has such a sensor](Self::finger_has_flux_sensor), and for no other.
-    pub fn note_flux_code(&mut self, finger: FingerIndex<FINGERS>, code: u16) {
-        self.station_mut(finger).note_flux_code(code);
-    }
-
-    /// Whether the learner of a finger has something to work on.
-    #[must_use]
-    pub fn finger_has_learner_input(&self, finger: FingerIndex<FINGERS>) -> bool {
-        self.station(finger).has_learner_input()
+    /// Notes the code of a finger's heat-flux sensor, 0 to 4095; `None` if its conversion has not ended, as in the first tick. To be
+    /// called before each tick of a finger that [has such a sensor](Self::finger_has_flux_sensor), and for no other.
+    /// Returns whether the finger's learner has something to work on.
+    #[inline]
+    pub fn note_flux_code(&mut self, finger: FingerIndex<FINGERS>, code: Option<u16>) -> bool {
+        self.station_mut(finger).note_flux_code(code)
     }
 
     /// What the learner of a finger must work on, once after every tenth tick with a flux code.

@@ -45,6 +45,9 @@ pub struct Learner {
     ticks_since_landing: u32,
     /// Contacts since the restart or the last distrust that were trusted and long enough to be stored.
     stored_contacts: u8,
+    /// Whether the estimate has changed since the last output. Most windows without contact and most of a long one leave it.
+    has_changed: bool,
+    output: LearnerOutput,
 }
 
 impl Default for Learner {
@@ -72,6 +75,8 @@ impl Learner {
             windows_in_contact: None,
             ticks_since_landing: 0,
             stored_contacts: 0,
+            has_changed: true,
+            output: LearnerOutput::MEAN,
         }
     }
 
@@ -90,9 +95,12 @@ impl Learner {
     }
 
     /// Takes one window's measurements, and returns what is known of the finger after it.
-    pub fn advance(&mut self, input: &LearnerInput) -> LearnerOutput {
+    pub fn advance(&mut self, input: &LearnerInput) -> &LearnerOutput {
         if let Some(restart) = input.restart {
-            *self = Self::begin(restart);
+            *self = Self {
+                output: self.output,
+                ..Self::begin(restart)
+            };
         }
         let lagged = self.signals.advance(input, &self.sensor);
         let mut person = None;
@@ -119,6 +127,7 @@ impl Learner {
                 if self.windows_in_contact.take().is_some() {
                     self.estimate.widen(&self.scale);
                     person = self.person_after_contact();
+                    self.has_changed = true;
                 }
             }
         }
@@ -132,6 +141,7 @@ impl Learner {
     fn land(&mut self) {
         if !self.judge.land() {
             self.estimate = self.prior();
+            self.has_changed = true;
         }
     }
 
@@ -165,6 +175,7 @@ impl Learner {
         let zero_k = factor * resistance_m2k_w * ZERO_ERROR_W_M2;
         let variance_k2 =
             (model_k2 + zero_k * zero_k + SURFACE_ERROR_K * SURFACE_ERROR_K) / f32::from(every);
+        self.has_changed = true;
         let innovation = self.estimate.update(&measurement, variance_k2, &self.scale);
         let parameters = &self.estimate.parameters;
         let state = (resistance_m2k_w, ticks);
@@ -175,6 +186,7 @@ impl Learner {
     /// Takes the parameters towards those of the mean finger, in some 100 ms so that set-points do not jump. That the contact
     /// is better than usual is kept.
     fn approach_mean(&mut self, why: Distrust) {
+        self.has_changed = true;
         for (index, parameter) in self.estimate.parameters.iter_mut().enumerate() {
             if index != RESISTANCE || why != Distrust::Wet {
                 *parameter *= REMAINING_IF_DISTRUSTED;
@@ -182,9 +194,14 @@ impl Learner {
         }
     }
 
-    fn output(&self, sequence: u16, person: Option<PersonPrior>) -> LearnerOutput {
-        let variances = self.estimate.variances();
-        let (parameters, trust) = (&self.estimate.parameters, self.judge.trust());
-        LearnerOutput::new(sequence, parameters, &variances, &self.scale, trust, person)
+    fn output(&mut self, sequence: u16, person: Option<PersonPrior>) -> &LearnerOutput {
+        if self.has_changed {
+            let revision = self.output.revision.wrapping_add(1);
+            self.output = LearnerOutput::new(revision, &self.estimate, &self.scale);
+            self.has_changed = false;
+        }
+        (self.output.sequence, self.output.trust) = (sequence, self.judge.trust());
+        self.output.person = person;
+        &self.output
     }
 }

@@ -4,7 +4,8 @@ use contact_model::fixed_point::{Celsius, WEIGHTS};
 use fixed::traits::Fixed;
 use fixed::types::{I2F30, I4F28, U2F30, U4F28, U10F22};
 
-use crate::parameters::{AIR, PARAMETERS, Parameters, RESISTANCE, SKIN, Scale, relative_weights};
+use crate::estimate::Estimate;
+use crate::parameters::{AIR, PARAMETERS, RESISTANCE, SKIN, Scale, relative_weights};
 use crate::person::PersonPrior;
 use crate::trust::Trust;
 
@@ -19,6 +20,8 @@ const RESISTANCE_TOLERANCE: U4F28 = U4F28::lit("0x.002");
 pub struct LearnerOutput {
     /// Number of the input's window.
     pub sequence: u16,
+    /// Counts the changes of what follows, but for the trust.
+    pub revision: u16,
     /// Weights of the tissue over those of the mean finger, 0.4 to 2, for `TissueWeights`.
     pub weights: [I2F30; WEIGHTS],
     /// Relative change of the flux that the air took before contact, -1 to 1.5.
@@ -42,27 +45,45 @@ fn to_fixed<T: Fixed<Bits = i32>>(value: f32) -> T {
     T::from_bits((value * (1u32 << T::FRAC_NBITS) as f32) as i32)
 }
 
+/// Results in fixed point. In a loop: `map` unrolls.
+fn all_to_fixed<T: Fixed<Bits = i32>, const N: usize>(values: &[f32; N]) -> [T; N] {
+    let mut all = [T::ZERO; N];
+    for (fixed, value) in all.iter_mut().zip(values) {
+        *fixed = to_fixed(*value);
+    }
+    all
+}
+
 impl LearnerOutput {
-    /// Converts parameters and variances within their limits.
-    pub fn new(
-        sequence: u16,
-        parameters: &Parameters,
-        variances: &Parameters,
-        scale: &Scale,
-        trust: Trust,
-        person: Option<PersonPrior>,
-    ) -> Self {
+    /// The mean finger, before the first output.
+    pub(crate) const MEAN: Self = Self {
+        sequence: 0,
+        revision: 0,
+        weights: [I2F30::ONE; WEIGHTS],
+        air_change: I4F28::ZERO,
+        skin_offset_k: Celsius::ZERO,
+        resistance_factor: I4F28::ONE,
+        trust: Trust::Learning,
+        parameters: [I4F28::ZERO; PARAMETERS],
+        variances: [I2F30::ZERO; PARAMETERS],
+        person: None,
+    };
+
+    /// What is known, before it has a window's number, trust and person. Parameters and variances are within their limits.
+    pub fn new(revision: u16, estimate: &Estimate, scale: &Scale) -> Self {
+        let parameters = &estimate.parameters;
         let change = |index: usize| parameters[index] * scale.deviations[index];
         Self {
-            sequence,
-            weights: relative_weights(parameters).map(to_fixed),
+            sequence: 0,
+            revision,
+            weights: all_to_fixed(&relative_weights(parameters)),
             air_change: to_fixed(change(AIR)),
             skin_offset_k: to_fixed(change(SKIN)),
             resistance_factor: to_fixed(1.0 + change(RESISTANCE)),
-            trust,
-            parameters: parameters.map(to_fixed),
-            variances: variances.map(to_fixed),
-            person,
+            trust: Trust::Learning,
+            parameters: all_to_fixed(parameters),
+            variances: all_to_fixed(&estimate.variances()),
+            person: None,
         }
     }
 
@@ -77,24 +98,25 @@ impl LearnerOutput {
             && self.resistance_factor.abs_diff(other.resistance_factor) <= RESISTANCE_TOLERANCE
     }
 
-    /// The next output on the way to the mean finger if the learner does not answer: to a twentieth in ten windows, as the learner
-    /// itself goes there.
-    #[must_use]
-    pub fn nearer_to_mean(&self) -> Self {
-        let change = self.resistance_factor.saturating_sub(I4F28::ONE);
-        Self {
-            weights: self.weights.map(|weight| {
-                I2F30::ONE.saturating_add(remaining(weight.saturating_sub(I2F30::ONE)))
-            }),
-            air_change: remaining(self.air_change),
-            skin_offset_k: remaining(self.skin_offset_k),
-            resistance_factor: I4F28::ONE.saturating_add(remaining(change)),
-            ..*self
+    /// Goes a step on the way to the mean finger, as if the learner did not answer: to a twentieth in ten windows, as the learner
+    /// itself goes there. Returns whether something has changed.
+    pub fn approach_mean(&mut self) -> bool {
+        let before = (self.air_change, self.skin_offset_k, self.resistance_factor);
+        let mut has_changed = false;
+        for weight in &mut self.weights {
+            let next = approached(*weight, I2F30::ONE);
+            has_changed |= next != *weight;
+            *weight = next;
         }
+        self.air_change = approached(self.air_change, I4F28::ZERO);
+        self.skin_offset_k = approached(self.skin_offset_k, Celsius::ZERO);
+        self.resistance_factor = approached(self.resistance_factor, I4F28::ONE);
+        has_changed | ((self.air_change, self.skin_offset_k, self.resistance_factor) != before)
     }
 }
 
-/// Three quarters of a change; nothing of one of three units or less.
-fn remaining<T: Fixed<Bits = i32>>(change: T) -> T {
-    T::from_bits(change.to_bits() / 4 * 3)
+/// The mean value and three quarters of the change from it; of one of three units or less nothing.
+fn approached<T: Fixed<Bits = i32>>(value: T, mean: T) -> T {
+    let change = value.to_bits().saturating_sub(mean.to_bits());
+    T::from_bits(mean.to_bits().saturating_add(change / 4 * 3))
 }

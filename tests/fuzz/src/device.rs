@@ -138,12 +138,12 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
         if self.device.finger_has_flux_sensor(finger) {
             // Some flux under a force, with the noise of another channel.
             let code = 1843 + samples.force / 32 + samples.display % 4;
-            self.device.note_flux_code(finger, code);
+            self.device.note_flux_code(finger, Some(code));
         }
         let outputs = self.device.step_finger(finger, samples);
         if let Some(input) = self.device.take_learner_input(finger) {
             let output = self.learners[finger.index()].advance(&input);
-            self.device.put_learner_output(finger, &output);
+            self.device.put_learner_output(finger, output);
         }
         let Status {
             state, setpoint, ..

@@ -99,7 +99,7 @@ struct Finger {
     fault: bool,
     outputs: BoardOutputs,
     /// Code of the conversion that the last tick with a heat-flux sensor has started; 0 before the first.
-    flux_code: u16,
+    flux_code: Option<u16>,
     /// Runs only with a heat-flux sensor.
     learner: Learner,
 }
@@ -116,7 +116,7 @@ impl Finger {
             settling_scans,
             fault: false,
             outputs: OFF,
-            flux_code: 0,
+            flux_code: None,
             learner: Learner::new(),
         };
         finger.discard_scans(more_at_first);
@@ -259,18 +259,14 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         let samples = finger.samples(shared, needs_scatter);
         if self.device.finger_has_flux_sensor(index) {
             // The board for five fingers has no converter for it.
-            let converted = if FINGERS == 1 {
-                finger.world.flux_code()
-            } else {
-                0
-            };
+            let converted = (FINGERS == 1).then(|| finger.world.flux_code());
             let code = std::mem::replace(&mut finger.flux_code, converted);
             self.device.note_flux_code(index, code);
         }
         let outputs = self.device.step_finger(index, &samples);
         if let Some(input) = self.device.take_learner_input(index) {
             let output = finger.learner.advance(&input);
-            self.device.put_learner_output(index, &output);
+            self.device.put_learner_output(index, output);
         }
         match outputs.comparator_test {
             ComparatorTest::None => {}
@@ -368,7 +364,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         self.hung_ms = None;
         self.side_is_high = false;
         for finger in &mut self.fingers {
-            (finger.fault, finger.outputs, finger.flux_code) = (false, OFF, 0);
+            (finger.fault, finger.outputs, finger.flux_code) = (false, OFF, None);
             finger.learner = Learner::new();
         }
         self.resets.push(DeviceReset {

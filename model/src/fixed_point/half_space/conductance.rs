@@ -119,6 +119,7 @@ pub const fn inverse(n: u32) -> u32 {
 }
 
 /// `ratio / (rate weight)`; saturates.
+#[inline(never)]
 fn resistance(ratio: Ratio, rate: MantissaExponent, weight: Fraction) -> U16F16 {
     let product = u64::from(rate.leading()) * u64::from(weight.to_bits());
     let zeros = product.leading_zeros();

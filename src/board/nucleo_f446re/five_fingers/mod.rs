@@ -82,9 +82,9 @@ pub struct NoFluxConverter;
 pub use NoFluxConverter as FluxConverter;
 
 impl NoFluxConverter {
-    /// Always 0, which lies beyond the range of a sensor.
-    pub fn take_code_and_start_next(&mut self) -> u16 {
-        0
+    /// Always `None`.
+    pub fn take_code_and_start_next(&mut self) -> Option<u16> {
+        None
     }
 }
 

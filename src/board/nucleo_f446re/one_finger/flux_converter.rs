@@ -4,9 +4,6 @@ use stm32f4xx_hal::gpio::{Analog, PC5};
 use stm32f4xx_hal::pac::ADC2;
 use stm32f4xx_hal::rcc::{Enable, Rcc};
 
-/// Code in the place of a conversion that has not ended. It lies beyond the sensor's range, so that the device finds the fault.
-const NO_CODE: u16 = 0;
-
 /// ADC2 with the heat-flux sensor on its input 15.
 ///
 /// A tick begins when ADC1 has ended a scan. The conversion that it starts takes 480 + 12 cycles at 22.5 MHz, 21.9 us, and so ends
@@ -28,15 +25,12 @@ impl FluxConverter {
         Self { adc, _input: input }
     }
 
-    /// Returns the code, 0 to 4095, of the conversion that the last call has started, and starts the next one. 0 if it has not
+    /// Returns the code, 0 to 4095, of the conversion that the last call has started, and starts the next one. `None` if it has not
     /// ended, and at the first call.
     #[inline(always)]
-    pub fn take_code_and_start_next(&mut self) -> u16 {
-        let code = if self.adc.sr().read().eoc().is_complete() {
-            self.adc.dr().read().data().bits()
-        } else {
-            NO_CODE
-        };
+    pub fn take_code_and_start_next(&mut self) -> Option<u16> {
+        let has_ended = self.adc.sr().read().eoc().is_complete();
+        let code = has_ended.then(|| self.adc.dr().read().data().bits());
         (self.adc.cr2()).write(|w| w.adon().enabled().swstart().start());
         code
     }

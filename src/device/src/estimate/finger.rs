@@ -39,9 +39,6 @@ const CONDUCTANCE_FORCE_TOLERANCE_SHIFT: u32 = 10;
 /// flux into the display in W/mm².
 const SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2: I2F30 = I2F30::from_bits(39_728_000);
 
-/// A heat flux, W/mm², positive out of the skin.
-pub type FluxPerMm2 = I10F22;
-
 /// Low-pass filtered temperatures of the skin and of the room before a contact. They are not updated from landing until
 /// 2 s after lifting, and not in the first 2 s after a restart of the estimator. The set-points of a contact are
 /// computed from these initial temperatures.
@@ -58,13 +55,7 @@ pub struct PreContactTemperatures {
 /// Updates the filtered temperature `state` of skin or room by the reading `input` of one tick, all in °C. The time
 /// constant is 2^[`SKIN_AND_ROOM_FILTER_SHIFT`] ticks of 1 ms (0.26 s).
 pub(super) fn filter_skin_or_room(state: Celsius, input: Celsius) -> Celsius {
-    state.saturating_add(filter_change(input.saturating_sub(state)))
-}
-
-/// The change of that filter's state in one tick under a `difference` of its input from its state, K.
-#[must_use]
-pub fn filter_change(difference: Celsius) -> Celsius {
-    difference >> SKIN_AND_ROOM_FILTER_SHIFT
+    state.saturating_add(input.saturating_sub(state) >> SKIN_AND_ROOM_FILTER_SHIFT)
 }
 
 /// Thermal contact conductances for one finger force, as scaled heat flux (K) per kelvin: of the real contact between
@@ -270,10 +261,9 @@ pub struct FingerEstimator {
     /// The skin that the host assumes for set-points, to which `before_contact` and `skin_state_on_display` then belong,
     /// and the sensed skin beside it; `None` without an assumption.
     assumed_skin: Option<AssumedSkin>,
-    /// Flux of the last tick into the display by the assumed finger, 0 without contact.
-    modelled_flux: FluxPerMm2,
-    /// What a sensor of the heat flux has measured beyond that.
-    flux_beyond_model: FluxPerMm2,
+    /// What was learnt of the error of the skin's thermistor, K: all temperatures of the sensed skin are by so much above its
+    /// readings.
+    skin_offset: Celsius,
 }
 
 impl FingerEstimator {
@@ -294,6 +284,7 @@ impl FingerEstimator {
     ) {
         let recovered = self.lifted_ticks >= SKIN_RECOVERY_TICKS;
         let is_undisturbed = touch.is_none() && recovered;
+        let skin = skin.saturating_add(self.skin_offset);
         let skin = match &mut self.assumed_skin {
             None => skin,
             Some(assumed) => assumed.update_by_reading(skin, is_undisturbed),
@@ -348,12 +339,15 @@ impl FingerEstimator {
     }
 
     /// Discards the temperatures before contact, the contact, and the cooling of the skin; the next call of
-    /// [`Self::update_by_readings`] starts from its readings. An assumed temperature of the skin stays. Called in each
+    /// [`Self::update_by_readings`] starts from its readings. Assumed temperature and offset of the skin stay. Called in each
     /// tick whose readings are invalid or in which a fault detector finds a fault, because such a tick does not update
     /// the estimates, and a landing or lifting of the finger would be missed.
     pub fn invalidate(&mut self) {
         let assumed = self.assumed_skin.as_ref().map(|skin| skin.temperature);
-        *self = Self::default();
+        *self = Self {
+            skin_offset: self.skin_offset,
+            ..Self::default()
+        };
         self.assume_skin(assumed);
     }
 
@@ -388,35 +382,20 @@ impl FingerEstimator {
         &self.skin_state_on_display
     }
 
-    /// Flux of the last tick into the display by the assumed finger; `None` without contact.
+    /// Temperature of the skin before contact, °C, as its thermistor has it; `None` as [`Self::temperatures_before_contact`].
     #[must_use]
-    pub fn modelled_flux(&self) -> Option<FluxPerMm2> {
-        self.contact.as_ref().map(|_| self.modelled_flux)
-    }
-
-    /// Adds this to the modelled flux from now on.
-    pub const fn set_flux_beyond_model(&mut self, beyond: FluxPerMm2) {
-        self.flux_beyond_model = beyond;
-    }
-
-    /// Whether the last tick has filtered the readings of skin and room.
-    #[must_use]
-    pub const fn has_filtered_skin(&self) -> bool {
-        self.before_contact.is_some() && self.lifted_ticks > SKIN_RECOVERY_TICKS
-    }
-
-    /// Temperature of the sensed skin before contact, °C, as [`Self::temperatures_before_contact`] has it unless the host assumes
-    /// another one.
-    #[must_use]
-    pub fn sensed_skin_before_contact(&self) -> Option<Celsius> {
-        match &self.assumed_skin {
+    pub fn skin_before_contact_by_thermistor(&self) -> Option<Celsius> {
+        let sensed = match &self.assumed_skin {
             None => self.before_contact.map(|before| before.skin),
             Some(assumed) => assumed.sensed,
-        }
+        };
+        sensed.map(|skin| skin.saturating_sub(self.skin_offset))
     }
 
-    /// Changes the temperature of the sensed skin before contact by `change`, K.
-    pub fn shift_sensed_skin(&mut self, change: Celsius) {
+    /// Takes the sensed skin to be by `offset`, K, warmer than its thermistor, at once and from now on.
+    pub fn set_skin_offset(&mut self, offset: Celsius) {
+        let change = offset.saturating_sub(self.skin_offset);
+        self.skin_offset = offset;
         let sensed = match &mut self.assumed_skin {
             None => self.before_contact.as_mut().map(|before| &mut before.skin),
             Some(assumed) => assumed.sensed.as_mut(),
@@ -483,9 +462,8 @@ impl FingerEstimator {
         if let Some(assumed) = &mut self.assumed_skin {
             scaled_flux = assumed.step_sensed_skin(display, bodies, before.room, surface);
         }
-        self.modelled_flux = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
-        let flux = self.modelled_flux.saturating_add(self.flux_beyond_model);
-        saturating_product(flux, contact_area(force))
+        let flux_w_mm2: I10F22 = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
+        saturating_product(flux_w_mm2, contact_area(force))
     }
 }
 

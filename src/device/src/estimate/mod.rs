@@ -8,9 +8,7 @@ mod plate_model;
 mod plate_observer;
 mod skin_state;
 
-pub use finger::{
-    FingerContact, FingerEstimator, FluxPerMm2, PreContactTemperatures, filter_change,
-};
+pub use finger::{FingerContact, FingerEstimator, PreContactTemperatures};
 pub use force_means::{ForceChange, ForceMeans};
 pub use plate_model::{LegTemperatures, PlateModel, Watt};
 pub use plate_observer::{ObserverParameters, PlateObserver};

@@ -1,40 +1,40 @@
 //! Learning of the finger that touches, from a sensor of the heat flux between skin and display.
 //!
 //! ```text
-//! code of the sensor, estimates of the last tick -> sums of a window of ten ticks -> LearnerInput -> learner
-//!                                                                                                     |
-//!                       bodies, skin state, skin before contact <- in the last tick of the next window
+//! code of the sensor, surface and force of the last tick -> sums of a window of ten ticks -> LearnerInput -> learner
+//!                                                                                                            |
+//!                              bodies, skin state, skin before contact <- in the last tick of the next window
 //! ```
 //!
 //! The learner runs outside of the control path. What it has found is applied ten ticks after its input was taken, however
 //! soon it was there, so that its computing time changes nothing.
 
+mod code_faults;
 mod flux_parameters;
-mod flux_reading;
 mod person_state;
 mod resting_code;
 mod window_sums;
 
-use contact_model::fixed_point::Celsius;
-use thermal_learner::{Distrust, Flux, LearnerInput, LearnerOutput, Place, Restart, Trust};
+use thermal_learner::{
+    Distrust, Flux, LearnerInput, LearnerOutput, Place, Restart, Trust, WINDOW_TICKS,
+};
 use thermal_settings::Person;
 
-use crate::estimate::{FluxPerMm2, filter_change};
-use crate::low_pass::LowPass;
-use crate::sense::CONTACT_DEBOUNCE_TICKS;
+use code_faults::{CodeFault, CodeFaults};
 pub use flux_parameters::FluxParameters;
-use flux_reading::FluxReading;
 pub use person_state::PersonState;
 pub use resting_code::RestingCode;
 use resting_code::RestingCodes;
 use window_sums::WindowSums;
-pub use window_sums::{StateAtEnd, TickOfContact};
+pub use window_sums::{MeasuredTick, StateAtEnd};
 
 /// What the host is told about the finger that is learnt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FingerKnowledge {
     /// No sensor of the heat flux is fitted: the assumed finger.
     NoSensor,
+    /// The converter has not converted the sensor's voltage: the assumed finger until the next contact without such a tick.
+    NoCode,
     /// The sensor reads beyond its range, or the same for too long: the assumed finger until the next contact without such codes.
     SensorFault,
     /// The learner has not answered in time: the assumed finger until this contact has ended.
@@ -45,10 +45,11 @@ pub enum FingerKnowledge {
 
 impl FingerKnowledge {
     /// All with their words in the protocol. Those with a reason are on the way to the assumed finger, or there.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 11] = [
+    pub const PROTOCOL_WORDS: [(&'static str, Self); 12] = [
         ("assumed", Self::NoSensor),
         ("learning", Self::Learnt(Trust::Learning)),
         ("trusted", Self::Learnt(Trust::Trusted)),
+        ("no-code", Self::NoCode),
         ("sensor-range", Self::SensorFault),
         ("sensor", Self::Learnt(Trust::Mean(Distrust::Sensor))),
         ("between", Self::Learnt(Trust::Mean(Distrust::Between))),
@@ -70,6 +71,7 @@ impl FingerKnowledge {
     pub const fn name(self) -> &'static str {
         match self {
             Self::NoSensor => "assumed",
+            Self::NoCode => "no-code",
             Self::SensorFault => "sensor-range",
             Self::Late => "late",
             Self::Learnt(Trust::Learning) => "learning",
@@ -86,36 +88,17 @@ impl FingerKnowledge {
     }
 }
 
-/// What was measured at the end of a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Measured {
-    /// Flux out of the skin; `None` if it is not valid.
-    pub flux: Option<Flux>,
-    /// Surface of the display, °C.
-    pub surface: Option<Celsius>,
-}
-
-impl Measured {
-    /// Before the first tick.
-    const NOTHING: Self = Self {
-        flux: Some(Flux::ZERO),
-        surface: None,
-    };
-}
-
 /// Learning of one finger: the sensor, the present window, and what was asked and answered.
 #[derive(Clone, Debug)]
 pub struct FingerLearning {
-    parameters: FluxParameters,
-    reading: FluxReading,
-    resting: RestingCodes,
-    /// The last two ticks, for which it is not known yet whether the finger presses.
-    undecided: [Measured; CONTACT_DEBOUNCE_TICKS as usize],
-    /// Flux that the device assumes, W/mm², behind the sensor's lag.
-    modelled_behind_lag: LowPass,
-    /// Ticks since the finger has lifted.
-    lifted_ticks: u32,
     sums: WindowSums,
+    /// The last code; 0 before the first.
+    code: u16,
+    parameters: FluxParameters,
+    faults: CodeFaults,
+    resting: RestingCodes,
+    /// Windows in which the flux still counts if the finger has lifted.
+    counting_windows: u32,
     /// Number of the last window.
     sequence: u16,
     /// The place of another finger that may follow, for the next input.
@@ -124,14 +107,14 @@ pub struct FingerLearning {
     input: Option<LearnerInput>,
     /// Whether the learner must answer that input before the present window ends, and its answer.
     is_asked: bool,
-    output: Option<LearnerOutput>,
+    answer: Option<Trust>,
+    /// The finger of the last answer, and whether it was not compared with the applied one yet.
+    learnt: Option<LearnerOutput>,
+    is_new: bool,
     /// Whether an answer was missing since the last window without contact.
     was_late: bool,
     /// The finger that was applied last; `None` for the assumed one.
     applied: Option<LearnerOutput>,
-    /// Skin offset that was learnt, and how much of it the filtered temperature of the skin before contact contains, K.
-    skin_offset: Celsius,
-    included_offset: Celsius,
     knowledge: FingerKnowledge,
     person: PersonState,
 }
@@ -141,22 +124,21 @@ impl FingerLearning {
     #[must_use]
     pub fn new(parameters: &FluxParameters, place: Place) -> Self {
         Self {
-            parameters: *parameters,
-            reading: FluxReading::new(parameters),
-            resting: RestingCodes::default(),
-            undecided: [Measured::NOTHING; CONTACT_DEBOUNCE_TICKS as usize],
-            modelled_behind_lag: LowPass::new(parameters.lag),
-            lifted_ticks: u32::MAX,
             sums: WindowSums::default(),
+            code: 0,
+            parameters: *parameters,
+            faults: CodeFaults::default(),
+            resting: RestingCodes::default(),
+            counting_windows: 0,
             sequence: 0,
             restart: Some(place),
             input: None,
             is_asked: false,
-            output: None,
+            answer: None,
+            learnt: None,
+            is_new: false,
             was_late: false,
             applied: None,
-            skin_offset: Celsius::ZERO,
-            included_offset: Celsius::ZERO,
             knowledge: FingerKnowledge::Learnt(Trust::Learning),
             person: PersonState::new(None),
         }
@@ -167,104 +149,49 @@ impl FingerLearning {
     pub fn restart(&mut self, place: Place, person: Option<Person>) {
         self.restart = Some(place);
         self.is_asked = false;
-        self.output = None;
+        self.answer = None;
+        self.learnt = None;
         self.applied = None;
-        self.skin_offset = Celsius::ZERO;
         self.knowledge = FingerKnowledge::Learnt(Trust::Learning);
         self.person = PersonState::new(person);
     }
 
-    /// Skin before contact as its thermistor has it, from the filtered temperature `skin`, which contains the learnt offset.
-    #[must_use]
-    pub const fn skin_without_offset(&self, skin: Celsius) -> Celsius {
-        skin.saturating_sub(self.included_offset)
-    }
-
-    /// The change of the skin's filtered temperature in this tick, K, that lets it follow the thermistor's reading and the learnt
-    /// offset, where the filter itself has followed the reading alone. `is_filtered` is whether it has done so in this tick;
-    /// without an estimate of the skin nothing is included.
-    pub fn skin_change(&mut self, has_estimate: bool, is_filtered: bool) -> Celsius {
-        if !has_estimate {
-            self.included_offset = Celsius::ZERO;
-            return Celsius::ZERO;
+    /// Notes the sensor's code, or that its conversion has not ended, and returns the one that counts.
+    #[inline(always)]
+    pub const fn note_code(&mut self, code: Option<u16>) -> u16 {
+        match code {
+            Some(code) => self.code = code,
+            None => self.sums.is_code_missing = true,
         }
-        if !is_filtered {
-            return Celsius::ZERO;
-        }
-        // The filter has taken the included offset back by its share, which `filter_change` towards the offset makes up for.
-        let lost = filter_change(Celsius::ZERO.saturating_sub(self.included_offset));
-        let change = filter_change(self.skin_offset.saturating_sub(self.included_offset));
-        self.included_offset = self.included_offset.saturating_add(change);
-        change.saturating_sub(lost)
+        self.code
     }
 
-    /// Takes the measurements at the end of the last tick, the sensor's code and the display's surface, and returns those of the
-    /// tick before [`CONTACT_DEBOUNCE_TICKS`] others, of which it is known by now whether the finger pressed: a force off zero
-    /// counts when it has lasted.
-    pub fn take(&mut self, code: u16, surface: Option<Celsius>) -> Measured {
-        let [decided, next] = self.undecided;
-        let flux = self.reading.convert(code);
-        let rests = flux.is_some() && self.is_lifted_for_long();
-        self.resting.add(rests.then_some(code));
-        self.undecided = [next, Measured { flux, surface }];
-        decided
-    }
-
-    /// What the flux of the last tick was beyond the `modelled` one, W/mm²: slow differences as the sensor sees them, while the
-    /// model alone shows what is quicker than the sensor. Nothing without contact, and for a finger that is not trusted.
-    pub fn flux_beyond_model(&mut self, modelled: Option<FluxPerMm2>) -> FluxPerMm2 {
-        let is_trusted = matches!(
-            self.knowledge,
-            FingerKnowledge::Learnt(Trust::Learning | Trust::Trusted)
-        );
-        let [_, Measured { flux, .. }] = self.undecided;
-        let Some((modelled, flux)) = modelled.zip(flux).filter(|_| is_trusted) else {
-            self.modelled_behind_lag.set_output(FluxPerMm2::ZERO);
-            return FluxPerMm2::ZERO;
-        };
-        self.modelled_behind_lag.update_by_input(modelled);
-        let measured = i64::from(flux.to_bits()) << (FluxPerMm2::FRAC_NBITS - Flux::FRAC_NBITS);
-        // A flux has 32 bits, and a million mm² are a m².
-        let measured = FluxPerMm2::from_bits((measured / 1_000_000) as i32);
-        measured.saturating_sub(self.modelled_behind_lag.output())
-    }
-
-    /// Whether the finger has been lifted for so long that a flux is none of its.
-    const fn is_lifted_for_long(&self) -> bool {
-        self.lifted_ticks > self.parameters.ticks_after_lifting
-    }
-
-    /// Adds a tick: its flux, and what was estimated at its end, if the finger pressed. Returns whether the window is complete.
-    pub fn add_tick(&mut self, flux: Option<Flux>, contact: Option<TickOfContact>) -> bool {
-        self.lifted_ticks = match contact {
-            Some(_) => 0,
-            None => self.lifted_ticks.saturating_add(1),
-        };
-        let counts = !self.is_lifted_for_long();
-        let flux = flux.map(|flux| if counts { flux } else { Flux::ZERO });
-        self.sums.add(flux, contact);
-        self.sums.is_complete()
+    /// Adds a tick. Returns whether the window is complete, which [`Self::end_window`] must then end.
+    #[inline(always)]
+    pub fn add_tick(&mut self, tick: &MeasuredTick) -> bool {
+        self.sums.add(tick)
     }
 
     /// Ends a complete window: offers the next input, and returns the finger to be applied now, if it differs enough from the
     /// one that was applied last. That is the answer to the input before; if it is missing, one that is nearer to the assumed finger, until
     /// a window without contact. So it is while the sensor's code cannot be right.
-    #[cold]
-    #[inline(never)]
-    pub fn end_window(&mut self, state: &StateAtEnd) -> Option<LearnerOutput> {
-        let answer = self.output.take();
-        let sums = core::mem::take(&mut self.sums);
-        let contact = sums.contact(state);
+    pub fn end_window(&mut self, state: &StateAtEnd) -> Option<&LearnerOutput> {
+        let contact = self.sums.contact(state);
+        let flux_w_m2 = self.flux_of_window();
+        self.sums = self.sums.next();
+        let (answer, fault) = (self.answer.take(), self.faults.present());
         self.was_late &= contact.is_some();
         self.was_late |= self.is_asked && answer.is_none();
-        self.knowledge = match &answer {
-            _ if self.reading.is_faulty() => FingerKnowledge::SensorFault,
+        self.knowledge = match (fault, answer) {
+            (Some(CodeFault::Missing), _) => FingerKnowledge::NoCode,
+            (Some(CodeFault::Range), _) => FingerKnowledge::SensorFault,
             _ if self.was_late => FingerKnowledge::Late,
-            Some(answer) => FingerKnowledge::Learnt(answer.trust),
-            None => self.knowledge,
+            (None, Some(trust)) => FingerKnowledge::Learnt(trust),
+            (None, None) => self.knowledge,
         };
-        if let Some(answer) = &answer {
-            self.person.note(answer);
+        if let Some(trust) = answer {
+            let person = self.learnt.as_ref().and_then(|learnt| learnt.person);
+            self.person.note(trust, person);
         }
         self.sequence = self.sequence.wrapping_add(1);
         self.is_asked = true;
@@ -275,30 +202,44 @@ impl FingerLearning {
                 sensor: self.parameters.sensor,
                 person: self.person.prior(),
             }),
-            flux_w_m2: sums.mean_flux(),
+            flux_w_m2,
             contact,
         });
-        let next = match &self.applied {
-            applied if self.was_late || self.reading.is_faulty() => applied
-                .and_then(|applied| Some(applied.nearer_to_mean()).filter(|next| *next != applied)),
-            Some(applied) => answer.filter(|answer| !applied.is_nearly(answer)),
-            None => answer,
-        };
-        if next.is_some() {
-            self.applied = next;
+        if self.was_late || fault.is_some() {
+            self.is_new = true;
+            let applied = self.applied.as_mut()?;
+            return applied.approach_mean().then_some(applied);
         }
-        next
+        let learnt = (self.learnt.as_ref()).filter(|_| core::mem::take(&mut self.is_new))?;
+        if (self.applied.as_ref()).is_some_and(|applied| applied.is_nearly(learnt)) {
+            return None;
+        }
+        Some(self.applied.insert(*learnt))
     }
 
-    /// Notes the change of the skin before contact that the learnt offset makes now, K.
-    pub fn adopt_skin_offset(&mut self, offset: Celsius, has_estimate: bool) -> Celsius {
-        self.skin_offset = offset;
-        if !has_estimate {
-            return Celsius::ZERO;
+    /// Mean flux of the window, 0 without contact; `None` if the codes cannot be right. Notes the codes if the finger has lifted.
+    fn flux_of_window(&mut self) -> Option<Flux> {
+        self.counting_windows = if self.sums.has_contact() {
+            self.parameters.windows_after_lifting + 1
+        } else {
+            self.counting_windows.saturating_sub(1)
+        };
+        // The first window has fewer codes.
+        if self.sequence == 0 && !self.is_asked {
+            return Some(Flux::ZERO);
         }
-        let change = offset.saturating_sub(self.included_offset);
-        self.included_offset = offset;
-        change
+        let sums = &self.sums;
+        let codes = (self.faults).judge(sums.codes(), self.code, sums.is_code_missing);
+        let is_valid = self.faults.present().is_none();
+        let counts = self.counting_windows != 0;
+        self.resting.add((is_valid && !counts).then_some(codes));
+        is_valid.then(|| {
+            if counts {
+                self.parameters.mean_flux(codes)
+            } else {
+                Flux::ZERO
+            }
+        })
     }
 
     /// Whether there is an input that the learner has not taken.
@@ -315,28 +256,21 @@ impl FingerLearning {
     /// Keeps the learner's answer for the end of the present window. One to an earlier input than the last is void, and one from
     /// before a restart.
     pub fn put_output(&mut self, output: &LearnerOutput) {
-        if output.sequence == self.sequence && self.is_asked {
-            self.output = Some(*output);
+        if output.sequence != self.sequence || !self.is_asked {
+            return;
+        }
+        self.answer = Some(output.trust);
+        if (self.learnt.as_ref()).is_none_or(|learnt| learnt.revision != output.revision) {
+            self.learnt = Some(*output);
+            self.is_new = true;
         }
     }
 
-    /// How much of the learnt skin offset the filtered temperature of the skin contains, K.
-    #[must_use]
-    pub const fn included_offset(&self) -> Celsius {
-        self.included_offset
-    }
-
-    /// The last flux, W/m²; `None` if the sensor's code cannot be right.
+    /// The last flux, W/m²; `None` before the first code, and if the sensor's codes cannot be right.
     #[must_use]
     pub fn flux(&self) -> Option<Flux> {
-        self.reading.last()
-    }
-
-    /// The display's surface when that flux was read, °C.
-    #[must_use]
-    pub const fn surface(&self) -> Option<Celsius> {
-        let [_, Measured { surface, .. }] = self.undecided;
-        surface
+        let is_valid = self.code != 0 && self.faults.present().is_none();
+        is_valid.then(|| (self.parameters).mean_flux(WINDOW_TICKS * u32::from(self.code)))
     }
 
     /// Mean code of the last half second without contact.

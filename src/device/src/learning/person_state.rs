@@ -1,6 +1,6 @@
 //! The person whose finger touches, and what was learnt of it.
 
-use thermal_learner::{LearnerOutput, PersonPrior, Trust};
+use thermal_learner::{PersonPrior, Trust};
 use thermal_settings::Person;
 
 /// What is known of the person.
@@ -35,11 +35,11 @@ impl PersonState {
         self.learnt.map_or(0, |learnt| learnt.contacts())
     }
 
-    /// Notes what the learner says.
-    pub fn note(&mut self, output: &LearnerOutput) {
-        if matches!(output.trust, Trust::Mean(_)) {
+    /// Notes what the learner says of the finger: its trust, and what can be stored.
+    pub fn note(&mut self, trust: Trust, learnt: Option<PersonPrior>) {
+        if matches!(trust, Trust::Mean(_)) {
             self.learnt = None;
         }
-        self.learnt = output.person.or(self.learnt);
+        self.learnt = learnt.or(self.learnt);
     }
 }

@@ -1,7 +1,9 @@
 //! Mean code of the heat-flux sensor without contact, from which its zero is taken.
 
-/// Ticks of 1 ms over which the mean is taken: half a second, in which the converter's noise of a count becomes 0.04 counts.
-const TICKS: u32 = 512;
+use thermal_learner::WINDOW_TICKS;
+
+/// Windows over which the mean is taken: half a second, in which the converter's noise of a count becomes 0.04 counts.
+const WINDOWS: u32 = 50;
 
 /// Total of the sensor's codes over half a second without contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,32 +13,30 @@ impl RestingCode {
     /// Mean code, counts.
     #[must_use]
     pub fn mean_counts(self) -> f64 {
-        f64::from(self.0) / f64::from(TICKS)
+        f64::from(self.0) / f64::from(WINDOWS * WINDOW_TICKS)
     }
 }
 
-/// Adds up the codes of ticks without contact.
+/// Adds up the codes of windows without contact.
 #[derive(Clone, Debug, Default)]
 pub struct RestingCodes {
     total: u32,
-    ticks: u32,
+    windows: u32,
     last: Option<RestingCode>,
 }
 
 impl RestingCodes {
-    /// Adds the code of a tick; `None` in contact or for one that is not valid, after which nothing counts that was before.
-    pub fn add(&mut self, code: Option<u16>) {
-        let Some(code) = code else {
+    /// Adds the sum of a window's codes; `None` in contact or if one is not valid, after which nothing counts that was before.
+    pub fn add(&mut self, codes: Option<u32>) {
+        let Some(codes) = codes else {
             *self = Self::default();
             return;
         };
-        self.total += u32::from(code);
-        self.ticks += 1;
-        if self.ticks == TICKS {
-            *self = Self {
-                last: Some(RestingCode(self.total)),
-                ..Self::default()
-            };
+        self.total += codes;
+        self.windows += 1;
+        if self.windows == WINDOWS {
+            self.last = Some(RestingCode(self.total));
+            (self.total, self.windows) = (0, 0);
         }
     }
 
@@ -54,17 +54,18 @@ mod tests {
     #[test]
     fn resting_code_is_the_mean_of_half_a_second_since_the_last_contact() {
         let mut codes = RestingCodes::default();
-        let mut add = |code| {
-            codes.add(code);
+        let mut add = |codes_of_window| {
+            codes.add(codes_of_window);
             codes.last().map(RestingCode::mean_counts)
         };
-        for tick in 1..=1500 {
-            let mean = add(Some(2048 + (tick % 2)));
-            assert_eq!(mean, (tick >= 512).then_some(2048.5), "{tick}");
+        for window in 1..=150 {
+            let mean = add(Some(20_480 + 10 * (window % 2)));
+            assert_eq!(mean, (window >= 50).then_some(2048.5), "{window}");
         }
         assert_eq!(add(None), None);
-        for tick in 1..=512 {
-            assert_eq!(add(Some(4095)), (tick == 512).then_some(4095.0), "{tick}");
+        for window in 1..=50 {
+            let mean = add(Some(40_310));
+            assert_eq!(mean, (window == 50).then_some(4031.0), "{window}");
         }
     }
 }

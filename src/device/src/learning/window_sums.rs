@@ -4,23 +4,18 @@ use contact_model::fixed_point::Celsius;
 use fixed::types::{I10F22, I20F12, U16F16};
 use thermal_learner::{Contact, Flux, Resistance, WINDOW_TICKS};
 
+use crate::sense::CONTACT_DEBOUNCE_TICKS;
+
 /// `e_skin / sqrt(dt)`, W/(K m²): a scaled flux, K, times this is a heat flux.
 const W_M2_PER_SCALED_K: i64 = 36_999;
 /// `sqrt(dt) / e_skin`, mm² K/W: a resistance, K per K of scaled flux, times this is a thermal resistance.
 const MM2K_W_PER_SCALED: U16F16 = U16F16::lit("27.028");
 
-/// A tick in which the finger presses on the display.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TickOfContact {
-    /// Skin before contact, as its thermistor has it, less the surface of the display, K.
-    pub skin_above_display: Celsius,
-    /// Whether the finger may be learnt from this tick: no jump of the force, and no limited set-point.
-    pub is_steady: bool,
-}
-
 /// What is known at the end of a window with contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StateAtEnd {
+    /// Skin before contact, as its thermistor has it, °C; `None` without an estimate.
+    pub skin: Option<Celsius>,
     /// Scaled flux that the air took from the assumed finger's skin before contact, K.
     pub scaled_air_flux: Celsius,
     /// Contact resistance of an average skin with the display at the mean force, K per K of scaled flux; `None` before the
@@ -28,87 +23,108 @@ pub struct StateAtEnd {
     pub resistance: Option<U16F16>,
     /// Ticks since landing.
     pub ticks_since_landing: u64,
+    /// Whether the finger may be learnt from this window: no jump of the force, and no limited set-point.
+    pub is_steady: bool,
 }
 
-/// Sums over the ticks of the present window.
-#[derive(Clone, Debug)]
+/// What was measured in a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeasuredTick {
+    /// Code of the sensor.
+    pub code: u16,
+    /// Surface of the display, °C.
+    pub surface: Celsius,
+    /// Whether the finger pressed in the ticks that end with this one.
+    pub presses: bool,
+}
+
+/// Code and surface over some ticks. A surface has four bits less, 4 uK, so that ten have 32 bits.
+#[derive(Clone, Copy, Debug, Default)]
+struct Measured {
+    codes: u32,
+    surface: i32,
+}
+
+/// Bits by which surfaces are shortened.
+const FEWER: u32 = 4;
+
+/// Sums over the ticks of the present window. They are all that a tick costs; what follows from them is found once a window.
+///
+/// It is known [`CONTACT_DEBOUNCE_TICKS`] ticks later whether the finger pressed in a tick: a force off zero counts when it has
+/// lasted. So codes and surfaces are those of ten ticks that begin and end so much earlier.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct WindowSums {
     ticks: u32,
-    /// `None` once the flux of a tick was not valid.
-    flux: Option<i64>,
-    skin_above_display: i64,
-    touching_ticks: u8,
-    is_steady: bool,
-}
-
-impl Default for WindowSums {
-    fn default() -> Self {
-        Self {
-            ticks: 0,
-            flux: Some(0),
-            skin_above_display: 0,
-            touching_ticks: 0,
-            is_steady: true,
-        }
-    }
+    present: Measured,
+    of_window: Measured,
+    touching_ticks: u32,
+    /// Whether a tick had no code.
+    pub is_code_missing: bool,
 }
 
 impl WindowSums {
-    /// Adds a tick: its flux, if it is valid, and the contact.
-    pub fn add(&mut self, flux: Option<Flux>, contact: Option<TickOfContact>) {
+    /// Adds a tick. Returns whether the window is complete.
+    #[inline(always)]
+    pub fn add(&mut self, tick: &MeasuredTick) -> bool {
+        self.present.codes += u32::from(tick.code);
+        self.present.surface += tick.surface.to_bits() >> FEWER;
+        self.touching_ticks += u32::from(tick.presses);
         self.ticks += 1;
-        let flux = flux.map(|flux| i64::from(flux.to_bits()));
-        self.flux = self.flux.zip(flux).map(|(sum, flux)| sum + flux);
-        if let Some(contact) = contact {
-            self.skin_above_display += i64::from(contact.skin_above_display.to_bits());
-            self.touching_ticks = self.touching_ticks.saturating_add(1);
-            self.is_steady &= contact.is_steady;
+        if self.ticks == WINDOW_TICKS - CONTACT_DEBOUNCE_TICKS {
+            self.of_window = core::mem::take(&mut self.present);
         }
-    }
-
-    /// Whether all ticks were added.
-    #[must_use]
-    pub const fn is_complete(&self) -> bool {
         self.ticks >= WINDOW_TICKS
     }
 
-    /// Mean flux; `None` if that of a tick was not valid.
+    /// The next window.
     #[must_use]
-    pub fn mean_flux(&self) -> Option<Flux> {
-        // A mean of 32-bit numbers has 32 bits.
-        let mean = self.flux? / i64::from(WINDOW_TICKS);
-        Some(Flux::from_bits(mean as i32))
+    pub fn next(&self) -> Self {
+        Self {
+            present: self.present,
+            ..Self::default()
+        }
+    }
+
+    /// Sum of the ten codes.
+    #[must_use]
+    pub const fn codes(&self) -> u32 {
+        self.of_window.codes
+    }
+
+    /// Whether the finger pressed in a tick.
+    #[must_use]
+    pub const fn has_contact(&self) -> bool {
+        self.touching_ticks != 0
     }
 
     /// The contact of the window, if it had one.
     #[must_use]
     pub fn contact(&self, state: &StateAtEnd) -> Option<Contact> {
-        if self.touching_ticks == 0 {
+        if !self.has_contact() {
             return None;
         }
-        let mean = self.skin_above_display / i64::from(WINDOW_TICKS);
+        // In the window of a landing the surface before it counts, too, which is nearly the same.
+        let surface = self.of_window.surface / WINDOW_TICKS as i32 * (1 << FEWER);
+        let above = state.skin?.saturating_sub(Celsius::from_bits(surface));
+        let of_tick = Celsius::from_bits(above.to_bits() / WINDOW_TICKS as i32);
         let air_bits = i64::from(state.scaled_air_flux.to_bits()) * W_M2_PER_SCALED_K;
         let air_bits = air_bits >> (I10F22::FRAC_NBITS - I20F12::FRAC_NBITS);
         let resistance = state.resistance.map_or(Resistance::ZERO, |scaled| {
             scaled.saturating_mul(MM2K_W_PER_SCALED)
         });
         Some(Contact {
-            touching_ticks: self.touching_ticks,
-            skin_above_display_k: Celsius::from_bits(mean as i32),
+            touching_ticks: self.touching_ticks as u8,
+            skin_above_display_k: of_tick.saturating_mul_int(self.touching_ticks as i32),
             air_flux_w_m2: Flux::from_bits(air_bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32),
             resistance_mm2k_w: resistance,
             ticks_since_landing: state.ticks_since_landing.min(u32::MAX.into()) as u32,
-            is_steady: self.is_steady && state.resistance.is_some(),
+            is_steady: state.is_steady && state.resistance.is_some(),
         })
     }
 }
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
-
-    use std::vec::Vec;
-
     use contact_model::fixed_point::OwnResistances;
     use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
     use contact_model::reference::contact_resistance;
@@ -117,47 +133,53 @@ mod tests {
     use super::*;
 
     const STATE: StateAtEnd = StateAtEnd {
+        skin: Some(Celsius::ZERO),
         scaled_air_flux: Celsius::ZERO,
         resistance: Some(U16F16::ONE),
         ticks_since_landing: 30,
+        is_steady: true,
     };
 
-    fn tick() -> impl Strategy<Value = (Option<i32>, Option<(i32, bool)>)> {
-        let contact = prop::option::of((any::<i32>(), prop::bool::weighted(0.9)));
-        (prop::option::weighted(0.98, any::<i32>()), contact)
+    fn tick() -> impl Strategy<Value = MeasuredTick> {
+        (0..4096u16, -20.0..60.0, any::<bool>()).prop_map(|(code, surface_c, presses)| {
+            MeasuredTick {
+                code,
+                surface: Celsius::from_num(surface_c),
+                presses,
+            }
+        })
     }
 
     proptest! {
+        /// Code and surface are those of two ticks earlier.
         #[test]
-        fn means_are_those_of_the_ticks(ticks in prop::collection::vec(tick(), WINDOW_TICKS as usize)) {
+        fn sums_are_those_of_the_ticks(skin_c in -20.0..60.0, ticks in prop::collection::vec(tick(), 50)) {
             let mut sums = WindowSums::default();
-            for (flux, contact) in &ticks {
-                prop_assert!(!sums.is_complete());
-                let contact = contact.map(|(above, is_steady)| TickOfContact {
-                    skin_above_display: Celsius::from_bits(above),
-                    is_steady,
-                });
-                sums.add(flux.map(Flux::from_bits), contact);
-            }
-            prop_assert!(sums.is_complete());
-            let mean = |values: &[i32]| values.iter().map(|one| f64::from(*one)).sum::<f64>() / 10.0;
-            let flux: Option<Vec<i32>> = ticks.iter().map(|tick| tick.0).collect();
-            match (&flux, sums.mean_flux()) {
-                (None, None) => {}
-                (Some(flux), Some(found)) => {
-                    prop_assert!((mean(flux) - f64::from(found.to_bits())).abs() <= 1.0);
+            for (number, tick) in ticks.iter().enumerate() {
+                let is_complete = sums.add(tick);
+                prop_assert_eq!(is_complete, number % 10 == 9);
+                if !is_complete {
+                    continue;
                 }
-                (_, found) => prop_assert!(false, "{found:?}"),
-            }
-            let contacts: Vec<_> = ticks.iter().filter_map(|tick| tick.1).collect();
-            let found = sums.contact(&STATE);
-            prop_assert_eq!(found.is_some(), !contacts.is_empty());
-            if let Some(found) = found {
-                let above: Vec<_> = contacts.iter().map(|contact| contact.0).collect();
-                let apart = mean(&above) - f64::from(found.skin_above_display_k.to_bits());
-                prop_assert!(apart.abs() <= 1.0, "{}", apart);
-                prop_assert_eq!(usize::from(found.touching_ticks), contacts.len());
-                prop_assert_eq!(found.is_steady, contacts.iter().all(|contact| contact.1));
+                let measured = &ticks[(number - 9).saturating_sub(2)..number - 1];
+                let codes: u32 = measured.iter().map(|tick| u32::from(tick.code)).sum();
+                prop_assert_eq!(sums.codes(), codes);
+                let pressed = ticks[number - 9..=number].iter().filter(|tick| tick.presses).count();
+                let state = StateAtEnd { skin: Some(Celsius::from_num(skin_c)), ..STATE };
+                let found = sums.contact(&state);
+                prop_assert_eq!(found.is_some(), pressed > 0);
+                prop_assert_eq!(sums.contact(&StateAtEnd { skin: None, ..state }), None);
+                if let Some(found) = found {
+                    prop_assert_eq!(usize::from(found.touching_ticks), pressed);
+                    prop_assert!(found.is_steady);
+                    let unsteady = StateAtEnd { is_steady: false, ..state };
+                    prop_assert!(sums.contact(&unsteady).is_some_and(|contact| !contact.is_steady));
+                    let surface_c = measured.iter().map(|tick| tick.surface.to_num::<f64>()).sum::<f64>() / 10.0;
+                    let above_k: f64 = (skin_c - surface_c) * pressed as f64 / 10.0;
+                    let apart_k = above_k - found.skin_above_display_k.to_num::<f64>();
+                    prop_assert!(apart_k.abs() <= 1e-5, "{}", apart_k);
+                }
+                sums = sums.next();
             }
         }
     }
@@ -181,11 +203,12 @@ mod tests {
             .expected_display_resistance(&OwnResistances::NONE);
         let exact_m2k_w = contact_resistance(&SKIN.surface, &REFERENCE_DISPLAY, pressure_pa);
         let mut sums = WindowSums::default();
-        let contact = TickOfContact {
-            skin_above_display: Celsius::ONE,
-            is_steady: true,
+        let tick = MeasuredTick {
+            code: 0,
+            surface: Celsius::ONE,
+            presses: true,
         };
-        sums.add(None, Some(contact));
+        sums.add(&tick);
         let state = StateAtEnd {
             scaled_air_flux: Celsius::from_num(-0.003),
             resistance: Some(scaled),

@@ -2,7 +2,7 @@
 
 use contact_model::contact_law::ContactLaw;
 use contact_model::fixed_point::{
-    Body, Celsius, ContactPair, FingerBody, Fraction, OwnResistances, ScaledBody,
+    Body, Celsius, ContactPair, Fraction, OwnResistances, ScaledBody,
 };
 use contact_model::material::{MATERIALS, SKIN, Surface};
 use fixed::types::{I4F28, U16F16};
@@ -145,10 +145,9 @@ impl ChosenObject {
         let air = u64::from(self.finger.body().air.to_bits());
         let factor = air_change.saturating_add(I4F28::ONE).max(I4F28::ZERO);
         let air = (air * u64::from(factor.to_bits().unsigned_abs())) >> I4F28::FRAC_NBITS;
-        self.bodies.finger = FingerBody {
-            tissue: *tissue,
-            air: Fraction::from_bits(air.min(u32::MAX.into()) as u32),
-        };
+        // Each by itself, so that the tissue is copied once.
+        self.bodies.finger.tissue = *tissue;
+        self.bodies.finger.air = Fraction::from_bits(air.min(u32::MAX.into()) as u32);
         self.bodies.resistances.skin_factor = skin_factor;
     }
 

@@ -2,16 +2,15 @@
 
 use contact_model::fixed_point::{Celsius, TissueStateFactors, TissueWeights, product};
 use fixed::types::U16F16;
-use thermal_learner::{LearnerInput, LearnerOutput, Place};
+use thermal_learner::{LearnerInput, LearnerOutput, Place, WINDOW_TICKS};
 use thermal_settings::Person;
 
 use super::{DueWork, Station};
 use crate::command::{AssumedFinger, FluxState, Refused};
-use crate::estimate::ForceChange;
 use crate::events::DeviceEventKind;
 use crate::learning::{
-    FingerKnowledge, FingerLearning, FluxParameters, PersonState, RestingCode, StateAtEnd,
-    TickOfContact,
+    FingerKnowledge, FingerLearning, FluxParameters, MeasuredTick, PersonState, RestingCode,
+    StateAtEnd,
 };
 
 /// Largest difference of display and room at which the flux from display to air counts as none, K: some 3 W/m².
@@ -28,16 +27,14 @@ const fn place(finger: AssumedFinger) -> Place {
 impl Station {
     /// Uses this heat-flux sensor from now on, or none, and forgets what was learnt. A finger that touches begins a new contact.
     pub(super) fn replace_flux_sensor(&mut self, sensor: Option<&FluxParameters>) {
-        let included = self.learning.as_ref().map(FingerLearning::included_offset);
-        if included.is_none() && sensor.is_none() {
+        if self.learning.is_none() && sensor.is_none() {
             return;
         }
         let place = place(self.object.assumed_finger());
         self.learning = sensor.map(|sensor| FingerLearning::new(sensor, place));
         let layer = sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer);
         self.object.set_display_layer(layer);
-        let included = included.unwrap_or_default();
-        (self.estimator.finger).shift_sensed_skin(Celsius::ZERO.saturating_sub(included));
+        self.estimator.finger.set_skin_offset(Celsius::ZERO);
         self.due.add(DueWork::ASSUMED_FINGER);
         self.due.add(DueWork::CONTACT_RESTART);
     }
@@ -59,7 +56,7 @@ impl Station {
         let learning = self.learning.as_ref()?;
         Some(FluxState {
             flux: learning.flux(),
-            surface: learning.surface(),
+            surface: self.estimator.plate.surface(),
             knowledge: learning.knowledge(),
         })
     }
@@ -88,16 +85,21 @@ impl Station {
         learning.resting_code().ok_or(Refused::TooEarly)
     }
 
-    /// [`crate::Device::note_flux_code`].
-    pub(crate) const fn note_flux_code(&mut self, code: u16) {
-        self.flux_code = code;
-        self.due.add(DueWork::FLUX);
-    }
-
-    /// [`crate::Device::finger_has_learner_input`].
-    pub(crate) fn has_learner_input(&self) -> bool {
-        let learning = self.learning.as_ref();
-        learning.is_some_and(|learning| learning.has_input())
+    /// [`crate::Device::note_flux_code`]. Adds the last tick to the learner's window.
+    #[inline(always)]
+    pub(crate) fn note_flux_code(&mut self, code: Option<u16>) -> bool {
+        let Some(learning) = &mut self.learning else {
+            return false;
+        };
+        let tick = MeasuredTick {
+            code: learning.note_code(code),
+            surface: self.estimator.plate.surface().unwrap_or_default(),
+            presses: self.contact.is_force_nonzero_debounced(),
+        };
+        if learning.add_tick(&tick) {
+            self.due.add(DueWork::FLUX_WINDOW);
+        }
+        learning.has_input()
     }
 
     /// [`crate::Device::take_learner_input`].
@@ -122,6 +124,7 @@ impl Station {
     pub(super) fn forget_learnt_finger(&mut self, finger: AssumedFinger) {
         if let Some(learning) = &mut self.learning {
             learning.restart(place(finger), None);
+            self.estimator.finger.set_skin_offset(Celsius::ZERO);
         }
     }
 
@@ -133,6 +136,7 @@ impl Station {
         }
         let learning = (self.learning.as_mut()).ok_or(Refused::NoFluxSensor("person"))?;
         learning.restart(place(finger), person);
+        self.estimator.finger.set_skin_offset(Celsius::ZERO);
         Ok(())
     }
 
@@ -143,75 +147,49 @@ impl Station {
         Ok(*learning.person())
     }
 
-    /// Adds the last tick to the learner's window, with the sensor's code at its end. At a window's end, takes over what was learnt
-    /// up to the window before. A finger that is the thesis's half-space is not learnt.
-    #[inline(always)]
-    pub(super) fn learn_from_flux(&mut self) {
+    /// Ends the learner's window, and takes over what was learnt up to the window before. A finger that is the thesis's half-space
+    /// is not learnt.
+    pub(super) fn end_flux_window(&mut self) {
         let Some(learning) = &mut self.learning else {
             return;
         };
-        let finger = &mut self.estimator.finger;
-        let skin = finger.sensed_skin_before_contact();
-        let change = learning.skin_change(skin.is_some(), finger.has_filtered_skin());
-        finger.shift_sensed_skin(change);
-        let skin = skin.map(|skin| skin.saturating_add(change));
-        let is_limited = (self.last.reference).is_some_and(|reference| reference.limited);
-        let measured = learning.take(self.flux_code, self.estimator.plate.surface());
-        let beyond = learning.flux_beyond_model(finger.modelled_flux());
-        finger.set_flux_beyond_model(beyond);
-        let contact = finger.contact();
-        let presses = self.contact.is_force_nonzero_debounced();
-        let tick = skin.zip(measured.surface).filter(|_| presses);
-        let tick = tick.map(|(skin, surface)| TickOfContact {
-            skin_above_display: learning.skin_without_offset(skin).saturating_sub(surface),
-            is_steady: !is_limited
-                && contact.is_some_and(|contact| contact.force_change() != ForceChange::New),
-        });
-        if !learning.add_tick(measured.flux, tick) {
-            return;
-        }
+        let finger = &self.estimator.finger;
+        let skin = finger.skin_before_contact_by_thermistor();
         let above_room = skin.zip(finger.temperatures_before_contact());
         let above_room = above_room.map_or(Celsius::ZERO, |(skin, before)| {
-            learning
-                .skin_without_offset(skin)
-                .saturating_sub(before.room)
+            skin.saturating_sub(before.room)
         });
+        let contact = finger.contact();
         let assumed = self.object.assumed_finger();
         let resistances = &self.object.bodies().resistances;
         let conductances = contact.and_then(|contact| contact.stored_conductances());
         let conductances = conductances.filter(|_| assumed.is_layered());
         let state = StateAtEnd {
+            skin,
             scaled_air_flux: product(above_room, assumed.body().air),
             resistance: conductances.map(|both| both.expected_display_resistance(resistances)),
             ticks_since_landing: contact.map_or(0, |contact| contact.ticks_since_landing()),
+            is_steady: contact
+                .is_some_and(|contact| !contact.force_means().have_jumped_within(WINDOW_TICKS))
+                && !(self.last.reference).is_some_and(|reference| reference.limited),
         };
         let before = learning.knowledge();
-        let learnt = learning.end_window(&state);
+        let learnt = learning.end_window(&state).filter(|_| assumed.is_layered());
+        if let Some(learnt) = learnt {
+            // Goes on with the finger that was learnt, as if it had been known since landing.
+            let from = &self.object.bodies().finger.tissue;
+            let to = TissueWeights::at_least_min(learnt.weights).tissue();
+            let factors = TissueStateFactors::new(&from.relaxations(), &to.relaxations());
+            let finger = &mut self.estimator.finger;
+            finger.change_tissue(&factors, &to);
+            self.reference.change_finger(&factors, &to);
+            self.object
+                .learn_finger(&to, learnt.air_change, learnt.resistance_factor);
+            finger.forget_conductances();
+            finger.set_skin_offset(learnt.skin_offset_k);
+        }
         if learning.knowledge() != before {
             (self.events).note(DeviceEventKind::FingerKnowledge, self.tick, 0);
-        }
-        if let Some(learnt) = learnt.filter(|_| assumed.is_layered()) {
-            self.apply_learnt(&learnt);
-        }
-    }
-
-    /// Goes on with the finger that was learnt, as if it had been known since landing.
-    #[cold]
-    #[inline(never)]
-    fn apply_learnt(&mut self, learnt: &LearnerOutput) {
-        let from = self.object.bodies().finger.tissue;
-        let to = TissueWeights::at_least_min(learnt.weights).tissue();
-        let factors = TissueStateFactors::new(&from.relaxations(), &to.relaxations());
-        let finger = &mut self.estimator.finger;
-        finger.change_tissue(&factors, &to);
-        self.reference.change_finger(&factors, &to);
-        self.object
-            .learn_finger(&to, learnt.air_change, learnt.resistance_factor);
-        finger.forget_conductances();
-        let has_skin = finger.sensed_skin_before_contact().is_some();
-        if let Some(learning) = &mut self.learning {
-            let change = learning.adopt_skin_offset(learnt.skin_offset_k, has_skin);
-            finger.shift_sensed_skin(change);
         }
     }
 }

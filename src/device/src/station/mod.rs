@@ -73,14 +73,12 @@ pub struct Station {
     sensors: SampleConverter,
     events: EventReporter,
     object: ChosenObject,
+    /// Learning of the finger that touches; `None` without a sensor of the heat flux.
+    learning: Option<FingerLearning>,
     identified: IdentificationResult,
     /// What the last self-test has measured.
     self_test_report: SelfTestReport,
     courses: CourseMemory,
-    /// Learning of the finger that touches; `None` without a sensor of the heat flux.
-    learning: Option<FingerLearning>,
-    /// Last code of that sensor.
-    flux_code: u16,
 }
 
 /// Work that a tick does first, because it must not change between two ticks or takes too long for a command: a new contact takes
@@ -93,8 +91,8 @@ impl DueWork {
     /// A new contact for a finger that already touches, because the host has chosen another object, finger or contact model, or
     /// `start` has presented the object.
     const CONTACT_RESTART: u8 = 1;
-    /// A code of the heat-flux sensor.
-    const FLUX: u8 = 2;
+    /// The last tick was the last of the learner's window.
+    const FLUX_WINDOW: u8 = 2;
     /// Back to the assumed finger, because what was learnt of the one that touches is void.
     const ASSUMED_FINGER: u8 = 4;
 
@@ -171,7 +169,6 @@ impl Station {
                 flux_sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer),
             ),
             learning: flux_sensor.map(|sensor| FingerLearning::new(sensor, Place::Air)),
-            flux_code: 0,
             reference: ReferenceGenerator::default(),
             due: DueWork::default(),
             controller: Controller::new(&parameters, limit),
@@ -259,7 +256,7 @@ impl Station {
         outputs
     }
 
-    /// Takes the flux sensor's code. Begins a new contact for a finger that already touches, with the object, finger and contact
+    /// Ends the learner's window. Begins a new contact for a finger that already touches, with the object, finger and contact
     /// model of the host's last command.
     #[cold]
     #[inline(never)]
@@ -268,8 +265,8 @@ impl Station {
         if due.contains(DueWork::ASSUMED_FINGER) {
             self.assume_finger_again();
         }
-        if due.contains(DueWork::FLUX) {
-            self.learn_from_flux();
+        if due.contains(DueWork::FLUX_WINDOW) {
+            self.end_flux_window();
         }
         if due.contains(DueWork::CONTACT_RESTART) {
             let bodies = self.object.bodies();

@@ -41,7 +41,7 @@ fn touch(
         reported: &sound,
     };
     let inputs = scene.inputs(random, 0).into_iter().chain([LIFTED]);
-    inputs.map(|input| learner.advance(&input)).collect()
+    inputs.map(|input| *learner.advance(&input)).collect()
 }
 
 /// What is stored after the last of these outputs; it must not be earlier.
@@ -106,7 +106,7 @@ fn the_finger_that_was_learnt_is_adopted_within_the_rounding_of_the_record() {
         let finger = Finger::drawn(&mut random);
         let errors = Errors::drawn(&mut random);
         let (learnt, person) = enrolled(&finger, errors, &mut random);
-        let adopted = learner_of(finger.place, Some(person)).advance(&LIFTED);
+        let adopted = *learner_of(finger.place, Some(person)).advance(&LIFTED);
         assert_eq!(adopted.trust, Trust::Learning);
         for i in STORED {
             let difference = (adopted.parameters[i] - learnt.parameters[i]).abs();
@@ -227,7 +227,7 @@ fn a_distrusted_finger_is_the_enrolled_one_again_at_the_next_landing() {
         Place::Air,
     );
     let mut learner = learner_of(Place::Air, Some(person));
-    let first = learner.advance(&LIFTED);
+    let first = *learner.advance(&LIFTED);
     let dead = Scene {
         finger: &Finger::mean(Place::Air),
         object: OBJECTS[0],
@@ -239,10 +239,10 @@ fn a_distrusted_finger_is_the_enrolled_one_again_at_the_next_landing() {
     for input in dead.inputs(&mut Random(0), 0) {
         learner.advance(&input);
     }
-    let lifted = learner.advance(&LIFTED);
+    let lifted = *learner.advance(&LIFTED);
     assert_eq!(lifted.trust, Trust::Mean(Distrust::Sensor));
     let landing = dead.inputs(&mut Random(0), 0)[2];
-    let again = learner.advance(&landing);
+    let again = *learner.advance(&landing);
     assert_eq!(
         (again.parameters, again.variances, again.trust),
         (first.parameters, first.variances, Trust::Learning)

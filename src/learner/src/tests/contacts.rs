@@ -40,7 +40,7 @@ pub fn learner_of(place: Place, person: Option<PersonPrior>) -> Learner {
 pub fn learnt(scene: &Scene<'_>, random: &mut Random, phase: usize) -> Vec<LearnerOutput> {
     let mut learner = new_learner(scene.finger.place);
     let inputs = scene.inputs(random, phase);
-    inputs.iter().map(|input| learner.advance(input)).collect()
+    inputs.iter().map(|input| *learner.advance(input)).collect()
 }
 
 /// The first component of a finger: that of the two which fit its exact impedance best at Laplace variables of 1 to 100 1/s.

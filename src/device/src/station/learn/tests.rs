@@ -34,7 +34,7 @@ fn station(flux_sensor: Option<FluxSensor>) -> Station {
 
 /// A tick of a display that is where it shall be, under a finger that lands on it; the reference.
 fn step(station: &mut Station, tick: u32, code: Option<u16>) -> Option<Reference> {
-    if let Some(code) = code {
+    if code.is_some() {
         station.note_flux_code(code);
     }
     if station.due != DueWork::default() {
@@ -78,7 +78,7 @@ fn answer(input: &LearnerInput) -> LearnerOutput {
         air_change: I4F28::lit("0.5"),
         skin_offset_k: Celsius::lit("-0.05"),
         resistance_factor: I4F28::lit("1.5"),
-        ..Learner::new().advance(input)
+        ..*Learner::new().advance(input)
     }
 }
 
