@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 use arbitrary::{Arbitrary, Unstructured};
 use system_tests::flash::{BYTES, Flash, append, numbered};
 use thermal_display::settings::{
-    Calibration, Correction, FluxSensor, SettingsStore, StoreError, StoredSettings, Tile,
+    Calibration, Correction, FluxSensor, Person, PersonCode, SettingsStore, StoreError,
+    StoredDevice, StoredSettings, Tile,
 };
 use thermal_sim::FlashCells;
 
@@ -58,6 +59,8 @@ enum Event {
         is_version_1: bool,
         header: Option<[u8; 4]>,
         length: Option<u8>,
+        /// Number byte and bytes after the values; in records of version 2 persons, if it is right.
+        persons: Option<(u8, Vec<u8>)>,
     },
     /// Saves settings; with `cut`, power fails in this flash operation.
     Save { number: u8, cut: Option<(u8, u8)> },
@@ -67,7 +70,7 @@ enum Event {
 #[derive(Clone)]
 struct History<const FINGERS: usize> {
     cells: FlashCells,
-    written: Vec<Option<[StoredSettings; FINGERS]>>,
+    written: Vec<Option<StoredDevice<FINGERS>>>,
 }
 
 static ONE: OnceLock<Vec<History<1>>> = OnceLock::new();
@@ -123,7 +126,7 @@ impl<const FINGERS: usize> History<FINGERS> {
     }
 
     /// Saves settings as a device does that was just switched on.
-    fn save(&mut self, settings: Option<[StoredSettings; FINGERS]>) -> Result<(), String> {
+    fn save(&mut self, settings: Option<StoredDevice<FINGERS>>) -> Result<(), String> {
         let flash = Flash::new(self.cells.clone());
         let done = SettingsStore::new(flash.clone()).save(settings.as_ref());
         self.cells = flash.cells();
@@ -131,9 +134,7 @@ impl<const FINGERS: usize> History<FINGERS> {
         done.map_err(|error| format!("{error:?}"))
     }
 
-    fn load(
-        &self,
-    ) -> Result<Option<[StoredSettings; FINGERS]>, StoreError<system_tests::flash::Dead>> {
+    fn load(&self) -> Result<Option<StoredDevice<FINGERS>>, StoreError<system_tests::flash::Dead>> {
         SettingsStore::new(Flash::new(self.cells.clone())).load()
     }
 
@@ -154,13 +155,14 @@ impl<const FINGERS: usize> History<FINGERS> {
                 is_version_1,
                 header,
                 length,
+                persons,
             } => {
                 let count = if *is_version_1 {
                     VALUES_IN_VERSION_1
                 } else {
                     37
                 };
-                self.append_record(&values[..count], *header, *length);
+                self.append_record(&values[..count], *header, *length, persons.as_ref());
             }
             Event::Save { number, cut } => {
                 if let Some((nth, seed)) = cut {
@@ -168,7 +170,7 @@ impl<const FINGERS: usize> History<FINGERS> {
                         .cut_power_at(u64::from(*nth) + 1, u64::from(*seed));
                 }
                 let settings = numbered(u32::from(*number));
-                let done = self.save(settings);
+                let done = self.save(settings.clone());
                 self.cells.power_up();
                 if done.is_ok() {
                     assert_eq!(self.load().ok(), Some(settings), "stored, but not found");
@@ -178,7 +180,13 @@ impl<const FINGERS: usize> History<FINGERS> {
     }
 
     /// Appends a record, which counts as written if it is valid.
-    fn append_record(&mut self, fractions: &[i16], header: Option<[u8; 4]>, length: Option<u8>) {
+    fn append_record(
+        &mut self,
+        fractions: &[i16],
+        header: Option<[u8; 4]>,
+        length: Option<u8>,
+        persons: Option<&(u8, Vec<u8>)>,
+    ) {
         let units: Vec<_> = fractions
             .iter()
             .zip(VALUES)
@@ -196,6 +204,16 @@ impl<const FINGERS: usize> History<FINGERS> {
         let header = header.unwrap_or([version, 0, 1, FINGERS as u8]);
         let mut content = header.to_vec();
         (0..FINGERS).for_each(|_| content.extend(units.iter().flat_map(|unit| unit.to_le_bytes())));
+        if let Some((number, bytes)) = persons {
+            // Codes and data by turns, so that some are right.
+            content.push(*number);
+            let byte = |at: usize| bytes.get(at % bytes.len().max(1)).copied().unwrap_or(b'A');
+            let all = (0..usize::from(*number % 20)).flat_map(|person| {
+                let code = (0..8).map(move |at| b'A' + (person * 3 + at) as u8 % 26);
+                code.chain((0..20).map(move |at| person as u8 ^ byte(person * 20 + at)))
+            });
+            content.extend(all);
+        }
         let length = length.map_or(content.len(), usize::from);
         content.resize(length, 0);
         self.written.extend(settings_in(&content));
@@ -214,14 +232,14 @@ impl<const FINGERS: usize> History<FINGERS> {
     /// Settings can be stored, whatever the cells hold.
     fn check_save(&mut self) {
         let settings = numbered(1000);
-        let done = self.save(settings);
+        let done = self.save(settings.clone());
         assert!(done.is_ok(), "cannot be saved: {done:?}");
         assert_eq!(self.load().ok(), Some(settings), "stored, but not found");
     }
 }
 
 /// The settings that a record with this content before its checksum holds, if it is a valid one.
-fn settings_in<const FINGERS: usize>(content: &[u8]) -> Option<Option<[StoredSettings; FINGERS]>> {
+fn settings_in<const FINGERS: usize>(content: &[u8]) -> Option<Option<StoredDevice<FINGERS>>> {
     let (header, values) = content.split_first_chunk::<4>()?;
     let count = match header {
         [1, 0, ..] => VALUES_IN_VERSION_1,
@@ -231,13 +249,31 @@ fn settings_in<const FINGERS: usize>(content: &[u8]) -> Option<Option<[StoredSet
     if header[2..] == [0, 0] && values.is_empty() {
         return Some(None);
     }
-    if header[2..] != [1, FINGERS as u8] || values.len() != 4 * count * FINGERS {
+    if header[2..] != [1, FINGERS as u8] {
+        return None;
+    }
+    let (values, persons) = values.split_at_checked(4 * count * FINGERS)?;
+    if count == VALUES_IN_VERSION_1 && !persons.is_empty() {
         return None;
     }
     let (units, _) = values.as_chunks::<4>();
     let units: Vec<_> = units.iter().map(|unit| i32::from_le_bytes(*unit)).collect();
     let fingers: Option<Vec<_>> = units.chunks(count).map(finger_of).collect();
-    Some(fingers?.try_into().ok())
+    let fingers: [StoredSettings; FINGERS] = fingers?.try_into().ok()?;
+    let mut stored = StoredDevice::from(fingers);
+    if let Some((number, bytes)) = persons.split_first() {
+        let is_complete = bytes.len() == 28 * usize::from(*number);
+        if !(1..=16).contains(number) || !is_complete {
+            return None;
+        }
+        for person in bytes.chunks(28) {
+            let word = std::str::from_utf8(&person[..8]).ok()?;
+            let code = PersonCode::new(word.trim_end_matches('\0'))?;
+            let finger = person[8..].try_into().ok()?;
+            stored.persons.insert(Person { code, finger });
+        }
+    }
+    Some(Some(stored))
 }
 
 /// The settings of a finger with these stored integers, if all are within their ranges.

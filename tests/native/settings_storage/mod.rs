@@ -56,7 +56,7 @@ fn campaign<const FINGERS: usize>(saves: u32, stride: u32) -> Coverage {
             }
         }
         cells = after;
-        before = settings.copied();
+        before = settings.cloned();
     }
     coverage
 }
