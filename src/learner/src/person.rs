@@ -15,8 +15,8 @@ const fn is_stored(index: usize) -> bool {
 
 /// Units of a stored parameter per prior deviation.
 const UNITS_PER_DEVIATION: f32 = 4096.0;
-/// Units of a correlation of 1.
-const UNITS_OF_CORRELATION: f32 = i8::MAX as f32;
+/// Units of a correlation of 1, so that no byte is beyond -1 to 1.
+const UNITS_OF_CORRELATION: f32 = 128.0;
 /// Least pivot of the matrix of correlations; rounding and damaged bytes can make it smaller, and then all correlations shrink.
 const PIVOT_MIN: f32 = 1e-3;
 const SHRINKING: f32 = 0.9;
@@ -29,7 +29,7 @@ const SHRINKINGS_MAX: u32 = 12;
 /// |---|---|
 /// | 8 | components 1 and 2, changes of air and contact resistance: `i16`, little-endian, 1/4096 prior deviation |
 /// | 4 | their deviations, in prior deviations, rounded up: `u8` 32 q + r for 2^-q (1 - r/64) |
-/// | 6 | their correlations, by rows above the diagonal: `i8`, 1/127 |
+/// | 6 | their correlations, by rows above the diagonal: `i8`, 1/128 |
 /// | 1 | contacts of 8 s or more from which it was learnt, at most 255 |
 /// | 1 | place before the contacts: 0 in air, otherwise on a pad |
 ///
@@ -148,7 +148,7 @@ impl PersonPrior {
         let mut correlations = [0.0; 6];
         let bytes = self.0.iter().skip(3 * STORED.len());
         for (correlation, byte) in correlations.iter_mut().zip(bytes) {
-            *correlation = clamped(f32::from(*byte as i8) / UNITS_OF_CORRELATION, -1.0, 1.0);
+            *correlation = f32::from(*byte as i8) / UNITS_OF_CORRELATION;
         }
         for _ in 0..SHRINKINGS_MAX {
             if is_positive(&correlations) {

@@ -268,19 +268,23 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         finger: Option<FingerIndex<FINGERS>>,
         execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
-        let number = finger.map(FingerIndex::index_u8);
+        let chosen = match request {
+            PersonRequest::Choose(code) => code.map(|code| self.persons.get(code).copied()),
+            _ => None,
+        };
         let is_one = finger.is_some() || FINGERS == 1;
         let answer = match request {
-            PersonRequest::Choose(None) => {
-                return Self::execute_in_stations(Command::ChoosePerson(None), finger, execute);
+            PersonRequest::Choose(Some(code)) if chosen == Some(None) => {
+                Err(Error::UnknownPerson(code))
             }
-            PersonRequest::Choose(Some(code)) => match self.persons.get(code) {
-                Some(person) => {
-                    let command = Command::ChoosePerson(Some(*person));
-                    return Self::execute_in_stations(command, finger, execute);
-                }
-                None => Err(Error::UnknownPerson(code)),
-            },
+            PersonRequest::Choose(_) => {
+                let command = Command::ChoosePerson(chosen.flatten());
+                return Self::execute_in_stations(command, finger, execute);
+            }
+            PersonRequest::List => Ok(Reply::Persons(PersonCodes::new(&self.persons))),
+            PersonRequest::Store(person) => self.store_person(person),
+            PersonRequest::Forget(code) if self.persons.remove(code) => Ok(Reply::DONE),
+            PersonRequest::Forget(code) => Err(Error::UnknownPerson(code)),
             PersonRequest::Enrol(_) if !is_one => Err(Error::Missing("finger (as @0)")),
             PersonRequest::Query => Self::person_state(finger, execute).map(|state| {
                 Reply::Person(PersonReply {
@@ -291,12 +295,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             PersonRequest::Enrol(code) => {
                 Self::person_state(finger, execute).and_then(|state| self.enrol(code, &state))
             }
-            PersonRequest::Store(person) => self.store_person(person).map(|()| Reply::DONE),
-            PersonRequest::List => Ok(Reply::Persons(PersonCodes::new(&self.persons))),
-            PersonRequest::Forget(code) if self.persons.remove(code) => Ok(Reply::DONE),
-            PersonRequest::Forget(code) => Err(Error::UnknownPerson(code)),
         };
-        let finger = number;
+        let finger = finger.map(FingerIndex::index_u8);
         match answer {
             Ok(content) => Ok(WithSourceFinger { finger, content }),
             Err(content) => Err(WithSourceFinger { finger, content }),
@@ -331,9 +331,11 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }))
     }
 
-    fn store_person(&mut self, person: Person) -> Result<(), Error> {
+    fn store_person(&mut self, person: Person) -> Result<Reply, Error> {
         let is_stored = self.persons.insert(person);
-        is_stored.then_some(()).ok_or(Error::NoRoomForPerson)
+        is_stored
+            .then_some(Reply::DONE)
+            .ok_or(Error::NoRoomForPerson)
     }
 
     /// Loads the course of the upload in the station of `finger`, or in all stations for `None`. A course that has only begun
