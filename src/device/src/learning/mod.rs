@@ -204,14 +204,20 @@ impl FingerLearning {
     }
 
     /// What the flux of the last tick was beyond the `modelled` one, W/mm²: slow differences as the sensor sees them, while the
-    /// model alone shows what is quicker than the sensor. Nothing without contact, and for a finger that is not trusted.
+    /// model alone shows what is quicker than the sensor. Also for a finger that is not trusted, whose model is the assumed one: it
+    /// is the finger that is in doubt then, not the flux. Nothing without contact, and while the sensor itself is in doubt.
     pub fn flux_beyond_model(&mut self, modelled: Option<FluxPerMm2>) -> FluxPerMm2 {
-        let is_trusted = matches!(
-            self.knowledge,
-            FingerKnowledge::Learnt(Trust::Learning | Trust::Trusted)
-        );
+        let is_sound = match self.knowledge {
+            FingerKnowledge::Learnt(Trust::Mean(why)) => {
+                !matches!(why, Distrust::Sensor | Distrust::Arithmetic)
+            }
+            FingerKnowledge::Learnt(Trust::Learning | Trust::Trusted) => true,
+            FingerKnowledge::NoSensor | FingerKnowledge::SensorFault | FingerKnowledge::Late => {
+                false
+            }
+        };
         let [_, Measured { flux, .. }] = self.undecided;
-        let Some((modelled, flux)) = modelled.zip(flux).filter(|_| is_trusted) else {
+        let Some((modelled, flux)) = modelled.zip(flux).filter(|_| is_sound) else {
             self.modelled_behind_lag.set_output(FluxPerMm2::ZERO);
             return FluxPerMm2::ZERO;
         };
