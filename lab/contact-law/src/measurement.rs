@@ -63,7 +63,7 @@ impl Step {
         match self {
             Self::Lift | Self::Wait(_) | Self::End => 0.0,
             Self::Land => force_n(0.0).unwrap_or(0.0),
-            Self::Follow { since_s, .. } => force_n(*since_s).unwrap_or(0.0),
+            Self::Follow { since_s, .. } => force_n(since_s.min(RAMPS_S)).unwrap_or(0.0),
         }
     }
 }
