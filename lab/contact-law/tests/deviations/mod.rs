@@ -88,8 +88,8 @@ impl Deviations {
             assert_figure(&format!("{key}_{name}"), three(percent)[2]);
         }
         let [_, most, worst] = exponent;
-        assert_figure(&format!("{key}_exponent_90"), most);
-        assert_figure(&format!("{key}_exponent"), worst);
+        assert_figure(&format!("{key}_exponent_90"), 1e4 * most);
+        assert_figure(&format!("{key}_exponent"), 1e4 * worst);
         if has_gap {
             assert_figure(&format!("{key}_gap"), gap[2]);
         }
