@@ -164,6 +164,21 @@ fn a_finger_that_lifts_or_does_not_follow_is_told_and_the_bridge_is_off() {
     });
     let text = error.to_string();
     assert!(text.contains("typically off its target by"), "{text}");
+    let mut swallowed = false;
+    let error = refused(&ORDER, &scene, |client, step| {
+        press(client, persons_force_n(step));
+        if since_landing_s(step) > 3.0 && !swallowed {
+            swallowed = true;
+            let line = client.next_telemetry(Duration::from_millis(20));
+            assert!(line.expect("a link").is_some());
+        }
+    });
+    let text = error.to_string();
+    let end = "follows the one before by 0.020 s; allowed is 0.01 s";
+    assert!(
+        text.starts_with("the sample 3.0") && text.ends_with(end),
+        "{text}"
+    );
     let pressed = refused(&ORDER, &scene, |client, _| press(client, 1.0));
     assert_eq!(
         pressed.to_string(),

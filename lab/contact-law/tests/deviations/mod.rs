@@ -82,6 +82,11 @@ impl Deviations {
             self.gaps
         );
         println!("  inside of the intervals: {:?}", self.inside);
+        let beyond = |percent: &&f64| **percent > 10.0;
+        let beyond: Vec<_> = (self.resistance_percent.iter())
+            .map(|percent| percent.iter().filter(beyond).count())
+            .collect();
+        println!("  beyond 10 %: {beyond:?}");
         assert_eq!(self.gaps, if has_gap { fingers } else { 0 });
         let names = ["r_0n1", "r_0n5", "r_2n"].iter();
         for (name, percent) in names.zip(&self.resistance_percent) {
