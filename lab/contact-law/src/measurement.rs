@@ -1,5 +1,7 @@
 //! The measurement at a device: a finger follows the ramps on a display that is held.
 
+use std::cell::Cell;
+use std::collections::VecDeque;
 use std::time::Duration;
 
 use contact_model::material::Surface;
@@ -24,17 +26,18 @@ const STREAM_MS: u32 = (1e3 * STEP_S) as u32;
 const FIELDS: [&str; 6] = ["skin", "room", "force", "flux", "surface", "finger"];
 /// Longest wait for a line of telemetry.
 const LINE_TIMEOUT: Duration = Duration::from_millis(500);
-/// Longest time in which the finger must be lifted, the display reach its temperature, and the finger land.
+/// Longest time in which the finger must be lifted, and the display reach its temperature.
 const WAIT_MAX: Duration = Duration::from_secs(120);
 /// Force below which a finger counts as lifted, N, and for how many lines.
 const LIFTED_N: f64 = 0.01;
 const LIFTED_LINES: u32 = 100;
-/// Distance of the display's surface from the held temperature within which it is there, K, and for how many lines. The skin's and
-/// the room's temperature are means over the last ones.
+/// Distance of the display's surface from the held temperature within which it is there, K, and for how many lines.
 const SETTLED_K: f64 = 0.1;
-const SETTLED_LINES: usize = 100;
-/// Least time for which the finger is in still air, lines.
-const STILL_AIR_LINES: u32 = 1000;
+const SETTLED_LINES: u32 = 100;
+/// Longest time in which the finger must land: the skin may have to recover for minutes.
+const REST_MAX: Duration = Duration::from_secs(900);
+/// Lines that are kept until the landing: the skin's and the room's temperature are means over those before it.
+const RECENT_LINES: usize = 100;
 
 /// What the finger does next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +46,7 @@ pub enum Step {
     Lift,
     /// Stays in still air while the display goes to its temperature: estimate of its surface, °C.
     Wait(Option<f64>),
-    /// Lands on the display.
+    /// Rests in still air until the skin has recovered from whatever it touched before, and lands on the display.
     Land,
     /// Follows the ramps.
     Follow {
@@ -63,7 +66,7 @@ impl Step {
         match self {
             Self::Lift | Self::Wait(_) | Self::End => 0.0,
             Self::Land => force_n(0.0).unwrap_or(0.0),
-            Self::Follow { since_s, .. } => force_n(*since_s).unwrap_or(0.0),
+            Self::Follow { since_s, .. } => force_n(since_s.min(RAMPS_S)).unwrap_or(0.0),
         }
     }
 }
@@ -110,8 +113,13 @@ pub enum MeasurementError {
     #[error("no telemetry within {} s", LINE_TIMEOUT.as_secs_f64())]
     Silent,
     /// A wait took too long.
-    #[error("{0} within {max} s", max = WAIT_MAX.as_secs())]
-    TooLong(&'static str),
+    #[error("{what} within {} s", time.as_secs())]
+    TooLong {
+        /// What did not happen.
+        what: &'static str,
+        /// How long was waited.
+        time: Duration,
+    },
     /// The device has tripped.
     #[error("the device has tripped: {0}")]
     Tripped(&'static str),
@@ -139,7 +147,7 @@ pub enum MeasurementError {
     Unknown {
         /// The reading.
         what: &'static str,
-        /// Time since landing, s; negative before it.
+        /// Time since landing, s; 0 also before it.
         since_s: f64,
     },
     /// The force did not follow the ramps.
@@ -171,6 +179,7 @@ pub fn measure<L: Link>(
         client,
         finger: order.finger,
         guide,
+        recent: VecDeque::new(),
     }
     .record(order);
     // Also after a failure: the bridge may be driven.
@@ -190,6 +199,8 @@ struct Session<'a, L> {
     client: &'a mut Client<L>,
     finger: Option<u8>,
     guide: &'a mut dyn FnMut(&mut Client<L>, &Step),
+    /// The last lines: a landing is reported after the force rose.
+    recent: VecDeque<ReceivedTelemetry>,
 }
 
 impl<L: Link> Session<'_, L> {
@@ -220,8 +231,8 @@ impl<L: Link> Session<'_, L> {
         arm(self.client, finger)?;
         self.client
             .ask_finger(finger, &PlainCommand::Hold(HELD_C, None))?;
-        let (skin_c, room_c) = self.settle()?;
-        let samples = self.follow()?;
+        self.settle()?;
+        let ([skin_c, room_c], samples) = self.follow()?;
         Ok(Recording {
             skin_c,
             room_c,
@@ -243,102 +254,126 @@ impl<L: Link> Session<'_, L> {
             if let Some(fault) = line.telemetry.state.fault() {
                 return Err(MeasurementError::Tripped(fault.name()));
             }
+            self.recent.push_back(line);
+            if self.recent.len() > RECENT_LINES {
+                self.recent.pop_front();
+            }
             return Ok(line);
         }
     }
 
+    /// Calls `is_done` with lines until it says so, for so long at most.
+    fn wait(
+        &mut self,
+        (what, time): (&'static str, Duration),
+        mut step: impl FnMut() -> Step,
+        mut is_done: impl FnMut(&mut Self, &ReceivedTelemetry) -> Result<bool, MeasurementError>,
+    ) -> Result<(), MeasurementError> {
+        let end = self.client.link().now() + time;
+        loop {
+            let line = self.next(&step())?;
+            if is_done(self, &line)? {
+                return Ok(());
+            }
+            if self.client.link().now() > end {
+                return Err(MeasurementError::TooLong { what, time });
+            }
+        }
+    }
+
     fn wait_for_lifting(&mut self) -> Result<(), MeasurementError> {
-        let end = self.client.link().now() + WAIT_MAX;
         let mut lifted = 0;
-        while lifted < LIFTED_LINES {
-            let line = self.next(&Step::Lift)?.telemetry;
-            if line.finger == Some(FingerKnowledge::SensorFault) {
-                return Err(MeasurementError::SensorFault(None));
-            }
-            let is_lifted = line.force_n.is_some_and(|force_n| force_n < LIFTED_N);
-            lifted = if is_lifted { lifted + 1 } else { 0 };
-            if self.client.link().now() > end {
-                return Err(MeasurementError::TooLong("the finger was not lifted"));
-            }
-        }
-        Ok(())
+        self.wait(
+            ("the finger was not lifted", WAIT_MAX),
+            || Step::Lift,
+            |_, line| {
+                if line.telemetry.finger == Some(FingerKnowledge::SensorFault) {
+                    return Err(MeasurementError::SensorFault(None));
+                }
+                lifted = if is_lifted(line) { lifted + 1 } else { 0 };
+                Ok(lifted >= LIFTED_LINES)
+            },
+        )
     }
 
-    /// Waits until the display has its temperature; returns the skin's and the room's, °C.
-    fn settle(&mut self) -> Result<(f64, f64), MeasurementError> {
-        let end = self.client.link().now() + WAIT_MAX;
-        let mut settled: Vec<[f64; 2]> = Vec::new();
-        let (mut lines, mut surface_c) = (0, None);
-        while lines < STILL_AIR_LINES || settled.len() < SETTLED_LINES {
-            let line = self.next(&Step::Wait(surface_c))?.telemetry;
-            lines += 1;
-            surface_c = line.surface_c;
-            let known = |value: Option<f64>, what| {
-                let since_s = -STEP_S;
-                value.ok_or(MeasurementError::Unknown { what, since_s })
-            };
-            let temperatures = [
-                known(line.skin_c, "the skin")?,
-                known(line.room_c, "the room")?,
-            ];
-            let is_there = surface_c.is_some_and(|c| (c - HELD_C).abs() < SETTLED_K);
-            if !is_there || line.force_n.is_none_or(|force_n| force_n >= LIFTED_N) {
-                settled.clear();
-            }
-            settled.push(temperatures);
-            if self.client.link().now() > end {
-                return Err(MeasurementError::TooLong(
-                    "the display did not reach its temperature without a finger on it",
-                ));
-            }
-        }
-        let last = &settled[settled.len() - SETTLED_LINES..];
-        let [skin_c, room_c] = [0, 1].map(|of| {
-            let sum: f64 = last.iter().map(|temperatures| temperatures[of]).sum();
-            sum / last.len() as f64
-        });
-        Ok((skin_c, room_c))
+    /// Waits until the display has its temperature.
+    fn settle(&mut self) -> Result<(), MeasurementError> {
+        let (mut settled, surface_c) = (0, Cell::new(None));
+        self.wait(
+            (
+                "the display did not reach its temperature without a finger on it",
+                WAIT_MAX,
+            ),
+            || Step::Wait(surface_c.get()),
+            |_, line| {
+                surface_c.set(line.telemetry.surface_c);
+                let is_there = (surface_c.get()).is_some_and(|c| (c - HELD_C).abs() < SETTLED_K);
+                settled = if is_there && is_lifted(line) {
+                    settled + 1
+                } else {
+                    0
+                };
+                Ok(settled >= SETTLED_LINES)
+            },
+        )
     }
 
-    /// Waits for the landing, and records the ramps.
-    fn follow(&mut self) -> Result<Vec<Sample>, MeasurementError> {
+    /// Waits for the landing; returns its tick.
+    fn land(&mut self) -> Result<u32, MeasurementError> {
         while self.client.take_event().is_some() {}
-        let end = self.client.link().now() + WAIT_MAX;
-        // The lines of the last tenth of a second: the landing is reported after the force rose.
-        let mut lines = std::collections::VecDeque::new();
-        let landed = loop {
-            lines.push_back(self.next(&Step::Land)?);
-            if lines.len() > 10 {
-                lines.pop_front();
-            }
-            if let Some(landed) = self.event(DeviceEventKind::Land) {
-                break landed;
-            }
-            if self.client.link().now() > end {
-                return Err(MeasurementError::TooLong("the finger did not land"));
+        let mut landed = None;
+        self.wait(
+            ("the finger did not land", REST_MAX),
+            || Step::Land,
+            |session, _| {
+                landed = session.event(DeviceEventKind::Land);
+                Ok(landed.is_some())
+            },
+        )?;
+        Ok(landed.unwrap_or_default())
+    }
+
+    /// Records the ramps from the landing on: temperatures of skin and room before it, °C, and the samples.
+    fn follow(&mut self) -> Result<([f64; 2], Vec<Sample>), MeasurementError> {
+        let landed = self.land()?;
+        let mut lines = std::mem::take(&mut self.recent);
+        let since_s = |line: &ReceivedTelemetry| {
+            f64::from(line.telemetry.tick.wrapping_sub(landed) as i32) * 1e-3
+        };
+        let before: Vec<_> = lines.iter().filter(|line| since_s(line) <= 0.0).collect();
+        let mean_c = |what, of: fn(&ReceivedTelemetry) -> Option<f64>| {
+            let known: Vec<f64> = before.iter().filter_map(|line| of(line)).collect();
+            let unknown = MeasurementError::Unknown { what, since_s: 0.0 };
+            let mean_c = known.iter().sum::<f64>() / known.len() as f64;
+            if known.is_empty() {
+                Err(unknown)
+            } else {
+                Ok(mean_c)
             }
         };
-        let since_s = |tick: u32| f64::from(tick.wrapping_sub(landed) as i32) * 1e-3;
-        let mut samples = Vec::new();
+        let temperatures_c = [
+            mean_c("the skin", |line| line.telemetry.skin_c)?,
+            mean_c("the room", |line| line.telemetry.room_c)?,
+        ];
+        let mut samples: Vec<Sample> = Vec::new();
         loop {
             let line = match lines.pop_front() {
                 Some(line) => line,
                 None => {
-                    let last: Option<&Sample> = samples.last();
-                    let step = Step::Follow {
+                    let last = samples.last();
+                    self.next(&Step::Follow {
                         since_s: last.map_or(0.0, |sample| sample.since_s) + STEP_S,
                         force_n: last.map(|sample| sample.force_n),
-                    };
-                    self.next(&step)?
+                    })?
                 }
             };
-            let since_s = since_s(line.telemetry.tick);
+            let since_s = since_s(&line);
             if since_s <= 0.0 {
                 continue;
             }
             if since_s > RAMPS_S {
                 (self.guide)(self.client, &Step::End);
-                return Ok(samples);
+                return Ok((temperatures_c, samples));
             }
             samples.push(sample(&line, since_s)?);
             if self.event(DeviceEventKind::Lift).is_some() {
@@ -358,6 +393,10 @@ impl<L: Link> Session<'_, L> {
         }
         None
     }
+}
+
+fn is_lifted(line: &ReceivedTelemetry) -> bool {
+    (line.telemetry.force_n).is_some_and(|force_n| force_n < LIFTED_N)
 }
 
 /// The sample of a line.

@@ -1,6 +1,8 @@
 //! Force ramps of simulated fingers: layered tissue by finite volumes, blood, the tile, and the heat-flux sensor.
 
-use contact_law_fit::{FORCES_N, Fit, RAMPS_S, Recording, Sample, fit, force_n};
+mod deviations;
+
+use contact_law_fit::{FORCES_N, RAMPS_S, Recording, Sample, fit, force_n};
 use contact_model::material::{SKIN, find};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::mean_conductance;
@@ -10,6 +12,8 @@ use thermal_plant::object::ObjectConfig;
 use thermal_plant::parameters::{draw, draw_contact, draw_finger};
 use thermal_plant::sensors::FluxParams;
 use thermal_plant::{Params, Plant, PlantConfig, STEP_S};
+
+use deviations::{Deviations, Exact};
 
 /// Temperature at which the display is held, °C.
 const HELD_C: f64 = 24.0;
@@ -78,127 +82,22 @@ fn record(params: &Params, seed: u64) -> Recording {
     }
 }
 
-/// The plant's resistance of the finger on the display, m² K/W.
-fn exact_m2k_w(params: &Params, force_n: f64) -> f64 {
-    let contact = params
-        .contact
-        .at_force(force_n, &params.finger.surface, &params.display);
-    params.finger.resistance_factor * contact.expect("a force").resistance_m2k_w
-}
-
-/// Median, 90 % and worst.
-fn three(values: &[f64]) -> [f64; 3] {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    [0.5, 0.9, 1.0].map(|part| sorted[((sorted.len() - 1) as f64 * part).round() as usize])
-}
-
-/// Deviations of fits from the plants' own laws, without their signs.
-#[derive(Default)]
-struct Deviations {
-    resistance_percent: [Vec<f64>; FORCES_N.len()],
-    exponent: Vec<f64>,
-    gap_w_m2k: Vec<f64>,
-    /// Number of fits with a gap.
-    gaps: usize,
-    /// How many of the intervals of resistances, exponent and gap contain the plant's value.
-    inside: [usize; FORCES_N.len() + 2],
-}
-
-fn deviations(sensor: fn(FluxParams) -> FluxParams, has_gap: bool, fingers: u64) -> Deviations {
-    let mut found = Deviations::default();
+/// Compares fits with their plants.
+#[track_caller]
+fn assert_fits(kind: &str, sensor: fn(FluxParams) -> FluxParams, has_gap: bool, fingers: u64) {
+    let mut deviations = Deviations::default();
     for seed in 0..fingers {
         let params = params(seed, sensor, has_gap);
         let fit = fit(&record(&params, seed)).expect("a good recording");
-        let Fit { law, .. } = fit;
-        let resistances_m2k_w = FORCES_N.map(|force_n| exact_m2k_w(&params, force_n));
-        let fitted = fit.resistances_m2k_w.iter().zip(resistances_m2k_w);
-        for (percent, (fitted, exact)) in found.resistance_percent.iter_mut().zip(fitted) {
-            percent.push(100.0 * (fitted / exact - 1.0).abs());
-        }
         // The law that a device is told has the resistances that are reported.
         let mean_w_m2k = mean_conductance::<f64>(&SKIN.surface, &params.display);
         for (force_n, fitted) in FORCES_N.iter().zip(fit.resistances_m2k_w) {
-            let told_w_m2k = law.conductance_w_m2k(mean_w_m2k, pressure_pa(*force_n));
+            let told_w_m2k = (fit.law).conductance_w_m2k(mean_w_m2k, pressure_pa(*force_n));
             assert!((fitted * told_w_m2k - 1.0).abs() < 1e-9);
         }
-        // The factor is on the whole resistance.
-        let gap = params.contact.gap_w_m2k / params.finger.resistance_factor;
-        found
-            .exponent
-            .push((law.exponent - params.contact.exponent).abs());
-        found.gap_w_m2k.push((law.gap_w_m2k - gap).abs());
-        found.gaps += usize::from(law.gap_w_m2k > 0.0);
-        let [a, b, c] = fit.resistance_intervals_m2k_w;
-        let intervals = [a, b, c, fit.exponent_interval, fit.gap_interval_w_m2k];
-        let [a, b, c] = resistances_m2k_w;
-        let exact = [a, b, c, params.contact.exponent, gap];
-        for (inside, (interval, exact)) in found.inside.iter_mut().zip(intervals.iter().zip(exact))
-        {
-            *inside += usize::from((interval.low..=interval.high).contains(&exact));
-        }
+        deviations.add(&fit, &Exact::of(&params));
     }
-    let name = if has_gap {
-        "with a gap"
-    } else {
-        "without a gap"
-    };
-    println!("{fingers} fingers {name}; median, 90 %, worst:");
-    for (force_n, percent) in FORCES_N.iter().zip(&found.resistance_percent) {
-        println!("  R at {force_n} N {:.1?} %", three(percent));
-    }
-    let (exponent, gap) = (three(&found.exponent), three(&found.gap_w_m2k));
-    println!(
-        "  exponent {exponent:.4?}, gap {gap:.0?} W/(m2 K), taken in {}",
-        found.gaps
-    );
-    println!("  inside of the intervals: {:?}", found.inside);
-    found
-}
-
-/// The resistance is to be within 10 %, and the exponent, where there is no gap, within 0.01.
-#[track_caller]
-fn assert_without_gap(sensor: fn(FluxParams) -> FluxParams, fingers: u64) {
-    let found = deviations(sensor, false, fingers);
-    assert_eq!(found.gaps, 0);
-    for percent in &found.resistance_percent {
-        assert!(three(percent)[2] < 6.0, "{percent:?} %");
-    }
-    let [median, most, worst] = three(&found.exponent);
-    assert!(
-        median < 0.007 && most < 0.0125 && worst < 0.0155,
-        "{:?}",
-        found.exponent
-    );
-    // Of 95 in a hundred.
-    assert!(
-        found.inside[..4]
-            .iter()
-            .all(|inside| *inside as f64 > 0.87 * fingers as f64)
-    );
-}
-
-#[track_caller]
-fn assert_with_gap(sensor: fn(FluxParams) -> FluxParams, fingers: u64) {
-    let found = deviations(sensor, true, fingers);
-    assert_eq!(found.gaps, fingers as usize);
-    for percent in &found.resistance_percent {
-        let [_, most, worst] = three(percent);
-        assert!(most < 9.0 && worst < 12.0, "{percent:?} %");
-    }
-    assert!(three(&found.exponent)[2] < 0.065, "{:?}", found.exponent);
-    let [median, _, worst] = three(&found.gap_w_m2k);
-    assert!(
-        median < 14.0 && worst < 75.0,
-        "{:?} W/(m2 K)",
-        found.gap_w_m2k
-    );
-    assert!(
-        found
-            .inside
-            .iter()
-            .all(|inside| *inside as f64 > 0.87 * fingers as f64)
-    );
+    deviations.assert_figures(&format!("contact-fit.{kind}"), has_gap);
 }
 
 /// The sensor that was designed, within its tolerances.
@@ -218,14 +117,14 @@ fn hypothetical(drawn: FluxParams) -> FluxParams {
 
 #[test]
 fn resistance_and_exponent_of_fingers_without_a_gap() {
-    assert_without_gap(designed, 24);
-    assert_without_gap(hypothetical, 12);
+    assert_fits("no_gap", designed, false, 24);
+    assert_fits("no_gap_hypothetical", hypothetical, false, 12);
 }
 
 #[test]
 fn resistance_and_gap_of_fingers_with_one() {
-    assert_with_gap(designed, 24);
-    assert_with_gap(hypothetical, 12);
+    assert_fits("gap", designed, true, 24);
+    assert_fits("gap_hypothetical", hypothetical, true, 12);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod case;
 mod chart;
+mod measured_contact;
 mod object;
 mod statistics;
 
@@ -17,6 +18,7 @@ use super::plant_draws::SAME_VALUE;
 
 pub use case::{PopulationCase, Way};
 pub use chart::{SVG, draw as chart};
+use measured_contact::measured_contact;
 pub use object::{BodyObject, every_object, layer_keys, six_objects};
 pub use statistics::{ImageSample, PopulationReport, PopulationResult, WayStatistics, table};
 
@@ -54,6 +56,9 @@ named_enum! {
         /// The same, with the device told of each: what measuring a person's law can give at most.
         #[serde(rename = "I-told")]
         ToldContactLaws = "I-told",
+        /// The same, with the device told of what was measured of each at a device with the designed sensor of the heat flux.
+        #[serde(rename = "I-measured")]
+        MeasuredContactLaws = "I-measured",
     }
 }
 
@@ -106,7 +111,7 @@ impl Population {
             Self::FingerBox | Self::DrawnFingers => "F",
             Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => "G",
             Self::EnrolledDesigned | Self::EnrolledHypothetical => "H",
-            Self::ContactLaws | Self::ToldContactLaws => "I",
+            Self::ContactLaws | Self::ToldContactLaws | Self::MeasuredContactLaws => "I",
         }
     }
 
@@ -132,6 +137,9 @@ impl Population {
                 "contact laws of contact.draw; nominal layered finger, six objects"
             }
             Self::ToldContactLaws => "the same contact laws, each told to the device",
+            Self::MeasuredContactLaws => {
+                "the same contact laws, each told as it was measured with the designed sensor"
+            }
         }
     }
 
@@ -160,7 +168,7 @@ impl Population {
             Self::DrawnFingers => &DRAWN_FINGERS,
             Self::DesignedSensor | Self::HypotheticalSensor | Self::KnownSurfaces => &FIRST_CONTACT,
             Self::EnrolledDesigned | Self::EnrolledHypothetical => &ENROLLED,
-            Self::ContactLaws | Self::ToldContactLaws => &[],
+            Self::ContactLaws | Self::ToldContactLaws | Self::MeasuredContactLaws => &[],
         }
     }
 
@@ -173,7 +181,8 @@ impl Population {
             | Self::KnownSurfaces
             | Self::EnrolledDesigned
             | Self::EnrolledHypothetical
-            | Self::ToldContactLaws => &[Way::AsItIs],
+            | Self::ToldContactLaws
+            | Self::MeasuredContactLaws => &[Way::AsItIs],
             _ => &Way::ALL,
         }
     }
@@ -219,7 +228,12 @@ impl Population {
                     let hypothetical = drawn_finger(own) + &hypothetical_sensor(own);
                     (own, hypothetical + &known_surfaces())
                 }
-                Self::ToldContactLaws => (seed, drawn_contact(own) + &told_contact(own)),
+                Self::ToldContactLaws => (seed, drawn_contact(own) + &told(exact_contact(own))),
+                Self::MeasuredContactLaws => {
+                    // A person whose measurement fails is told nothing.
+                    let line = measured_contact(own).map_or(String::new(), told);
+                    (seed, drawn_contact(own) + &line)
+                }
                 _ => (seed, drawn_contact(own)),
             };
             for object in six_objects() {
@@ -241,17 +255,22 @@ fn drawn_contact(seed: u64) -> String {
     layered("") + &format!("[plant]\ncontact.draw = {seed}\n")
 }
 
-/// The line that tells the device of that law. The pressure is the force over the true area there, which shows as another
-/// microhardness of the area that the device assumes.
-fn told_contact(seed: u64) -> String {
+/// That law. The pressure is the force over the true area there, which shows as another microhardness of the area that the device
+/// assumes.
+fn exact_contact(seed: u64) -> ContactLaw {
     let mut params = Params::nominal();
     parameters::draw_contact(&mut params, seed);
     let plant = params.contact;
-    let line = PlainCommand::ContactLaw(ContactLaw {
+    ContactLaw {
         exponent: plant.exponent,
         hardness_pa: plant.hardness_pa * plant.area_factor,
         gap_w_m2k: plant.gap_w_m2k,
-    });
+    }
+}
+
+/// The line that tells the device of a law.
+fn told(law: ContactLaw) -> String {
+    let line = PlainCommand::ContactLaw(law);
     format!("[[host]]\nt_s = 0.0\nline = \"{line}\"\n")
 }
 

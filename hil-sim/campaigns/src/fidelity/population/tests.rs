@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use contact_model::pressure::THESIS_PRESSURES;
+use contact_model::pressure::{THESIS_PRESSURES, pressure_pa};
 use contact_model::reference::mean_conductance;
 use thermal_plant::parameters::PlaceBeforeContact;
 use thermal_plant::slab::BackBoundary;
@@ -134,6 +134,41 @@ fn drawn_contact_laws_leave_all_else_nominal() {
     assert_ne!(scenes[0].params.contact, scenes[6].params.contact);
 }
 
+/// Two fingers, one with a gap of more than 100 W/(m² K).
+#[test]
+fn measured_contact_laws_are_near_those_of_the_plant() {
+    let exact = Population::ToldContactLaws.cases(1, 2);
+    let measured = Population::MeasuredContactLaws.cases(1, 2);
+    assert_eq!(exact.len(), measured.len());
+    for (exact, measured) in exact.iter().zip(&measured).step_by(6) {
+        let conductances = [exact, measured].map(|case| {
+            let scene = case.scene(Way::AsItIs).expect("a scene");
+            let [line] = scene.host.as_slice() else {
+                panic!("one line");
+            };
+            let law = law(&line.line);
+            [0.1, 0.5, 2.0].map(|force_n| law.conductance_w_m2k(20_000.0, pressure_pa(force_n)))
+        });
+        let [exact, measured] = conductances;
+        for (exact, measured) in exact.iter().zip(measured) {
+            let percent = 100.0 * (measured / exact - 1.0);
+            assert!(percent.abs() < 12.0 && percent != 0.0, "{percent} %");
+        }
+    }
+}
+
+/// The law of a line.
+fn law(line: &str) -> ContactLaw {
+    let words: Vec<f64> = (line.split(' ').skip(1))
+        .map(|word| word.parse().expect("a number"))
+        .collect();
+    ContactLaw {
+        exponent: words[0],
+        hardness_pa: words[1],
+        gap_w_m2k: words[2],
+    }
+}
+
 /// At the forces of the thesis, and the same otherwise.
 #[test]
 fn told_contact_laws_are_those_of_the_plant() {
@@ -148,14 +183,7 @@ fn told_contact_laws_are_those_of_the_plant() {
         let [line] = scene.host.as_slice() else {
             panic!("one line");
         };
-        let words: Vec<f64> = (line.line.split(' ').skip(1))
-            .map(|word| word.parse().expect("a number"))
-            .collect();
-        let law = ContactLaw {
-            exponent: words[0],
-            hardness_pa: words[1],
-            gap_w_m2k: words[2],
-        };
+        let law = law(&line.line);
         let Params {
             contact,
             finger,
