@@ -86,7 +86,7 @@ fn assert_within_limits(output: &LearnerOutput) {
     within(output.skin_offset_k.to_num(), -0.3, 0.3);
     within(output.resistance_factor.to_num(), 0.4, 2.5);
     within(output.parameters[0].to_num(), -3.5, 3.5);
-    within(output.parameters[1].to_num(), -3.5, 3.5);
+    within(output.parameters[1].to_num(), -7.0, 7.0);
     for variance in output.variances {
         assert!(variance > 0 && variance <= 1.25, "{output:?}");
     }
