@@ -96,22 +96,26 @@ impl LearnerOutput {
     /// Goes a step on the way to the mean finger, as if the learner did not answer: to a twentieth in ten windows, as the learner
     /// itself goes there. Returns whether something has changed.
     pub fn approach_mean(&mut self) -> bool {
-        let before = (self.air_change, self.skin_offset_k, self.resistance_factor);
         let mut has_changed = false;
         for weight in &mut self.weights {
-            let next = approached(*weight, I2F30::ONE);
-            has_changed |= next != *weight;
-            *weight = next;
+            has_changed |= approach(weight, I2F30::ONE);
         }
-        self.air_change = approached(self.air_change, I4F28::ZERO);
-        self.skin_offset_k = approached(self.skin_offset_k, Celsius::ZERO);
-        self.resistance_factor = approached(self.resistance_factor, I4F28::ONE);
-        has_changed | ((self.air_change, self.skin_offset_k, self.resistance_factor) != before)
+        has_changed
+            | approach(&mut self.air_change, I4F28::ZERO)
+            | approach(&mut self.skin_offset_k, Celsius::ZERO)
+            | approach(&mut self.resistance_factor, I4F28::ONE)
     }
 }
 
-/// The mean value and three quarters of the change from it; of one of three units or less nothing.
-fn approached<T: Fixed<Bits = i32>>(value: T, mean: T) -> T {
-    let change = value.to_bits().saturating_sub(mean.to_bits());
-    T::from_bits(mean.to_bits().saturating_add(change / 4 * 3))
+/// Leaves three quarters of the change from the mean value; of one of three units or less nothing. Returns whether it has changed.
+fn approach<T: Fixed<Bits = i32>>(value: &mut T, mean: T) -> bool {
+    let next = approached(value.to_bits(), mean.to_bits());
+    let has_changed = next != value.to_bits();
+    *value = T::from_bits(next);
+    has_changed
+}
+
+#[inline(never)]
+const fn approached(value: i32, mean: i32) -> i32 {
+    mean.saturating_add(value.saturating_sub(mean) / 4 * 3)
 }
