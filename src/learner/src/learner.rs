@@ -1,10 +1,13 @@
 //! The learner: one finger on one display, window by window.
 
+use contact_model::fixed_point::WEIGHTS;
+
 use crate::estimate::Estimate;
 use crate::output::LearnerOutput;
-use crate::parameters::{Place, RESISTANCE, Scale};
+use crate::parameters::{Place, RESISTANCE, Scale, relative_weights};
 use crate::regressors::{Lagged, Signals};
 use crate::sensor::FluxSensor;
+use crate::signals::BankOutput;
 use crate::trust::{Distrust, Judge, Trust};
 use crate::window::{Contact, LearnerInput, Resistance, Restart};
 
@@ -39,6 +42,8 @@ pub struct Learner {
     /// Whether the estimate has changed since the last output. Most windows without contact and most of a long one leave it.
     has_changed: bool,
     output: LearnerOutput,
+    /// Its weights.
+    weights: BankOutput,
 }
 
 impl Default for Learner {
@@ -67,6 +72,7 @@ impl Learner {
             windows_in_contact: None,
             has_changed: true,
             output: LearnerOutput::MEAN,
+            weights: [1.0; WEIGHTS],
         }
     }
 
@@ -129,8 +135,11 @@ impl Learner {
         }
         let resistance_m2k_w = contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT;
         let parameters = self.estimate.parameters;
+        if self.has_changed {
+            self.weights = relative_weights(&parameters);
+        }
         let measurement =
-            lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &parameters);
+            lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &self.weights);
 
         let model_k2 = MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_ERROR_TICKS);
         let factor = 1.0 + parameters[RESISTANCE] * self.scale.deviations[RESISTANCE];
@@ -159,7 +168,8 @@ impl Learner {
     fn output(&mut self, sequence: u16) -> &LearnerOutput {
         if self.has_changed {
             let revision = self.output.revision.wrapping_add(1);
-            self.output = LearnerOutput::new(revision, &self.estimate, &self.scale);
+            self.weights = relative_weights(&self.estimate.parameters);
+            self.output = LearnerOutput::new(revision, &self.estimate, &self.weights, &self.scale);
             self.has_changed = false;
         }
         (self.output.sequence, self.output.trust) = (sequence, self.judge.trust());

@@ -5,7 +5,8 @@ use fixed::traits::Fixed;
 use fixed::types::{I2F30, I4F28, U2F30, U4F28, U10F22};
 
 use crate::estimate::Estimate;
-use crate::parameters::{AIR, PARAMETERS, RESISTANCE, SKIN, Scale, relative_weights};
+use crate::parameters::{AIR, PARAMETERS, RESISTANCE, SKIN, Scale};
+use crate::signals::BankOutput;
 use crate::trust::Trust;
 
 /// Differences of a finger from the applied one that are not worth the device's time.
@@ -66,13 +67,13 @@ impl LearnerOutput {
     };
 
     /// What is known, before it has a window's number and trust. Parameters and variances are within their limits.
-    pub fn new(revision: u16, estimate: &Estimate, scale: &Scale) -> Self {
+    pub fn new(revision: u16, estimate: &Estimate, weights: &BankOutput, scale: &Scale) -> Self {
         let parameters = &estimate.parameters;
         let change = |index: usize| parameters[index] * scale.deviations[index];
         Self {
             sequence: 0,
             revision,
-            weights: all_to_fixed(&relative_weights(parameters)),
+            weights: all_to_fixed(weights),
             air_change: to_fixed(change(AIR)),
             skin_offset_k: to_fixed(change(SKIN)),
             resistance_factor: to_fixed(1.0 + change(RESISTANCE)),

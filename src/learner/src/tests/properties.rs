@@ -99,7 +99,7 @@ proptest! {
         for input in inputs {
             let output = learner.advance(&input);
             prop_assert_eq!(output.sequence, input.sequence);
-            assert_within_limits(&output);
+            assert_within_limits(output);
         }
     }
 }
