@@ -29,13 +29,13 @@ fn step<const FINGERS: usize>(
     bench: &mut Bench<FINGERS>,
     learner: &mut Learner,
     (force, room): (u16, u16),
-    codes: impl IntoIterator<Item = u16>,
+    codes: impl IntoIterator<Item = impl Into<Option<u16>>>,
 ) {
     let finger = FingerIndex::FIRST;
     for (code, tick) in codes.into_iter().zip(0u16..) {
         let count = |counts: u16| counts * SCANS_PER_TICK as u16 + tick % 2;
         if bench.device.finger_has_flux_sensor(finger) {
-            bench.device.note_flux_code(finger, Some(code));
+            bench.device.note_flux_code(finger, code.into());
         }
         let samples = Samples {
             force: count(force),
@@ -200,6 +200,26 @@ fn a_code_that_cannot_be_right_is_a_word_and_an_event() {
         assert!(!answer.contains("sensor-range"), "{answer}");
         assert_eq!(events(&mut one), 1, "{code}");
     }
+}
+
+#[test]
+fn a_conversion_that_has_not_ended_is_a_word_and_an_event_at_once() {
+    let (mut one, mut learner) = (Bench::<1>::new(), Learner::new());
+    assert_eq!(one.send("flux set 0.1192 2048 5 30"), "ok");
+    assert_eq!(one.send("events on"), "ok");
+    // The first tick has none.
+    let codes = (0..120).map(|tick| (tick % 50 != 0).then_some(2048 + tick % 2));
+    step(&mut one, &mut learner, (FREE, SAME), codes.clone().take(50));
+    assert!(one.send("flux").ends_with(" finger=learning"));
+    assert_eq!(events(&mut one), 0);
+    step(&mut one, &mut learner, (FREE, SAME), codes.clone().take(10));
+    let expected = format!("ok {FITTED} w_m2=- finger=no-code");
+    assert_eq!(one.send("flux"), expected);
+    let refused = one.send("flux zero");
+    assert!(refused.contains("look at its wires"), "{refused}");
+    step(&mut one, &mut learner, (FREE, SAME), codes.skip(1).take(20));
+    assert!(one.send("flux").ends_with(" finger=learning"));
+    assert_eq!(events(&mut one), 2);
 }
 
 #[test]

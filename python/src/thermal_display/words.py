@@ -66,6 +66,7 @@ AssumedFinger = Literal["mean", "mean-on-pad", "thesis"]
 FingerKnowledge = Literal[
     "learning",
     "trusted",
+    "no-code",
     "sensor-range",
     "sensor",
     "between",

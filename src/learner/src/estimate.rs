@@ -63,7 +63,10 @@ impl Estimate {
         scale: &Scale,
     ) -> Option<f32> {
         let h = &measurement.regressors;
-        let ph = self.covariance.map(|row| dot(&row, h));
+        let mut ph = [0.0; PARAMETERS];
+        for (one, row) in ph.iter_mut().zip(&self.covariance) {
+            *one = dot(row, h);
+        }
         let s = variance_k2 + dot(&ph, h);
         // Neither for a sum that rounding has made negative nor for one that is not a number.
         if !(s >= variance_k2 && s < f32::MAX) {

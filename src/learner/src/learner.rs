@@ -1,11 +1,14 @@
 //! The learner: one finger on one display, window by window.
 
+use contact_model::fixed_point::WEIGHTS;
+
 use crate::estimate::Estimate;
 use crate::output::LearnerOutput;
-use crate::parameters::{Place, RESISTANCE, Scale};
+use crate::parameters::{Place, RESISTANCE, Scale, relative_weights};
 use crate::person::PersonPrior;
 use crate::regressors::{Lagged, Signals};
 use crate::sensor::FluxSensor;
+use crate::signals::BankOutput;
 use crate::trust::{Distrust, Judge, Trust};
 use crate::window::{Contact, LearnerInput, Resistance, Restart};
 
@@ -48,6 +51,8 @@ pub struct Learner {
     /// Whether the estimate has changed since the last output. Most windows without contact and most of a long one leave it.
     has_changed: bool,
     output: LearnerOutput,
+    /// Its weights.
+    weights: BankOutput,
 }
 
 impl Default for Learner {
@@ -77,6 +82,7 @@ impl Learner {
             stored_contacts: 0,
             has_changed: true,
             output: LearnerOutput::MEAN,
+            weights: [1.0; WEIGHTS],
         }
     }
 
@@ -84,6 +90,7 @@ impl Learner {
         let mut learner = Self::of_unknown_finger(restart.place, restart.sensor);
         learner.person = restart.person;
         learner.estimate = learner.prior();
+        learner.weights = relative_weights(&learner.estimate.parameters);
         learner
     }
 
@@ -167,8 +174,11 @@ impl Learner {
         }
         let resistance_m2k_w = contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT;
         let parameters = self.estimate.parameters;
+        if self.has_changed {
+            self.weights = relative_weights(&parameters);
+        }
         let measurement =
-            lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &parameters);
+            lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &self.weights);
 
         let model_k2 = MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_ERROR_TICKS);
         let factor = 1.0 + parameters[RESISTANCE] * self.scale.deviations[RESISTANCE];
@@ -197,7 +207,8 @@ impl Learner {
     fn output(&mut self, sequence: u16, person: Option<PersonPrior>) -> &LearnerOutput {
         if self.has_changed {
             let revision = self.output.revision.wrapping_add(1);
-            self.output = LearnerOutput::new(revision, &self.estimate, &self.scale);
+            self.weights = relative_weights(&self.estimate.parameters);
+            self.output = LearnerOutput::new(revision, &self.estimate, &self.weights, &self.scale);
             self.has_changed = false;
         }
         (self.output.sequence, self.output.trust) = (sequence, self.judge.trust());

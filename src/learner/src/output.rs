@@ -5,8 +5,9 @@ use fixed::traits::Fixed;
 use fixed::types::{I2F30, I4F28, U2F30, U4F28, U10F22};
 
 use crate::estimate::Estimate;
-use crate::parameters::{AIR, PARAMETERS, RESISTANCE, SKIN, Scale, relative_weights};
+use crate::parameters::{AIR, PARAMETERS, RESISTANCE, SKIN, Scale};
 use crate::person::PersonPrior;
+use crate::signals::BankOutput;
 use crate::trust::Trust;
 
 /// Differences of a finger from the applied one that are not worth the device's time.
@@ -70,13 +71,13 @@ impl LearnerOutput {
     };
 
     /// What is known, before it has a window's number, trust and person. Parameters and variances are within their limits.
-    pub fn new(revision: u16, estimate: &Estimate, scale: &Scale) -> Self {
+    pub fn new(revision: u16, estimate: &Estimate, weights: &BankOutput, scale: &Scale) -> Self {
         let parameters = &estimate.parameters;
         let change = |index: usize| parameters[index] * scale.deviations[index];
         Self {
             sequence: 0,
             revision,
-            weights: all_to_fixed(&relative_weights(parameters)),
+            weights: all_to_fixed(weights),
             air_change: to_fixed(change(AIR)),
             skin_offset_k: to_fixed(change(SKIN)),
             resistance_factor: to_fixed(1.0 + change(RESISTANCE)),
@@ -101,22 +102,26 @@ impl LearnerOutput {
     /// Goes a step on the way to the mean finger, as if the learner did not answer: to a twentieth in ten windows, as the learner
     /// itself goes there. Returns whether something has changed.
     pub fn approach_mean(&mut self) -> bool {
-        let before = (self.air_change, self.skin_offset_k, self.resistance_factor);
         let mut has_changed = false;
         for weight in &mut self.weights {
-            let next = approached(*weight, I2F30::ONE);
-            has_changed |= next != *weight;
-            *weight = next;
+            has_changed |= approach(weight, I2F30::ONE);
         }
-        self.air_change = approached(self.air_change, I4F28::ZERO);
-        self.skin_offset_k = approached(self.skin_offset_k, Celsius::ZERO);
-        self.resistance_factor = approached(self.resistance_factor, I4F28::ONE);
-        has_changed | ((self.air_change, self.skin_offset_k, self.resistance_factor) != before)
+        has_changed
+            | approach(&mut self.air_change, I4F28::ZERO)
+            | approach(&mut self.skin_offset_k, Celsius::ZERO)
+            | approach(&mut self.resistance_factor, I4F28::ONE)
     }
 }
 
-/// The mean value and three quarters of the change from it; of one of three units or less nothing.
-fn approached<T: Fixed<Bits = i32>>(value: T, mean: T) -> T {
-    let change = value.to_bits().saturating_sub(mean.to_bits());
-    T::from_bits(mean.to_bits().saturating_add(change / 4 * 3))
+/// Leaves three quarters of the change from the mean value; of one of three units or less nothing. Returns whether it has changed.
+fn approach<T: Fixed<Bits = i32>>(value: &mut T, mean: T) -> bool {
+    let next = approached(value.to_bits(), mean.to_bits());
+    let has_changed = next != value.to_bits();
+    *value = T::from_bits(next);
+    has_changed
+}
+
+#[inline(never)]
+const fn approached(value: i32, mean: i32) -> i32 {
+    mean.saturating_add(value.saturating_sub(mean) / 4 * 3)
 }

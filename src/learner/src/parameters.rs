@@ -137,6 +137,7 @@ pub fn relative_weights(parameters: &Parameters) -> BankOutput {
 }
 
 /// The value within limits; the low one for what is not a number.
+#[inline(never)]
 pub fn clamped(value: f32, low: f32, high: f32) -> f32 {
     if value > high {
         high

@@ -38,6 +38,16 @@ struct UnitRelaxation {
     mean_gain_s: f32,
 }
 
+impl UnitRelaxation {
+    /// Mean of the state over a window with this mean input.
+    #[inline(always)]
+    fn advance(&self, state: &mut f32, input: f32) -> f32 {
+        let mean = self.mean * *state + self.mean_gain_s * input;
+        *state = self.remaining * *state + self.gain_s * input;
+        mean
+    }
+}
+
 const UNIT_RELAXATIONS: [UnitRelaxation; RATES] = {
     let mut all = [UnitRelaxation {
         remaining: 0.0,
@@ -70,19 +80,22 @@ pub type BankOutput = [f32; WEIGHTS];
 impl Bank {
     pub const ZERO: Self = Self([0.0; RATES]);
 
-    /// Output of a window with this mean flux, W/m².
-    pub fn advance(&mut self, flux_w_m2: f32) -> BankOutput {
-        let mut output = [flux_w_m2; WEIGHTS];
-        let states = self.0.iter_mut().zip(&UNIT_RELAXATIONS);
-        for ((state, one), mean) in states.zip(&mut output) {
-            *mean = one.mean * *state + one.mean_gain_s * flux_w_m2;
-            *state = one.remaining * *state + one.gain_s * flux_w_m2;
+    /// Outputs of two banks in a window with these mean fluxes, W/m². In one loop, because of the coefficients.
+    pub fn advance_both(banks: [&mut Self; 2], fluxes_w_m2: [f32; 2]) -> [BankOutput; 2] {
+        let mut outputs = fluxes_w_m2.map(|flux_w_m2| [flux_w_m2; WEIGHTS]);
+        let ([first, second], [of_first, of_second]) = (banks, &mut outputs);
+        let states = first.0.iter_mut().zip(&mut second.0);
+        let means = of_first.iter_mut().zip(of_second);
+        for ((states, means), one) in states.zip(means).zip(&UNIT_RELAXATIONS) {
+            *means.0 = one.advance(states.0, fluxes_w_m2[0]);
+            *means.1 = one.advance(states.1, fluxes_w_m2[1]);
         }
-        output
+        outputs
     }
 }
 
-/// The sum of products, from the first to the last.
-pub fn dot<const N: usize>(a: &[f32; N], b: &[f32; N]) -> f32 {
+/// The sum of products, from the first to the last. Not inlined, so that its loop is in the program once.
+#[inline(never)]
+pub fn dot(a: &[f32], b: &[f32]) -> f32 {
     a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
 }

@@ -98,7 +98,7 @@ struct Finger {
     /// Whether the bridge has pulled its fault pin since the last tick, as the board's break flag records.
     fault: bool,
     outputs: BoardOutputs,
-    /// Code of the conversion that the last tick with a heat-flux sensor has started; 0 before the first.
+    /// Code of the conversion that the last tick with a heat-flux sensor has started; `None` before the first.
     flux_code: Option<u16>,
     /// Runs only with a heat-flux sensor.
     learner: Learner,

@@ -4,7 +4,7 @@ use std::println;
 use std::vec::Vec;
 
 use super::*;
-use crate::parameters::Place;
+use crate::parameters::{Place, relative_weights};
 use crate::regressors::Signals;
 use crate::tests::contacts::sensor;
 use crate::tests::matrix::least_pivot;
@@ -34,7 +34,12 @@ fn covariance_stays_positive_over_a_million_updates() {
         for input in scene.inputs(&mut random, 0) {
             let lagged = signals.advance(&input, &sensor);
             let resistance = display_resistance_m2k_w(force_n) as f32;
-            measurements.push(lagged.measurement(resistance, &sensor, &scale, &PRIOR));
+            measurements.push(lagged.measurement(
+                resistance,
+                &sensor,
+                &scale,
+                &relative_weights(&PRIOR),
+            ));
         }
     }
     let mut estimate = Estimate::PRIOR;
