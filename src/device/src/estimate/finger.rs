@@ -138,6 +138,8 @@ pub struct FingerContact {
     /// Contact conductances for a force within 1/1024 of the present mean force; `None` until a tick computes them, and
     /// after another object has been presented.
     conductances: Option<ContactConductances>,
+    /// Heat flow, W, by which a sensor has measured more than the model of the finger says.
+    heat_beyond_model: Watt,
 }
 
 impl FingerContact {
@@ -152,6 +154,7 @@ impl FingerContact {
             initial_force: force,
             elapsed: landed_ticks.into(),
             conductances: None,
+            heat_beyond_model: Watt::ZERO,
         }
     }
 
@@ -209,6 +212,12 @@ impl FingerContact {
     /// the preset by 1/128 of the skin's temperature minus the preset.
     pub const fn exclude_closed_form(&mut self) {
         self.closed_form_applies = false;
+    }
+
+    /// Heat flow, W, by which a sensor has measured more than the model of the finger says; 0 from landing on, until it is known.
+    #[must_use]
+    pub const fn heat_beyond_model(&self) -> Watt {
+        self.heat_beyond_model
     }
 
     /// Contact conductances for a force within 1/1024 of the present mean force. `None` if no tick has computed them
@@ -405,6 +414,13 @@ impl FingerEstimator {
         }
     }
 
+    /// Adds this heat flow, W, to that of the modelled finger until another follows, or this contact ends.
+    pub const fn set_heat_beyond_model(&mut self, heat: Watt) {
+        if let Some(contact) = &mut self.contact {
+            contact.heat_beyond_model = heat;
+        }
+    }
+
     /// Makes the skin's states those that the heat so far would have made in the tissue `to`.
     pub fn change_tissue(&mut self, factors: &TissueStateFactors, to: &Body) {
         self.skin_state_on_display.change_tissue(factors, to);
@@ -432,7 +448,8 @@ impl FingerEstimator {
     /// Advances the thermal state of the skin by one tick, in contact with a display whose surface has the temperature
     /// `surface`, °C, or without contact. Returns the heat flow from the finger into the display, W: negative if the
     /// display is warmer than the skin's surface, 0 without contact. It is that of the sensed skin, also while another
-    /// one is assumed. Computes the contact conductances again if the mean force has changed by more than 1/1024. Of
+    /// one is assumed, with [`Self::set_heat_beyond_model`]. Computes the contact conductances again if the mean force has changed by
+    /// more than 1/1024. Of
     /// `pair` only the properties of skin and display matter here, so the caller may give a pair with any object.
     pub fn step_skin_heat_flow(
         &mut self,
@@ -443,8 +460,8 @@ impl FingerEstimator {
         let Some(before) = self.before_contact else {
             return Watt::ZERO;
         };
-        let (force, display) = match &mut self.contact {
-            None => (Force::ZERO, None),
+        let (force, beyond, display) = match &mut self.contact {
+            None => (Force::ZERO, Watt::ZERO, None),
             Some(contact) => {
                 let force = contact.force.long_mean();
                 let conductances = match &mut contact.conductances {
@@ -454,7 +471,8 @@ impl FingerEstimator {
                         outdated.insert(ContactConductances::new(pair, bodies, force))
                     }
                 };
-                (force, Some(&conductances.display))
+                let beyond = contact.heat_beyond_model;
+                (force, beyond, Some(&conductances.display))
             }
         };
         let mut scaled_flux =
@@ -463,7 +481,8 @@ impl FingerEstimator {
             scaled_flux = assumed.step_sensed_skin(display, bodies, before.room, surface);
         }
         let flux_w_mm2: I10F22 = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
-        saturating_product(flux_w_mm2, contact_area(force))
+        let modelled: Watt = saturating_product(flux_w_mm2, contact_area(force));
+        modelled.saturating_add(beyond)
     }
 }
 

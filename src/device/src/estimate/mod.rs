@@ -82,6 +82,14 @@ impl Estimator {
         estimate
     }
 
+    /// Heat flow from the modelled finger into the display in the last tick, W, without what a sensor has measured beyond it.
+    #[inline(always)]
+    pub fn modelled_heat(&self) -> Watt {
+        let contact = self.finger.contact();
+        let beyond = contact.map_or(Watt::ZERO, |contact| contact.heat_beyond_model());
+        self.plate.finger_heat().saturating_sub(beyond)
+    }
+
     /// Discards all estimates of plate and finger; they start again from the next valid readings. Called in each tick
     /// whose readings are invalid or in which a fault detector finds a fault, because such a tick does not update the
     /// estimates.

@@ -2,7 +2,7 @@
 
 use contact_model::fixed_point::to_fixed;
 use contact_model::material::SKIN;
-use fixed::types::{I28F4, U8F24, U16F16};
+use fixed::types::{I28F4, U0F32, U8F24, U16F16};
 use thermal_learner::{Flux, WINDOW_TICKS};
 use thermal_settings::FluxSensor;
 
@@ -22,6 +22,8 @@ pub struct FluxParameters {
     w_m2_per_count_and_tick: U8F24,
     /// Windows after that of the lifting in which the flux still counts.
     pub(super) windows_after_lifting: u32,
+    /// Part of the distance to its input by which a low-pass filter of the sensor's lag moves in a window.
+    pub(super) lag_coefficient: U0F32,
     /// The sensor for the learner.
     pub(super) sensor: thermal_learner::FluxSensor,
     /// Resistance of the layer: its temperature difference per kelvin of scaled flux.
@@ -39,6 +41,7 @@ impl FluxParameters {
                 1.0 / (sensor.counts_per_w_m2 * f64::from(WINDOW_TICKS)),
             ),
             windows_after_lifting: (LAGS_AFTER_LIFTING * sensor.lag_ms / WINDOW_MS) as u32,
+            lag_coefficient: to_fixed(WINDOW_MS / (WINDOW_MS + sensor.lag_ms)),
             sensor: thermal_learner::FluxSensor::new(
                 (1e3 * sensor.lag_ms) as u32,
                 to_fixed(sensor.resistance_mm2k_w),

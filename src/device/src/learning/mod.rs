@@ -9,6 +9,7 @@
 //! The learner runs outside of the control path. What it has found is applied ten ticks after its input was taken, however
 //! soon it was there, so that its computing time changes nothing.
 
+mod beyond_model;
 mod code_faults;
 mod flux_parameters;
 mod person_state;
@@ -20,6 +21,8 @@ use thermal_learner::{
 };
 use thermal_settings::Person;
 
+use crate::estimate::Watt;
+use beyond_model::BeyondModel;
 use code_faults::{CodeFault, CodeFaults};
 pub use flux_parameters::FluxParameters;
 pub use person_state::PersonState;
@@ -66,6 +69,17 @@ impl FingerKnowledge {
         ("late", Self::Late),
     ];
 
+    /// Whether what the sensor reads can be right. Also for a finger that is not trusted: the finger is in doubt then, not the flux.
+    const fn is_of_sound_sensor(self) -> bool {
+        match self {
+            Self::NoSensor | Self::NoCode | Self::SensorFault | Self::Late => false,
+            Self::Learnt(Trust::Mean(why)) => {
+                !matches!(why, Distrust::Sensor | Distrust::Arithmetic)
+            }
+            Self::Learnt(Trust::Learning | Trust::Trusted) => true,
+        }
+    }
+
     /// Its word in the protocol.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -97,6 +111,7 @@ pub struct FingerLearning {
     parameters: FluxParameters,
     faults: CodeFaults,
     resting: RestingCodes,
+    beyond_model: BeyondModel,
     /// Windows in which the flux still counts if the finger has lifted.
     counting_windows: u32,
     /// Number of the last window.
@@ -129,6 +144,7 @@ impl FingerLearning {
             parameters: *parameters,
             faults: CodeFaults::default(),
             resting: RestingCodes::default(),
+            beyond_model: BeyondModel::default(),
             counting_windows: 0,
             sequence: 0,
             restart: Some(place),
@@ -178,6 +194,7 @@ impl FingerLearning {
     pub fn end_window(&mut self, state: &StateAtEnd) -> Option<&LearnerOutput> {
         let contact = self.sums.contact(state);
         let flux_w_m2 = self.flux_of_window();
+        let modelled_heat = self.sums.mean_modelled_heat();
         self.sums = self.sums.next();
         let (answer, fault) = (self.answer.take(), self.faults.present());
         self.was_late &= contact.is_some();
@@ -189,6 +206,9 @@ impl FingerLearning {
             (None, Some(trust)) => FingerKnowledge::Learnt(trust),
             (None, None) => self.knowledge,
         };
+        let flux = flux_w_m2.filter(|_| self.knowledge.is_of_sound_sensor());
+        self.beyond_model
+            .end_window(flux, modelled_heat, &self.parameters, state);
         if let Some(trust) = answer {
             let person = self.learnt.as_ref().and_then(|learnt| learnt.person);
             self.person.note(trust, person);
@@ -271,6 +291,12 @@ impl FingerLearning {
     pub fn flux(&self) -> Option<Flux> {
         let is_valid = self.code != 0 && self.faults.present().is_none();
         is_valid.then(|| (self.parameters).mean_flux(WINDOW_TICKS * u32::from(self.code)))
+    }
+
+    /// Heat flow, W, by which the sensor has measured more in the last window than the modelled finger gives.
+    #[must_use]
+    pub const fn heat_beyond_model(&self) -> Watt {
+        self.beyond_model.heat()
     }
 
     /// Mean code of the last half second without contact.
