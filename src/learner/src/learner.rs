@@ -12,8 +12,13 @@ use crate::signals::BankOutput;
 use crate::trust::{Distrust, Judge, Trust};
 use crate::window::{Contact, LearnerInput, Resistance, Restart};
 
-/// Ticks after landing from which a contact is learnt from: the display's surface and the sensor have then settled.
-const LEARNT_FROM_TICKS: u32 = 20;
+/// Ticks after landing from which a contact is learnt from.
+const LEARNT_FROM_TICKS: u32 = 10;
+/// Ticks after landing from which the display's surface and the sensor have settled.
+const SETTLED_TICKS: u32 = 20;
+/// Error of the model before that, K: small enough to show a contact resistance of half or twice the nominal one. No innovation is
+/// judged by it.
+const UNSETTLED_ERROR_K: f32 = 0.3;
 /// Up to these ticks after landing every window, and every second one, is learnt from; later every fourth.
 const EVERY_WINDOW_TICKS: u32 = 300;
 const EVERY_SECOND_TICKS: u32 = 1000;
@@ -180,13 +185,18 @@ impl Learner {
         let measurement =
             lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &self.weights);
 
-        let model_k2 = MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_ERROR_TICKS);
+        let mut model_k2 = MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_ERROR_TICKS);
+        let is_settled = ticks >= SETTLED_TICKS;
+        if !is_settled {
+            model_k2 += UNSETTLED_ERROR_K * UNSETTLED_ERROR_K;
+        }
         let factor = 1.0 + parameters[RESISTANCE] * self.scale.deviations[RESISTANCE];
         let zero_k = factor * resistance_m2k_w * ZERO_ERROR_W_M2;
         let variance_k2 =
             (model_k2 + zero_k * zero_k + SURFACE_ERROR_K * SURFACE_ERROR_K) / f32::from(every);
         self.has_changed = true;
         let innovation = self.estimate.update(&measurement, variance_k2, &self.scale);
+        let innovation = innovation.map(|innovation| if is_settled { innovation } else { 0.0 });
         let parameters = &self.estimate.parameters;
         let state = (resistance_m2k_w, ticks);
         self.judge
