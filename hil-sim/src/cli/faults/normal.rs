@@ -10,7 +10,7 @@ pub fn run(arguments: &Arguments, device: &dyn SceneRunner, hours: u64) -> Resul
     let seed = arguments.seed;
     let numbers: Vec<u64> = (0..UseSession::in_hours(hours)).collect();
     let work = |number: &u64| {
-        let session = UseSession::new(seed, *number);
+        let session = UseSession::new(seed, *number, arguments.flux_sensor);
         let used = session.run(device);
         if let (Some(folder), Some(_)) = (&arguments.out, &used.failure) {
             output::write(folder, &format!("session-{number}.toml"), &session.text)?;
