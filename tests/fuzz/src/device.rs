@@ -17,7 +17,7 @@ use thermal_display::protocol::{
     CommandHandler, Error, LineError, LineReader, OutgoingLine, UnsolicitedLine,
 };
 use thermal_display::settings::Settings;
-use thermal_learner::Learner;
+use thermal_learner::{Learner, LearnerOutput};
 
 use crate::tile::{FULL_SCALE, Tile, sum_at};
 
@@ -32,6 +32,26 @@ pub const READING_ERROR_MAX_K: f64 = 2.8;
 const SURELY_COLD_C: f64 = 13.5 - READING_ERROR_MAX_K;
 const SURELY_HOT_C: f64 = 43.0 + READING_ERROR_MAX_K;
 
+/// Codes of the heat-flux sensor.
+#[derive(Clone, Copy, Debug)]
+pub enum FluxCodes {
+    /// Some flux under a force, with the noise of another channel.
+    OfForce,
+    /// These two in turn; a converter has 12 bits.
+    InTurn([u16; 2]),
+}
+
+/// What answers the inputs of the learner.
+#[derive(Clone, Copy, Debug)]
+pub enum Answers {
+    /// The learner.
+    Learner,
+    /// Nothing.
+    None,
+    /// This, with the number of the input.
+    Always(LearnerOutput),
+}
+
 /// A device and its command handler, on one tile for each finger.
 #[derive(Clone, Debug)]
 pub struct CheckedDevice<const FINGERS: usize> {
@@ -39,6 +59,9 @@ pub struct CheckedDevice<const FINGERS: usize> {
     handler: CommandHandler<FINGERS>,
     tiles: [Tile; FINGERS],
     learners: [Learner; FINGERS],
+    flux_codes: FluxCodes,
+    answers: Answers,
+    ticks: u32,
 }
 
 impl<const FINGERS: usize> CheckedDevice<FINGERS> {
@@ -50,7 +73,25 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
             handler: CommandHandler::new(settings),
             tiles: [Tile::default(); FINGERS],
             learners: [const { Learner::new() }; FINGERS],
+            flux_codes: FluxCodes::OfForce,
+            answers: Answers::Learner,
+            ticks: 0,
         }
+    }
+
+    /// Has the heat-flux sensors read these codes from now on.
+    pub fn set_flux_codes(&mut self, codes: FluxCodes) {
+        self.flux_codes = codes;
+    }
+
+    /// Has this answer the learner's inputs from now on.
+    pub fn set_answers(&mut self, answers: Answers) {
+        self.answers = answers;
+    }
+
+    /// An answer that nobody has asked for, or to this input.
+    pub fn answer_unasked(&mut self, finger: FingerIndex<FINGERS>, output: &LearnerOutput) {
+        self.device.put_learner_output(finger, output);
     }
 
     /// The tile of a finger.
@@ -136,14 +177,27 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     pub fn step(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {
         let before = self.state(finger);
         if self.device.finger_has_flux_sensor(finger) {
-            // Some flux under a force, with the noise of another channel.
-            let code = 1843 + samples.force / 32 + samples.display % 4;
+            self.ticks = self.ticks.wrapping_add(1);
+            let code = match self.flux_codes {
+                FluxCodes::OfForce => 1843 + samples.force / 32 + samples.display % 4,
+                FluxCodes::InTurn(codes) => codes[self.ticks as usize % 2] & 0x0fff,
+            };
             self.device.note_flux_code(finger, Some(code));
         }
         let outputs = self.device.step_finger(finger, samples);
         if let Some(input) = self.device.take_learner_input(finger) {
-            let output = self.learners[finger.index()].advance(&input);
-            self.device.put_learner_output(finger, output);
+            let output = match self.answers {
+                Answers::Learner => Some(*self.learners[finger.index()].advance(&input)),
+                Answers::None => None,
+                Answers::Always(output) => Some(LearnerOutput {
+                    sequence: input.sequence,
+                    revision: input.sequence,
+                    ..output
+                }),
+            };
+            if let Some(output) = output {
+                self.device.put_learner_output(finger, &output);
+            }
         }
         let Status {
             state, setpoint, ..

@@ -48,7 +48,13 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         file::Mode::Contact => ContactModel::ContactResistance,
         file::Mode::SemiInfinite => ContactModel::SemiInfinite,
     };
-    let (faults, injections) = faults(&source, &file.fault, duration_s, file.seed)?;
+    let (faults, injections) = faults(
+        &source,
+        &file.fault,
+        file.device.flux_sensor,
+        duration_s,
+        file.seed,
+    )?;
     let (nominal, params, draws) = params(
         &source,
         file.finger.as_ref(),

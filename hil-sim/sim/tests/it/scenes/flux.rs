@@ -22,7 +22,7 @@ fn outcome(device: &str, told: &str) -> Outcome {
 }
 
 /// The last word of the answer to the last `flux`.
-fn word(outcome: &Outcome) -> &str {
+pub(super) fn word(outcome: &Outcome) -> &str {
     let (_, answer) = outcome.answers.last().expect("answers");
     answer.rsplit_once(' ').map_or("", |(_, word)| word)
 }
@@ -33,7 +33,7 @@ fn flux_events(outcome: &Outcome) -> usize {
     events.filter(|(_, line)| line.ends_with(" flux")).count()
 }
 
-fn setpoints(outcome: &Outcome) -> Vec<f64> {
+pub(super) fn setpoints(outcome: &Outcome) -> Vec<f64> {
     let row = |row: &TraceRow| row.device.as_ref().and_then(|one| one.setpoint_c);
     outcome.trace.rows().iter().filter_map(row).collect()
 }
