@@ -88,7 +88,7 @@ struct Answer {
 
 impl Answer {
     fn output(&self) -> LearnerOutput {
-        let mean = Learner::new().advance(&LearnerInput {
+        let mean = *Learner::new().advance(&LearnerInput {
             sequence: self.sequence,
             restart: None,
             flux_w_m2: None,
@@ -104,7 +104,7 @@ impl Answer {
             skin_offset_k: I10F22::from_bits(self.skin),
             resistance_factor: I4F28::from_bits(self.resistance),
             trust: element(&trusts, self.trust),
-            ..*mean
+            ..mean
         }
     }
 }
