@@ -268,19 +268,16 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         finger: Option<FingerIndex<FINGERS>>,
         execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
-        let chosen = match request {
-            PersonRequest::Choose(code) => code.map(|code| self.persons.get(code).copied()),
-            _ => None,
-        };
         let is_one = finger.is_some() || FINGERS == 1;
         let answer = match request {
-            PersonRequest::Choose(Some(code)) if chosen == Some(None) => {
-                Err(Error::UnknownPerson(code))
-            }
-            PersonRequest::Choose(_) => {
-                let command = Command::ChoosePerson(chosen.flatten());
-                return Self::execute_in_stations(command, finger, execute);
-            }
+            PersonRequest::Choose(code) => match code.map(|code| (code, self.persons.get(code))) {
+                Some((code, None)) => Err(Error::UnknownPerson(code)),
+                known => {
+                    let person = known.and_then(|(_, person)| person.copied());
+                    let command = Command::ChoosePerson(person);
+                    return Self::execute_in_stations(command, finger, execute);
+                }
+            },
             PersonRequest::List => Ok(Reply::Persons(PersonCodes::new(&self.persons))),
             PersonRequest::Store(person) => self.store_person(person),
             PersonRequest::Forget(code) if self.persons.remove(code) => Ok(Reply::DONE),
