@@ -265,8 +265,8 @@ fn waiting_offset_below_preset(skin: Celsius, preset: Celsius) -> Celsius {
 /// weight: 3/64 of the difference times the weight.
 ///
 /// The flux's drop across the layer is unknown before the first contact, because that of fingers differs by a factor of two,
-/// and a display that must cool a strong flux's drop away is at the bridge's limit for 80 ms; to heat takes a quarter of that. An
-/// object of a smaller weight draws its flux down sooner.
+/// and a display that must cool a strong flux's drop away is at the bridge's limit for 80 ms. To heat is quicker, because the module's
+/// own heat helps. An object of a smaller weight draws less flux.
 fn waiting_offset_below_layer(skin: Celsius, preset: Celsius, weight: Fraction) -> Celsius {
     let weighted: Celsius = saturating_product(skin.saturating_sub(preset), weight);
     (weighted >> 5u32).saturating_add(weighted >> 6u32)
