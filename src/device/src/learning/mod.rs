@@ -210,8 +210,8 @@ impl FingerLearning {
         self.beyond_model
             .end_window(flux, modelled_heat, &self.parameters, state);
         if let Some(trust) = answer {
-            let person = self.learnt.as_ref().and_then(|learnt| learnt.person);
-            self.person.note(trust, person);
+            let learnt = self.learnt.as_ref();
+            (self.person).note(trust, learnt.and_then(|learnt| learnt.person.as_ref()));
         }
         self.sequence = self.sequence.wrapping_add(1);
         self.is_asked = true;
