@@ -14,9 +14,10 @@ use crate::window::{Contact, LearnerInput, Resistance, Restart};
 
 /// Ticks after landing from which a contact is learnt from: the display's surface and the sensor have then settled.
 const LEARNT_FROM_TICKS: u32 = 20;
-/// Up to these ticks after landing every window, and every second one, is learnt from; later every fourth.
+/// Up to these ticks after landing every window, every second one, and every fourth is learnt from; later every eighth.
 const EVERY_WINDOW_TICKS: u32 = 300;
 const EVERY_SECOND_TICKS: u32 = 1000;
+const EVERY_FOURTH_TICKS: u32 = 3000;
 /// Error of the model at landing, K. Its square grows in proportion to the time, so that each octave of time weighs alike.
 const MODEL_ERROR_K: f32 = 20e-3;
 /// Ticks in which the model's squared error at landing is added once more.
@@ -167,7 +168,8 @@ impl Learner {
         let every = match ticks {
             ..EVERY_WINDOW_TICKS => 1,
             EVERY_WINDOW_TICKS..EVERY_SECOND_TICKS => 2,
-            EVERY_SECOND_TICKS.. => 4,
+            EVERY_SECOND_TICKS..EVERY_FOURTH_TICKS => 4,
+            EVERY_FOURTH_TICKS.. => 8,
         };
         if !windows.is_multiple_of(every) {
             return;
