@@ -11,7 +11,7 @@ use super::{FluxParameters, StateAtEnd};
 use crate::estimate::Watt;
 
 /// Ticks since landing from which on the differences count. Before, force and flux change too much in a window.
-const FROM_TICKS: u64 = 20;
+const FROM_TICKS: u64 = 30;
 /// From W/m² to W/mm².
 const M2_PER_MM2: U0F32 = U0F32::lit("1e-6");
 
@@ -61,7 +61,7 @@ mod tests {
         scaled_air_flux: contact_model::fixed_point::Celsius::ZERO,
         resistance: None,
         force: Force::lit("2"),
-        ticks_since_landing: 20,
+        ticks_since_landing: 30,
         is_steady: true,
     };
 
@@ -111,13 +111,13 @@ mod tests {
             beyond.heat().to_num::<f64>()
         };
         let flux = Some(Flux::lit("-5000"));
-        for ticks in [0, 10, 19] {
+        for ticks in [0, 10, 29] {
             assert_eq!(heat_w(flux, ticks), 0.0);
         }
         let exact_w = -5000.0 * contact_model::pressure::contact_area_m2(2.0);
-        assert!((heat_w(flux, 20) / exact_w - 1.0).abs() < 1e-4);
-        assert_eq!(heat_w(None, 30), 0.0);
-        assert!((heat_w(flux, 40) / exact_w - 1.0).abs() < 1e-4);
+        assert!((heat_w(flux, 30) / exact_w - 1.0).abs() < 1e-4);
+        assert_eq!(heat_w(None, 40), 0.0);
+        assert!((heat_w(flux, 50) / exact_w - 1.0).abs() < 1e-4);
         assert_eq!(heat_w(flux, 0), 0.0);
     }
 }
