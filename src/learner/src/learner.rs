@@ -19,9 +19,10 @@ const SETTLED_TICKS: u32 = 20;
 /// Error of the model before that, K: small enough to show a contact resistance of half or twice the nominal one. No innovation is
 /// judged by it.
 const UNSETTLED_ERROR_K: f32 = 0.3;
-/// Up to these ticks after landing every window, and every second one, is learnt from; later every fourth.
+/// Up to these ticks after landing every window, every second one, and every fourth is learnt from; later every eighth.
 const EVERY_WINDOW_TICKS: u32 = 300;
 const EVERY_SECOND_TICKS: u32 = 1000;
+const EVERY_FOURTH_TICKS: u32 = 3000;
 /// Error of the model at landing, K. Its square grows in proportion to the time, so that each octave of time weighs alike.
 const MODEL_ERROR_K: f32 = 20e-3;
 /// Ticks in which the model's squared error at landing is added once more.
@@ -172,7 +173,8 @@ impl Learner {
         let every = match ticks {
             ..EVERY_WINDOW_TICKS => 1,
             EVERY_WINDOW_TICKS..EVERY_SECOND_TICKS => 2,
-            EVERY_SECOND_TICKS.. => 4,
+            EVERY_SECOND_TICKS..EVERY_FOURTH_TICKS => 4,
+            EVERY_FOURTH_TICKS.. => 8,
         };
         if !windows.is_multiple_of(every) {
             return;

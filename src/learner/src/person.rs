@@ -33,8 +33,9 @@ const SHRINKINGS_MAX: u32 = 12;
 /// | 1 | contacts of 8 s or more from which it was learnt, at most 255 |
 /// | 1 | place before the contacts: 0 in air, otherwise on a pad |
 ///
-/// Any bytes are a finger within the limits of the parameters.
+/// Any bytes are a finger within the limits of the parameters. Aligned, so that it is copied by words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(align(4))]
 pub struct PersonPrior(pub [u8; Self::BYTES]);
 
 impl PersonPrior {

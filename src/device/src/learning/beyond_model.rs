@@ -3,17 +3,17 @@
 //! The plate is cooled by the finger that is there. The model of the finger shows at once what is quicker than a window; the
 //! sensor shows what the model has wrong, one to two windows later.
 
-use contact_model::fixed_point::{contact_area, saturating_product};
-use fixed::types::I10F22;
+use contact_model::fixed_point::{contact_area, product, saturating_product};
+use fixed::types::{I10F22, U0F32};
 use thermal_learner::Flux;
 
 use super::{FluxParameters, StateAtEnd};
 use crate::estimate::Watt;
 
 /// Ticks since landing from which on the differences count. Before, force and flux change too much in a window.
-const FROM_TICKS: u64 = 20;
+const FROM_TICKS: u64 = 30;
 /// From W/m² to W/mm².
-const MM2_PER_M2: i64 = 1_000_000;
+const M2_PER_MM2: U0F32 = U0F32::lit("1e-6");
 
 /// Heat of the modelled finger behind the sensor's lag, and what was measured beyond it, W.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,11 +36,8 @@ impl BeyondModel {
         self.modelled = self.modelled.saturating_add(step);
         let is_known = state.ticks_since_landing >= FROM_TICKS;
         self.heat = flux.filter(|_| is_known).map_or(Watt::ZERO, |flux| {
-            // A flux has 32 bits with 12 binary places.
-            let bits =
-                (i64::from(flux.to_bits()) << (I10F22::FRAC_NBITS - Flux::FRAC_NBITS)) / MM2_PER_M2;
-            let measured: Watt =
-                saturating_product(I10F22::from_bits(bits as i32), contact_area(state.force));
+            let flux_w_mm2: I10F22 = product(flux, M2_PER_MM2);
+            let measured: Watt = saturating_product(flux_w_mm2, contact_area(state.force));
             measured.saturating_sub(self.modelled)
         });
     }
@@ -64,7 +61,7 @@ mod tests {
         scaled_air_flux: contact_model::fixed_point::Celsius::ZERO,
         resistance: None,
         force: Force::lit("2"),
-        ticks_since_landing: 20,
+        ticks_since_landing: 30,
         is_steady: true,
     };
 
@@ -114,13 +111,13 @@ mod tests {
             beyond.heat().to_num::<f64>()
         };
         let flux = Some(Flux::lit("-5000"));
-        for ticks in [0, 10, 19] {
+        for ticks in [0, 10, 29] {
             assert_eq!(heat_w(flux, ticks), 0.0);
         }
         let exact_w = -5000.0 * contact_model::pressure::contact_area_m2(2.0);
-        assert!((heat_w(flux, 20) / exact_w - 1.0).abs() < 1e-4);
-        assert_eq!(heat_w(None, 30), 0.0);
-        assert!((heat_w(flux, 40) / exact_w - 1.0).abs() < 1e-4);
+        assert!((heat_w(flux, 30) / exact_w - 1.0).abs() < 1e-4);
+        assert_eq!(heat_w(None, 40), 0.0);
+        assert!((heat_w(flux, 50) / exact_w - 1.0).abs() < 1e-4);
         assert_eq!(heat_w(flux, 0), 0.0);
     }
 }

@@ -31,6 +31,11 @@ use resting_code::RestingCodes;
 use window_sums::WindowSums;
 pub use window_sums::{MeasuredTick, StateAtEnd};
 
+/// From these ticks after landing on, what is learnt changes slowly, and is applied only after every eighth window: that takes
+/// longer than all else of a tick.
+const APPLIED_SELDOM_FROM_TICKS: u64 = 1000;
+const SELDOM_WINDOWS: u16 = 8;
+
 /// What the host is told about the finger that is learnt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FingerKnowledge {
@@ -104,10 +109,14 @@ impl FingerKnowledge {
 
 /// Learning of one finger: the sensor, the present window, and what was asked and answered.
 #[derive(Clone, Debug)]
+// In this order, because a load reaches 4 KB from the start of a station: what each tick needs comes first.
+#[repr(C)]
 pub struct FingerLearning {
     sums: WindowSums,
     /// The last code; 0 before the first.
     code: u16,
+    /// The input of the last window, until the learner takes it.
+    input: Option<LearnerInput>,
     parameters: FluxParameters,
     faults: CodeFaults,
     resting: RestingCodes,
@@ -118,8 +127,6 @@ pub struct FingerLearning {
     sequence: u16,
     /// The place of another finger that may follow, for the next input.
     restart: Option<Place>,
-    /// The input of the last window, until the learner takes it.
-    input: Option<LearnerInput>,
     /// Whether the learner must answer that input before the present window ends, and its answer.
     is_asked: bool,
     answer: Option<Trust>,
@@ -210,8 +217,8 @@ impl FingerLearning {
         self.beyond_model
             .end_window(flux, modelled_heat, &self.parameters, state);
         if let Some(trust) = answer {
-            let person = self.learnt.as_ref().and_then(|learnt| learnt.person);
-            self.person.note(trust, person);
+            let learnt = self.learnt.as_ref();
+            (self.person).note(trust, learnt.and_then(|learnt| learnt.person.as_ref()));
         }
         self.sequence = self.sequence.wrapping_add(1);
         self.is_asked = true;
@@ -230,7 +237,10 @@ impl FingerLearning {
             let applied = self.applied.as_mut()?;
             return applied.approach_mean().then_some(applied);
         }
-        let learnt = (self.learnt.as_ref()).filter(|_| core::mem::take(&mut self.is_new))?;
+        let is_due = state.ticks_since_landing < APPLIED_SELDOM_FROM_TICKS
+            || self.sequence.is_multiple_of(SELDOM_WINDOWS);
+        let learnt = self.learnt.as_ref();
+        let learnt = learnt.filter(|_| is_due && core::mem::take(&mut self.is_new))?;
         if (self.applied.as_ref()).is_some_and(|applied| applied.is_nearly(learnt)) {
             return None;
         }

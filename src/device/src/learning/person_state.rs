@@ -36,10 +36,12 @@ impl PersonState {
     }
 
     /// Notes what the learner says of the finger: its trust, and what can be stored.
-    pub fn note(&mut self, trust: Trust, learnt: Option<PersonPrior>) {
+    pub fn note(&mut self, trust: Trust, learnt: Option<&PersonPrior>) {
         if matches!(trust, Trust::Mean(_)) {
             self.learnt = None;
         }
-        self.learnt = learnt.or(self.learnt);
+        if let Some(learnt) = learnt {
+            self.learnt = Some(*learnt);
+        }
     }
 }
