@@ -212,6 +212,7 @@ pub static LOOPS: [Entry; 14] = [
             "thermal_learner::estimate::Estimate::",
             "thermal_learner::output::LearnerOutput::",
             "thermal_learner::parameters::",
+            "thermal_learner::person::",
             "thermal_learner::regressors::",
             "thermal_learner::signals::",
         ],

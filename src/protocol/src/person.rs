@@ -111,7 +111,12 @@ impl PersonCodes {
     /// Those of these persons.
     #[must_use]
     pub fn new(persons: &Persons) -> Self {
-        Self(persons.as_slice().iter().map(|one| one.code).collect())
+        let mut codes = heapless::Vec::new();
+        for person in persons.as_slice() {
+            // There is a place for each.
+            let _ = codes.push(person.code);
+        }
+        Self(codes)
     }
 }
 
