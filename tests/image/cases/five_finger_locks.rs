@@ -268,7 +268,7 @@ const FLASH_TIMINGS: [FlashTiming; 3] = [
 ];
 
 /// The command that locks longest if the flash needs no wait states.
-const LONGEST: &str = "material copper";
+const LONGEST: &str = "finger thesis";
 
 /// Sends the longest command at times 0.5 us apart over one turn, so that one of them begins to lock right before a finger's
 /// last scan ends.
