@@ -10,16 +10,15 @@ use super::session_messages::{
 };
 use super::stability_margins::StabilityMargins;
 use super::tile_identification::tile_from_normal_equations;
-use contact_model::fixed_point::ContactPair;
-use contact_model::material::{MATERIALS, SKIN};
-use thermal_device::command::{self, Command, Refused};
+use contact_model::material::MATERIALS;
+use thermal_device::command::{self, ChosenMaterial, Command, Refused};
 use thermal_device::control::ControlParameters;
 use thermal_device::identification::{NORMAL_EQUATION_AND_STATISTICS_ROWS, NormalEquationRow};
 use thermal_device::learning::FluxParameters;
 use thermal_device::sense::CalibrationTables;
 use thermal_settings::{
     CALIBRATED_ADC_BORDER_COUNT, Calibration, Correction, DisplaySurface,
-    FIRST_CALIBRATED_ADC_BORDER_INDEX, FluxSensor, Settings, TICK_S, Tile,
+    FIRST_CALIBRATED_ADC_BORDER_INDEX, FluxSensor, Settings, Tile,
 };
 
 /// Number of lines of the settings that hold the converter's steps at 13 borders of its segments, up to seven in each
@@ -212,9 +211,9 @@ impl CommissioningSession {
             command::Reply::Material(Some(material)) => material,
             _ => any,
         };
-        let pair = ContactPair::new(&SKIN, &material, display.surface(), TICK_S)
+        let chosen = ChosenMaterial::new("", &material, display.surface())
             .map_err(SessionError::ContactPair)?;
-        execute(Command::DisplaySurface(pair))?;
+        execute(Command::DisplaySurface(chosen.pair))?;
         self.settings.display = display;
         Ok(())
     }

@@ -189,3 +189,31 @@ fn a_finger_that_lifts_and_lands_again_stays_trusted() {
         .collect();
     assert_eq!(words, ["trusted", "trusted"]);
 }
+
+/// A display with the sensor waits 3/64 of the difference to the skin, times the object's weight, below its set-point; one without waits
+/// 1/128 of it. The weight of granite against the skin is 2388 / (2388 + 1170), from effusivities in J/(m² s^½ K).
+#[test]
+fn a_display_with_the_sensor_waits_further_from_the_skin() {
+    let weight = 2388.0 / (2388.0 + 1170.0);
+    for (device, part) in [
+        ("flux_sensor = true", 3.0 / 64.0 * weight),
+        ("", 1.0 / 128.0),
+    ] {
+        let text = format!(
+            "duration_s = 0.5\nskin_c = 34\nroom_c = 24\n[device]\n{device}\n[finger]\ntissue = \"layered\"\n\
+             [object]\nmaterial = \"granite\"\n"
+        );
+        let scene = scene(&text);
+        let mut engine = NativeEngine::new(World::new(&scene).expect("a plant for the scene"));
+        let outcome = run(&scene, &mut engine, |_| ()).expect("the device takes the scene");
+        let row = outcome.trace.rows().last().expect("rows");
+        let setpoint_c = row.device.as_ref().and_then(|one| one.setpoint_c);
+        let setpoint_c = setpoint_c.expect("a set-point");
+        let expected_k = part * (34.0 - setpoint_c);
+        let found_k = setpoint_c - row.display_c;
+        assert!(
+            (found_k - expected_k).abs() < 0.02,
+            "{device}: {found_k} for {expected_k}"
+        );
+    }
+}
