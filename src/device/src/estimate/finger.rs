@@ -39,6 +39,9 @@ const CONDUCTANCE_FORCE_TOLERANCE_SHIFT: u32 = 10;
 /// flux into the display in W/mm².
 const SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2: I2F30 = I2F30::from_bits(39_728_000);
 
+/// A heat flux, W/mm², positive out of the skin.
+pub type FluxPerMm2 = I10F22;
+
 /// Low-pass filtered temperatures of the skin and of the room before a contact. They are not updated from landing until
 /// 2 s after lifting, and not in the first 2 s after a restart of the estimator. The set-points of a contact are
 /// computed from these initial temperatures.
@@ -138,8 +141,8 @@ pub struct FingerContact {
     /// Contact conductances for a force within 1/1024 of the present mean force; `None` until a tick computes them, and
     /// after another object has been presented.
     conductances: Option<ContactConductances>,
-    /// Heat flow, W, by which a sensor has measured more than the model of the finger says.
-    heat_beyond_model: Watt,
+    /// Flux by which a sensor has measured more than the model of the finger says.
+    flux_beyond_model: FluxPerMm2,
 }
 
 impl FingerContact {
@@ -154,7 +157,7 @@ impl FingerContact {
             initial_force: force,
             elapsed: landed_ticks.into(),
             conductances: None,
-            heat_beyond_model: Watt::ZERO,
+            flux_beyond_model: FluxPerMm2::ZERO,
         }
     }
 
@@ -214,12 +217,6 @@ impl FingerContact {
         self.closed_form_applies = false;
     }
 
-    /// Heat flow, W, by which a sensor has measured more than the model of the finger says; 0 from landing on, until it is known.
-    #[must_use]
-    pub const fn heat_beyond_model(&self) -> Watt {
-        self.heat_beyond_model
-    }
-
     /// Contact conductances for a force within 1/1024 of the present mean force. `None` if no tick has computed them
     /// since landing, or since another object was presented.
     #[must_use]
@@ -270,6 +267,8 @@ pub struct FingerEstimator {
     /// The skin that the host assumes for set-points, to which `before_contact` and `skin_state_on_display` then belong,
     /// and the sensed skin beside it; `None` without an assumption.
     assumed_skin: Option<AssumedSkin>,
+    /// Flux of the last tick into the display by the modelled finger.
+    modelled_flux: FluxPerMm2,
     /// What was learnt of the error of the skin's thermistor, K: all temperatures of the sensed skin are by so much above its
     /// readings.
     skin_offset: Celsius,
@@ -414,10 +413,16 @@ impl FingerEstimator {
         }
     }
 
-    /// Adds this heat flow, W, to that of the modelled finger until another follows, or this contact ends.
-    pub const fn set_heat_beyond_model(&mut self, heat: Watt) {
+    /// Flux of the last tick into the display by the modelled finger; 0 without contact.
+    #[must_use]
+    pub fn modelled_flux(&self) -> FluxPerMm2 {
+        (self.contact.as_ref()).map_or(FluxPerMm2::ZERO, |_| self.modelled_flux)
+    }
+
+    /// Adds this to the flux of the modelled finger until another follows, or this contact ends.
+    pub const fn set_flux_beyond_model(&mut self, flux: FluxPerMm2) {
         if let Some(contact) = &mut self.contact {
-            contact.heat_beyond_model = heat;
+            contact.flux_beyond_model = flux;
         }
     }
 
@@ -448,7 +453,7 @@ impl FingerEstimator {
     /// Advances the thermal state of the skin by one tick, in contact with a display whose surface has the temperature
     /// `surface`, °C, or without contact. Returns the heat flow from the finger into the display, W: negative if the
     /// display is warmer than the skin's surface, 0 without contact. It is that of the sensed skin, also while another
-    /// one is assumed, with [`Self::set_heat_beyond_model`]. Computes the contact conductances again if the mean force has changed by
+    /// one is assumed, with [`Self::set_flux_beyond_model`]. Computes the contact conductances again if the mean force has changed by
     /// more than 1/1024. Of
     /// `pair` only the properties of skin and display matter here, so the caller may give a pair with any object.
     pub fn step_skin_heat_flow(
@@ -461,7 +466,7 @@ impl FingerEstimator {
             return Watt::ZERO;
         };
         let (force, beyond, display) = match &mut self.contact {
-            None => (Force::ZERO, Watt::ZERO, None),
+            None => (Force::ZERO, FluxPerMm2::ZERO, None),
             Some(contact) => {
                 let force = contact.force.long_mean();
                 let conductances = match &mut contact.conductances {
@@ -471,7 +476,7 @@ impl FingerEstimator {
                         outdated.insert(ContactConductances::new(pair, bodies, force))
                     }
                 };
-                let beyond = contact.heat_beyond_model;
+                let beyond = contact.flux_beyond_model;
                 (force, beyond, Some(&conductances.display))
             }
         };
@@ -480,9 +485,9 @@ impl FingerEstimator {
         if let Some(assumed) = &mut self.assumed_skin {
             scaled_flux = assumed.step_sensed_skin(display, bodies, before.room, surface);
         }
-        let flux_w_mm2: I10F22 = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
-        let modelled: Watt = saturating_product(flux_w_mm2, contact_area(force));
-        modelled.saturating_add(beyond)
+        self.modelled_flux = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
+        let flux = self.modelled_flux.saturating_add(beyond);
+        saturating_product(flux, contact_area(force))
     }
 }
 

@@ -8,7 +8,7 @@ mod plate_model;
 mod plate_observer;
 mod skin_state;
 
-pub use finger::{FingerContact, FingerEstimator, PreContactTemperatures};
+pub use finger::{FingerContact, FingerEstimator, FluxPerMm2, PreContactTemperatures};
 pub use force_means::{ForceChange, ForceMeans};
 pub use plate_model::{LegTemperatures, PlateModel, Watt};
 pub use plate_observer::{ObserverParameters, PlateObserver};
@@ -80,14 +80,6 @@ impl Estimator {
         self.plate
             .update_disturbance_and_correction(display, sink, heat);
         estimate
-    }
-
-    /// Heat flow from the modelled finger into the display in the last tick, W, without what a sensor has measured beyond it.
-    #[inline(always)]
-    pub fn modelled_heat(&self) -> Watt {
-        let contact = self.finger.contact();
-        let beyond = contact.map_or(Watt::ZERO, |contact| contact.heat_beyond_model());
-        self.plate.finger_heat().saturating_sub(beyond)
     }
 
     /// Discards all estimates of plate and finger; they start again from the next valid readings. Called in each tick

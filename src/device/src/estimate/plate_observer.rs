@@ -135,11 +135,6 @@ impl PlateObserver {
             .then(|| (self.plate.surface()).saturating_add(self.disturbance.output()))
     }
 
-    /// Heat flow from the finger, W, in the last tick.
-    pub const fn finger_heat(&self) -> Watt {
-        self.inputs.finger
-    }
-
     /// Modelled temperatures of the legs' cold and hot ends and their mean, °C. `None` until a reading has started the
     /// model, also after [`Self::invalidate`].
     #[must_use]

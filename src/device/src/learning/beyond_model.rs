@@ -1,57 +1,67 @@
-//! The heat that the sensor measures beyond that of the modelled finger.
+//! The flux that the sensor measures beyond that of the modelled finger.
 //!
 //! The plate is cooled by the finger that is there. The model of the finger shows at once what is quicker than a window; the
 //! sensor shows what the model has wrong, one to two windows later.
 
-use contact_model::fixed_point::{contact_area, product, saturating_product};
-use fixed::types::{I10F22, U0F32};
+use contact_model::fixed_point::{product, saturating_product};
+use fixed::types::U0F32;
 use thermal_learner::Flux;
 
 use super::{FluxParameters, StateAtEnd};
-use crate::estimate::Watt;
+use crate::estimate::FluxPerMm2;
 
-/// Ticks since landing from which on the differences count. Before, force and flux change too much in a window.
-const FROM_TICKS: u64 = 30;
+/// Ticks since landing from which on the differences count: the first window that is all contact.
+const FROM_TICKS: u64 = 10;
 /// From W/m² to W/mm².
 const M2_PER_MM2: U0F32 = U0F32::lit("1e-6");
 
-/// Heat of the modelled finger behind the sensor's lag, and what was measured beyond it, W.
+/// Flux of the modelled finger behind the sensor's lag, and what is added to it in the present window.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BeyondModel {
-    modelled: Watt,
-    heat: Watt,
+    modelled: FluxPerMm2,
+    added: FluxPerMm2,
+    /// What was measured and not added yet, times one window.
+    owed: FluxPerMm2,
 }
 
 impl BeyondModel {
-    /// Takes the mean `flux` of a window, which is `None` if it cannot be right, and the mean heat of the model in the same ticks.
+    /// Takes the mean `flux` of a window, which is `None` if it cannot be right, and the mean flux of the model in the same ticks.
+    ///
+    /// The plate must get all the heat that was measured in the contact. So the next window also makes up for what was added too
+    /// little before.
     pub fn end_window(
         &mut self,
         flux: Option<Flux>,
-        modelled: Watt,
+        modelled: FluxPerMm2,
         parameters: &FluxParameters,
         state: &StateAtEnd,
     ) {
         let change = modelled.saturating_sub(self.modelled);
-        let step: Watt = saturating_product(change, parameters.lag_coefficient);
+        let step: FluxPerMm2 = saturating_product(change, parameters.lag_coefficient);
         self.modelled = self.modelled.saturating_add(step);
-        let is_known = state.ticks_since_landing >= FROM_TICKS;
-        self.heat = flux.filter(|_| is_known).map_or(Watt::ZERO, |flux| {
-            let flux_w_mm2: I10F22 = product(flux, M2_PER_MM2);
-            let measured: Watt = saturating_product(flux_w_mm2, contact_area(state.force));
-            measured.saturating_sub(self.modelled)
-        });
+        let ticks = state.ticks_since_landing;
+        let Some(flux) = flux.filter(|_| ticks > 0) else {
+            (self.owed, self.added) = (FluxPerMm2::ZERO, FluxPerMm2::ZERO);
+            return;
+        };
+        let measured: FluxPerMm2 = product(flux, M2_PER_MM2);
+        let beyond = measured.saturating_sub(self.modelled);
+        let short = beyond.saturating_sub(self.added);
+        self.owed = self.owed.saturating_add(short);
+        if ticks >= FROM_TICKS {
+            self.added = self.owed.saturating_add(beyond);
+        }
     }
 
-    /// Heat flow, W, beyond that of the model.
+    /// What is to be added to the flux of the model.
     #[must_use]
-    pub const fn heat(&self) -> Watt {
-        self.heat
+    pub const fn flux(&self) -> FluxPerMm2 {
+        self.added
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use contact_model::fixed_point::Force;
     use thermal_settings::FluxSensor;
 
     use super::*;
@@ -60,8 +70,7 @@ mod tests {
         skin: None,
         scaled_air_flux: contact_model::fixed_point::Celsius::ZERO,
         resistance: None,
-        force: Force::lit("2"),
-        ticks_since_landing: 30,
+        ticks_since_landing: FROM_TICKS,
         is_steady: true,
     };
 
@@ -72,52 +81,66 @@ mod tests {
         })
     }
 
-    /// A model whose heat rises by 0.5 W/s, and a sensor that sees 1.2 times as much, later by its lag.
+    fn w_m2(flux: FluxPerMm2) -> f64 {
+        1e6 * flux.to_num::<f64>()
+    }
+
+    /// A model whose flux falls as after a landing, and a sensor that sees 1.5 times as much, later by its lag. At each window's end
+    /// all the heat of the windows so far has been added, but for the change of the last one.
     #[test]
-    fn what_is_beyond_a_rising_heat_is_found_behind_any_lag() {
-        let area_m2 = contact_model::pressure::contact_area_m2(2.0);
-        for lag_ms in [1.0, 5.0, 20.0, 50.0] {
+    fn all_the_heat_that_is_measured_is_added() {
+        for lag_ms in [0.1, 5.0, 20.0] {
             let parameters = parameters(lag_ms);
             let mut beyond = BeyondModel::default();
-            for window in 0..100 {
-                let modelled_w = |at_s: f64| 0.5 * at_s;
-                let at_s = 0.01 * f64::from(window);
-                let measured_w = 1.2 * modelled_w(at_s - 1e-3 * lag_ms);
-                let flux = Flux::from_num(measured_w / area_m2);
+            let coefficient = 10.0 / (10.0 + lag_ms);
+            let (mut lagged, mut measured, mut added, mut before) = (0.0, 0.0, 0.0, 0.0);
+            for window in 0..200 {
+                let modelled = 10_000.0 / f64::from(1 + window).sqrt();
+                lagged += coefficient * (modelled - lagged);
+                let of_window = 0.5 * lagged;
+                added += w_m2(beyond.flux());
+                measured += of_window;
+                let change = if window == 0 {
+                    of_window
+                } else {
+                    of_window - before
+                };
+                let apart = measured - added - change;
+                assert!(
+                    apart.abs() < 2.0 * f64::from(1 + window),
+                    "{lag_ms} ms, {window}: {apart}"
+                );
+                before = of_window;
                 beyond.end_window(
-                    Some(flux),
-                    Watt::from_num(modelled_w(at_s)),
+                    Some(Flux::from_num(1.5 * lagged)),
+                    FluxPerMm2::from_num(1e-6 * modelled),
                     &parameters,
                     &STATE,
                 );
-                if window >= 60 {
-                    let exact_w = 0.2 * modelled_w(at_s - 1e-3 * lag_ms);
-                    let apart_w = beyond.heat().to_num::<f64>() - exact_w;
-                    assert!(apart_w.abs() < 1e-4, "{lag_ms} ms: {apart_w} of {exact_w}");
-                }
             }
         }
     }
 
     #[test]
-    fn nothing_is_beyond_soon_after_a_landing_without_contact_and_without_a_flux() {
+    fn nothing_is_added_soon_after_a_landing_and_without_a_flux() {
         let (mut beyond, parameters) = (BeyondModel::default(), parameters(5.0));
-        let mut heat_w = |flux: Option<Flux>, ticks_since_landing| {
+        let mut added_w_m2 = |flux: Option<Flux>, ticks_since_landing| {
             let state = StateAtEnd {
                 ticks_since_landing,
                 ..STATE
             };
-            beyond.end_window(flux, Watt::ZERO, &parameters, &state);
-            beyond.heat().to_num::<f64>()
+            beyond.end_window(flux, FluxPerMm2::ZERO, &parameters, &state);
+            w_m2(beyond.flux())
         };
         let flux = Some(Flux::lit("-5000"));
-        for ticks in [0, 10, 29] {
-            assert_eq!(heat_w(flux, ticks), 0.0);
+        for ticks in [0, 9] {
+            assert_eq!(added_w_m2(flux, ticks), 0.0);
         }
-        let exact_w = -5000.0 * contact_model::pressure::contact_area_m2(2.0);
-        assert!((heat_w(flux, 30) / exact_w - 1.0).abs() < 1e-4);
-        assert_eq!(heat_w(None, 40), 0.0);
-        assert!((heat_w(flux, 50) / exact_w - 1.0).abs() < 1e-4);
-        assert_eq!(heat_w(flux, 0), 0.0);
+        // What was not added in the two windows before comes in the first one.
+        assert!((added_w_m2(flux, 19) / -15_000.0 - 1.0).abs() < 1e-3);
+        assert!((added_w_m2(flux, 29) / -5000.0 - 1.0).abs() < 1e-3);
+        assert_eq!(added_w_m2(None, 39), 0.0);
+        assert!((added_w_m2(flux, 49) / -10_000.0 - 1.0).abs() < 1e-3);
+        assert_eq!(added_w_m2(flux, 0), 0.0);
     }
 }

@@ -21,7 +21,7 @@ use thermal_learner::{
 };
 use thermal_settings::Person;
 
-use crate::estimate::Watt;
+use crate::estimate::FluxPerMm2;
 use beyond_model::BeyondModel;
 use code_faults::{CodeFault, CodeFaults};
 pub use flux_parameters::FluxParameters;
@@ -201,7 +201,7 @@ impl FingerLearning {
     pub fn end_window(&mut self, state: &StateAtEnd) -> Option<&LearnerOutput> {
         let contact = self.sums.contact(state);
         let flux_w_m2 = self.flux_of_window();
-        let modelled_heat = self.sums.mean_modelled_heat();
+        let modelled_flux = self.sums.mean_modelled_flux();
         self.sums = self.sums.next();
         let (answer, fault) = (self.answer.take(), self.faults.present());
         self.was_late &= contact.is_some();
@@ -215,7 +215,7 @@ impl FingerLearning {
         };
         let flux = flux_w_m2.filter(|_| self.knowledge.is_of_sound_sensor());
         self.beyond_model
-            .end_window(flux, modelled_heat, &self.parameters, state);
+            .end_window(flux, modelled_flux, &self.parameters, state);
         if let Some(trust) = answer {
             let learnt = self.learnt.as_ref();
             (self.person).note(trust, learnt.and_then(|learnt| learnt.person.as_ref()));
@@ -303,10 +303,10 @@ impl FingerLearning {
         is_valid.then(|| (self.parameters).mean_flux(WINDOW_TICKS * u32::from(self.code)))
     }
 
-    /// Heat flow, W, by which the sensor has measured more in the last window than the modelled finger gives.
+    /// Flux to be added to that of the modelled finger in the present window.
     #[must_use]
-    pub const fn heat_beyond_model(&self) -> Watt {
-        self.beyond_model.heat()
+    pub const fn flux_beyond_model(&self) -> FluxPerMm2 {
+        self.beyond_model.flux()
     }
 
     /// Mean code of the last half second without contact.

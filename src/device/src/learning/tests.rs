@@ -4,7 +4,7 @@ extern crate std;
 
 use std::vec::Vec;
 
-use contact_model::fixed_point::{Celsius, Force};
+use contact_model::fixed_point::Celsius;
 use fixed::types::{I2F30, I4F28};
 use thermal_learner::{Learner, WINDOW_TICKS};
 use thermal_settings::FluxSensor;
@@ -15,7 +15,6 @@ const STATE: StateAtEnd = StateAtEnd {
     skin: Some(Celsius::lit("34")),
     scaled_air_flux: Celsius::ZERO,
     resistance: None,
-    force: Force::ZERO,
     ticks_since_landing: 0,
     is_steady: true,
 };
@@ -25,7 +24,7 @@ fn tick(number: u32, presses: bool) -> MeasuredTick {
     MeasuredTick {
         code: 2048 + 119 + (number % 2) as u16,
         surface: Celsius::lit("29"),
-        modelled_heat: Watt::ZERO,
+        modelled_flux: FluxPerMm2::ZERO,
         presses,
     }
 }

@@ -1,10 +1,10 @@
 //! Sums over a window of ten ticks.
 
-use contact_model::fixed_point::{Celsius, Force};
+use contact_model::fixed_point::Celsius;
 use fixed::types::{I10F22, I20F12, U16F16};
 use thermal_learner::{Contact, Flux, Resistance, WINDOW_TICKS};
 
-use crate::estimate::Watt;
+use crate::estimate::FluxPerMm2;
 use crate::sense::CONTACT_DEBOUNCE_TICKS;
 
 /// `e_skin / sqrt(dt)`, W/(K m²): a scaled flux, K, times this is a heat flux.
@@ -22,8 +22,6 @@ pub struct StateAtEnd {
     /// Contact resistance of an average skin with the display at the mean force, K per K of scaled flux; `None` before the
     /// contact is detected.
     pub resistance: Option<U16F16>,
-    /// Mean force, N, 0 before the contact is detected.
-    pub force: Force,
     /// Ticks since landing.
     pub ticks_since_landing: u64,
     /// Whether the finger may be learnt from this window: no jump of the force, and no limited set-point.
@@ -37,21 +35,21 @@ pub struct MeasuredTick {
     pub code: u16,
     /// Surface of the display, °C.
     pub surface: Celsius,
-    /// Heat flow from the modelled finger, W.
-    pub modelled_heat: Watt,
+    /// Flux of the modelled finger.
+    pub modelled_flux: FluxPerMm2,
     /// Whether the finger pressed in the ticks that end with this one.
     pub presses: bool,
 }
 
-/// Code, surface and modelled heat over some ticks. The latter have four bits less, 4 uK and 1 uW, so that ten have 32 bits.
+/// Code, surface and modelled flux over some ticks. A surface has four bits less, 4 uK, so that ten have 32 bits.
 #[derive(Clone, Copy, Debug, Default)]
 struct Measured {
     codes: u32,
     surface: i32,
-    modelled_heat: i32,
+    modelled_flux: FluxPerMm2,
 }
 
-/// Bits by which surfaces and heats are shortened.
+/// Bits by which surfaces are shortened.
 const FEWER: u32 = 4;
 
 /// Sums over the ticks of the present window. They are all that a tick costs; what follows from them is found once a window.
@@ -74,7 +72,8 @@ impl WindowSums {
     pub fn add(&mut self, tick: &MeasuredTick) -> bool {
         self.present.codes += u32::from(tick.code);
         self.present.surface += tick.surface.to_bits() >> FEWER;
-        self.present.modelled_heat += tick.modelled_heat.to_bits() >> FEWER;
+        self.present.modelled_flux =
+            (self.present.modelled_flux).saturating_add(tick.modelled_flux);
         self.touching_ticks += u32::from(tick.presses);
         self.ticks += 1;
         if self.ticks == WINDOW_TICKS - CONTACT_DEBOUNCE_TICKS {
@@ -98,10 +97,10 @@ impl WindowSums {
         self.of_window.codes
     }
 
-    /// Mean heat flow from the modelled finger, W, in the ticks of the codes.
+    /// Mean flux of the modelled finger in the ticks of the codes.
     #[must_use]
-    pub const fn mean_modelled_heat(&self) -> Watt {
-        Watt::from_bits(self.of_window.modelled_heat / WINDOW_TICKS as i32 * (1 << FEWER))
+    pub const fn mean_modelled_flux(&self) -> FluxPerMm2 {
+        FluxPerMm2::from_bits(self.of_window.modelled_flux.to_bits() / WINDOW_TICKS as i32)
     }
 
     /// Whether the finger pressed in a tick.
@@ -149,23 +148,22 @@ mod tests {
         skin: Some(Celsius::ZERO),
         scaled_air_flux: Celsius::ZERO,
         resistance: Some(U16F16::ONE),
-        force: Force::ONE,
         ticks_since_landing: 30,
         is_steady: true,
     };
 
     fn tick() -> impl Strategy<Value = MeasuredTick> {
         let values = (0..4096u16, -20.0..60.0, -8.0..8.0, any::<bool>());
-        values.prop_map(|(code, surface_c, heat_w, presses)| MeasuredTick {
+        values.prop_map(|(code, surface_c, flux_w_mm2, presses)| MeasuredTick {
             code,
             surface: Celsius::from_num(surface_c),
-            modelled_heat: Watt::from_num(heat_w),
+            modelled_flux: FluxPerMm2::from_num(flux_w_mm2),
             presses,
         })
     }
 
     proptest! {
-        /// Code, surface and heat are those of two ticks earlier.
+        /// Code, surface and flux are those of two ticks earlier.
         #[test]
         fn sums_are_those_of_the_ticks(skin_c in -20.0..60.0, ticks in prop::collection::vec(tick(), 50)) {
             let mut sums = WindowSums::default();
@@ -178,9 +176,9 @@ mod tests {
                 let measured = &ticks[(number - 9).saturating_sub(2)..number - 1];
                 let codes: u32 = measured.iter().map(|tick| u32::from(tick.code)).sum();
                 prop_assert_eq!(sums.codes(), codes);
-                let heat_w = measured.iter().map(|tick| tick.modelled_heat.to_num::<f64>()).sum::<f64>() / 10.0;
-                let apart_w = heat_w - sums.mean_modelled_heat().to_num::<f64>();
-                prop_assert!(apart_w.abs() <= 3e-6, "{}", apart_w);
+                let flux_w_mm2 = measured.iter().map(|tick| tick.modelled_flux.to_num::<f64>()).sum::<f64>() / 10.0;
+                let apart = flux_w_mm2 - sums.mean_modelled_flux().to_num::<f64>();
+                prop_assert!(apart.abs() <= 2.4e-7, "{}", apart);
                 let pressed = ticks[number - 9..=number].iter().filter(|tick| tick.presses).count();
                 let state = StateAtEnd { skin: Some(Celsius::from_num(skin_c)), ..STATE };
                 let found = sums.contact(&state);
@@ -223,7 +221,7 @@ mod tests {
         let tick = MeasuredTick {
             code: 0,
             surface: Celsius::ONE,
-            modelled_heat: Watt::ZERO,
+            modelled_flux: FluxPerMm2::ZERO,
             presses: true,
         };
         sums.add(&tick);

@@ -1,6 +1,6 @@
 //! Learning of the finger that touches: between the station's estimates and its learner.
 
-use contact_model::fixed_point::{Celsius, Force, TissueStateFactors, TissueWeights, product};
+use contact_model::fixed_point::{Celsius, TissueStateFactors, TissueWeights, product};
 use fixed::types::U16F16;
 use thermal_learner::{LearnerInput, LearnerOutput, Place, WINDOW_TICKS};
 use thermal_settings::Person;
@@ -94,7 +94,7 @@ impl Station {
         let tick = MeasuredTick {
             code: learning.note_code(code),
             surface: self.estimator.plate.surface().unwrap_or_default(),
-            modelled_heat: self.estimator.modelled_heat(),
+            modelled_flux: self.estimator.finger.modelled_flux(),
             presses: self.contact.is_force_nonzero_debounced(),
         };
         if learning.add_tick(&tick) {
@@ -169,7 +169,6 @@ impl Station {
             skin,
             scaled_air_flux: product(above_room, assumed.body().air),
             resistance: conductances.map(|both| both.expected_display_resistance(resistances)),
-            force: contact.map_or(Force::ZERO, |contact| contact.force_means().long_mean()),
             ticks_since_landing: contact.map_or(0, |contact| contact.ticks_since_landing()),
             is_steady: contact
                 .is_some_and(|contact| !contact.force_means().have_jumped_within(WINDOW_TICKS))
@@ -190,7 +189,7 @@ impl Station {
             finger.forget_conductances();
             finger.set_skin_offset(learnt.skin_offset_k);
         }
-        (self.estimator.finger).set_heat_beyond_model(learning.heat_beyond_model());
+        (self.estimator.finger).set_flux_beyond_model(learning.flux_beyond_model());
         if learning.knowledge() != before {
             (self.events).note(DeviceEventKind::FingerKnowledge, self.tick, 0);
         }
