@@ -12,6 +12,7 @@
 //! | module | purpose |
 //! |---|---|
 //! | [`device`] | [`Device`](device::Device), the stations of all fingers, with everything that a control tick does |
+//! | [`learner`] | estimates the finger that touches from the heat flux, in a task of its own |
 //! | [`settings`] | what differs between two built devices, and how it is stored in flash |
 //! | [`commissioning`] | calibration of the thermistors and identification of the tile, in the task that answers the host |
 //! | [`protocol`] | the lines between host and device |
@@ -48,6 +49,7 @@ pub mod task_liveness;
 
 pub use thermal_commissioning as commissioning;
 pub use thermal_device as device;
+pub use thermal_learner as learner;
 pub use thermal_protocol as protocol;
 pub use thermal_settings as settings;
 

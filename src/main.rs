@@ -6,6 +6,7 @@
 //! | `tick`        | the samples of a finger are in memory | 3        | 1 ms divided by the number of fingers |
 //! | `adc_overrun` | the converter has lost a conversion   | 3        | no limit: sampling has stopped        |
 //! | `transmit`    | a line has been sent                  | 2        | 20 us, or the line to the host pauses |
+//! | `learn`       | ten ticks have measured the heat flux | 2        | 9 ms: the tick that needs its answer  |
 //! | `host`        | a line or telemetry waits             | 1        | 68 ms: the shortest watchdog period   |
 //! | `idle`        | nothing else runs                     | 0        | 68 ms: the shortest watchdog period   |
 //!
@@ -20,12 +21,13 @@
 
 mod board;
 
-#[rtic::app(device = crate::board::pac, peripherals = true, dispatchers = [EXTI0])]
+#[rtic::app(device = crate::board::pac, peripherals = true, dispatchers = [EXTI0, EXTI1])]
 mod app {
     use core::mem::MaybeUninit;
     use core::sync::atomic::{AtomicBool, Ordering};
 
-    use thermal_display::device::{DeviceInPlace, Station, execute_in_turn};
+    use thermal_display::device::{DeviceInPlace, FingerIndex, Station, execute_in_turn};
+    use thermal_display::learner::Learner;
     use thermal_display::task_liveness::{HostTaskTimer, Task, TaskLiveness};
 
     use crate::board::{
@@ -98,8 +100,13 @@ mod app {
     )]
     fn tick(mut cx: tick::Context) {
         let (control_loop, host_is_active) = (cx.shared.control_loop, cx.shared.host_is_active);
-        let done =
-            (cx.shared.device).lock(|device| control_loop.run_finger_tick(device, host_is_active));
+        let done = (cx.shared.device).lock(|device| {
+            // `spawn` fails while `learn` still runs; it then takes this input when it is called next, which is too late.
+            let start_learner = || {
+                let _ = learn::spawn();
+            };
+            control_loop.run_finger_tick(device, host_is_active, start_learner)
+        });
         let Ok(telemetry_is_due) = done else {
             // Sampling has stopped; the watchdogs reset the device, because no task checks in any
             // more.
@@ -139,6 +146,18 @@ mod app {
     fn transmit(cx: transmit::Context) {
         cx.local.transmitter.send_next();
         let _ = host::spawn();
+    }
+
+    #[task(priority = 2, shared = [device], local = [learner: Learner = Learner::new()])]
+    async fn learn(mut cx: learn::Context) {
+        const FINGER: FingerIndex<FINGERS> = FingerIndex::FIRST;
+        let device = &mut cx.shared.device;
+        // Not locked while the learner computes, which takes longer than a tick may be delayed.
+        let Some(input) = device.lock(|device| device.take_learner_input(FINGER)) else {
+            return;
+        };
+        let output = cx.local.learner.advance(&input);
+        device.lock(|device| device.put_learner_output(FINGER, output));
     }
 
     #[task(priority = 1, shared = [device, &task_liveness], local = [console])]

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bring_up;
+pub mod contact;
 pub mod link;
 pub mod person;
 pub mod terminal_people;

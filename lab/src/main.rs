@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use cli::{
-    Failure, Target, analyse, bring_up, commission, info, log, monitor, play, ports, predict,
-    replay, run, send,
+    Failure, Target, analyse, bring_up, commission, contact, info, log, monitor, play, ports,
+    predict, replay, run, send,
 };
 
 /// The operator's side of a thermal display.
@@ -45,6 +45,8 @@ enum Command {
     Replay(replay::Arguments),
     /// Calibrate and tune a new device, step by step, and store the result
     Commission(commission::Arguments),
+    /// Measure the contact law of a person's finger with the heat-flux sensor
+    Contact(contact::Arguments),
     /// Bring up a board, from the bare board to sign-off
     BringUp(bring_up::Arguments),
 }
@@ -63,6 +65,7 @@ fn main() -> ExitCode {
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Commission(arguments) => commission::run(&target, &arguments),
+        Command::Contact(arguments) => contact::run(&target, &arguments),
         Command::BringUp(arguments) => bring_up::run(&target, &arguments),
     };
     Failure::exit_code("thermal-lab", done)

@@ -5,6 +5,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod contact_law;
 pub mod decimal;
 pub mod finger;
 pub mod fixed_point;

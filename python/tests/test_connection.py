@@ -18,6 +18,7 @@ from fake_device import FakeDevice
 from thermal_display import (
     BridgeNotOff,
     Closed,
+    ContactLaw,
     DeviceBusy,
     DeviceRestarted,
     DeviceTripped,
@@ -88,6 +89,13 @@ def test_opening_switches_checksums_telemetry_and_events_on(fake: FakeDevice) ->
         (lambda d: d.events_on(False), "events off"),
         (lambda d: d.tune(), "tune"),
         (lambda d: d.calibrate_clear("check"), "calibrate check clear"),
+        (lambda d: d.set_flux_sensor(0.1192, 2048, 5, 30), "flux set 0.1192 2048 5 30"),
+        (lambda d: d.remove_flux_sensor(), "flux none"),
+        (lambda d: d.take_flux_zero(), "flux zero"),
+        (lambda d: d.set_contact_law(ContactLaw(0.875, 61250, 1000)), "contact 0.875 61250 1000"),
+        (lambda d: d.set_contact_law(None), "contact nominal"),
+        (lambda d: d.set_surface(30, 1.25, 0.11), "surface set 30 1.25 0.11"),
+        (lambda d: d.set_nominal_surface(), "surface nominal"),
         (lambda d: d.set_settings(["set tile 1 2 3 4 5"]), "set tile 1 2 3 4 5"),
     ],
 )

@@ -16,8 +16,10 @@ import pytest
 from conftest import Plain
 
 from thermal_display import (
+    FLUX_FIELDS,
     BridgeNotOff,
     CommandError,
+    ContactLaw,
     DeviceBusy,
     DeviceTripped,
     Display,
@@ -258,6 +260,29 @@ def test_all_questions_are_understood(hil_sim: str) -> None:
         assert display.self_test().result == "passed"
         assert 0 < display.raw().display < 4096
         assert display.margins().gain_margin > 1
+        assert display.flux() is None
+        display.set_flux_sensor(0.1192, 2048, 5, 30)
+        flux = display.flux()
+        assert flux is not None and flux.zero_counts == 2048
+        assert display.settings()[8:] == ["set flux 0.119200 2048.000 5.000 30.000"]
+        display.stream(10, ["force", *FLUX_FIELDS])
+        display.telemetry.take()
+        row = display.telemetry.wait(5)[-1]
+        assert np.isfinite(row["force_n"]) and np.isnan(row["display_c"])
+        # The board has no sensor.
+        assert np.isnan(row["flux_w_m2"]) and row["known"] in ("learning", "sensor-range")
+        person = ContactLaw(0.9, 80000, 120)
+        display.set_contact_law(person)
+        assert display.contact_law() == person
+        display.set_contact_law(None)
+        assert display.contact_law() == ContactLaw(0.95, 122500, 0)
+        display.set_surface(30, 1.25, 0.11)
+        assert display.surface().slope_rad == 0.11
+        assert display.settings()[9:] == ["set surface 30.000 1.2500 0.11000"]
+        display.set_nominal_surface()
+        assert display.surface().slope_rad == 0.138
+        display.remove_flux_sensor()
+        assert display.flux() is None
         for finger in ("thesis", "mean"):
             display.assume_finger(finger)
             assert display.assumed_finger() == finger

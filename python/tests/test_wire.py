@@ -5,11 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermal_display import TELEMETRY_FIELDS, EventKind, State
-from thermal_display import wire
+from thermal_display import (
+    FLUX_FIELDS,
+    TELEMETRY_FIELDS,
+    EventKind,
+    State,
+    TelemetryField,
+    wire,
+)
 from thermal_display.device_clock import DeviceClock
 from thermal_display.events import parse_event
-from thermal_display.replies import Cause, Fields, Identity, Status
+from thermal_display.replies import Cause, DisplaySurface, Fields, FluxReport, Identity, Status
 from thermal_display.telemetry import TelemetryBuffer, parse_line
 
 
@@ -60,6 +66,10 @@ def test_commits_are_those_of_the_protocols_examples() -> None:
         ("save", False),
         ("hold 30", False),
         ("tune result", False),
+        ("flux", True),
+        ("flux zero", False),
+        ("surface", True),
+        ("surface nominal", False),
     ],
 )
 def test_questions_and_numbered_rows_only_may_be_repeated(line: str, repeated: bool) -> None:
@@ -95,15 +105,29 @@ def test_numbers_that_are_not_finite_are_not_sent(value: float) -> None:
 
 def test_a_line_of_telemetry_is_read() -> None:
     line = "T 7 contact 24.31939 24.3300 23.99 - 23.97 1.999 0.233 0.426 17 limited"
-    tick, state, numbers, evaluations, remark = parse_line(line, TELEMETRY_FIELDS) or (0, "", [], 0, "")
-    assert (tick, state, evaluations, remark) == (7, "contact", 17, "limited")
-    np.testing.assert_equal(numbers, [24.31939, 24.33, 23.99, np.nan, 23.97, 1.999, 0.233, 0.426])
+    parsed = parse_line(line, TELEMETRY_FIELDS)
+    assert parsed is not None
+    assert (parsed.tick, parsed.state, parsed.evaluations, parsed.remark) == (7, "contact", 17, "limited")
+    np.testing.assert_equal(parsed.numbers, [24.31939, 24.33, 23.99, np.nan, 23.97, 1.999, 0.233, 0.426])
+    np.testing.assert_equal(parsed.of_flux, [np.nan, np.nan])
+    assert parsed.known == ""
 
 
 def test_a_line_with_chosen_fields_fills_their_columns() -> None:
     parsed = parse_line("T 7 preset 30.0000 1.5 -", ("display", "force"))
     assert parsed is not None
-    np.testing.assert_equal(parsed[2], [np.nan, 30, np.nan, np.nan, np.nan, 1.5, np.nan, np.nan])
+    np.testing.assert_equal(parsed.numbers, [np.nan, 30, np.nan, np.nan, np.nan, 1.5, np.nan, np.nan])
+
+
+def test_a_line_with_fields_of_the_flux_sensor_fills_their_columns() -> None:
+    fields: tuple[TelemetryField, ...] = ("force", *FLUX_FIELDS)
+    parsed = parse_line("T 7 contact 1.5 -1234.5 24.0125 trusted -", fields)
+    assert parsed is not None
+    assert (parsed.numbers[5], parsed.of_flux, parsed.known) == (1.5, (-1234.5, 24.0125), "trusted")
+    parsed = parse_line("T 7 contact 1.5 - - - -", fields)
+    assert parsed is not None
+    np.testing.assert_equal(parsed.of_flux, [np.nan, np.nan])
+    assert parsed.known == ""
 
 
 @pytest.mark.parametrize(
@@ -129,6 +153,7 @@ def test_more_fields_than_chosen_are_not_taken_for_the_chosen() -> None:
 
 def test_an_event_is_read() -> None:
     assert parse_event("E 12 345 trigger") == (12, 345, EventKind.TRIGGER)
+    assert parse_event("E 12 0 flux") == (12, 0, EventKind.FLUX)
     for line in ["E 12 345 touch", "E 12 land", "E x 0 land", "T 12 345 land"]:
         assert parse_event(line) is None
 
@@ -142,6 +167,16 @@ def test_replies_are_read() -> None:
     assert (status.state, status.fault, status.object_c) == (State.TRIPPED, "host-silent", -3.5)
     assert (status.limited, status.body, status.setpoint_c) == (True, "slab", None)
     assert Cause.read(Fields("cause=-")) is None
+    assert FluxReport.read(Fields("flux=none")) is None
+    flux = FluxReport.read(
+        Fields(
+            "flux=fitted counts_per_w_m2=0.119200 zero_counts=2051.250 lag_ms=5.000 resistance_mm2k_w=30.000 "
+            "w_m2=-3.2 finger=trusted"
+        )
+    )
+    assert flux == FluxReport(0.1192, 2051.25, 5.0, 30.0, -3.2, "trusted")
+    surface = DisplaySurface.read(Fields("conductivity_w_mk=30.000 roughness_um=1.2500 slope_rad=0.11000"))
+    assert surface == DisplaySurface(30, 1.25, 0.11)
     old = Identity.read(Fields("thermal-display 0.1.0 fingers=1 tick_hz=1000 scan_hz=16000"))
     assert (old.protocol, old.can("course")) == (None, False)
     with pytest.raises(ValueError, match="material= is missing"):
@@ -149,7 +184,7 @@ def test_replies_are_read() -> None:
 
 
 def _row(tick: int) -> tuple[object, ...]:
-    return (tick, 0, "off", *[0.0] * 8, 0, "-", 0.0, 0.0, 0)
+    return (tick, 0, "off", *[0.0] * 8, 0, "-", 0.0, 0.0, 0, 0.0, 0.0, "")
 
 
 def test_the_ring_keeps_the_newest_rows_and_counts_the_others() -> None:

@@ -73,8 +73,8 @@ impl Console {
                         self.send(&error);
                     }
                 }
-            } else if let Some(telemetry) = self.telemetry.dequeue() {
-                self.send(&telemetry.map_content(UnsolicitedLine));
+            } else if let Some(report) = self.telemetry.dequeue() {
+                self.send(&UnsolicitedLine::of_report(report, &mut execute));
             } else {
                 break;
             }

@@ -10,15 +10,16 @@ use thermal_display::device::sense::{DigitalInputs, Samples};
 use thermal_display::device::{DeviceInPlace, FingerIndex};
 
 use super::{
-    ChipMonitor, ComparatorSide, EmergencyStop, FINGERS, FingerPowerStage, SampleError, Sampler,
-    TriggerInput, TriggerOutput, TripCauseRecorder, WindowWatchdog, line_losses,
-    save_dose_if_changed, stack_is_overrun,
+    ChipMonitor, ComparatorSide, EmergencyStop, FINGERS, FingerPowerStage, FluxConverter,
+    SampleError, Sampler, TriggerInput, TriggerOutput, TripCauseRecorder, WindowWatchdog,
+    line_losses, save_dose_if_changed, stack_is_overrun,
 };
 
 /// Executes the control ticks of all fingers: samples the sensors, computes each finger's outputs,
 /// and drives the bridges. Owns the hardware that this needs.
 pub struct ControlLoop {
     pub sampler: Sampler,
+    pub flux_converter: FluxConverter,
     pub stages: [FingerPowerStage; FINGERS],
     pub comparator_side: ComparatorSide,
     pub emergency_stop: EmergencyStop,
@@ -41,6 +42,8 @@ impl ControlLoop {
     /// [`Fault::HostSilent`] trips a finger whose display follows a set-point while its telemetry
     /// streams.
     ///
+    /// `start_learner` is called if the learner of the finger has an input, of its tick before.
+    ///
     /// Returns whether telemetry was due, so that the caller starts the host task, which sends it.
     ///
     /// # Errors
@@ -50,6 +53,7 @@ impl ControlLoop {
         &mut self,
         device: &mut DeviceInPlace<FINGERS>,
         host_is_active: &AtomicBool,
+        start_learner: impl FnOnce(),
     ) -> Result<bool, SampleError> {
         let (finger, scans) = match self.sampler.take_block_and_select_next_finger() {
             Ok(block) => block,
@@ -59,6 +63,12 @@ impl ControlLoop {
             }
         };
         self.window_watchdog.feed();
+        // All that a sensor needs in one place, so that a tick without one asks once.
+        if device.finger_has_flux_sensor(finger)
+            && device.note_flux_code(finger, self.flux_converter.take_code_and_start_next())
+        {
+            start_learner();
+        }
         let stage = &mut self.stages[finger.index()];
         let inputs = DigitalInputs {
             bridge_fault: stage.poll_fault_line_low(),

@@ -16,7 +16,8 @@ pub use control_loop::ControlLoop;
 #[cfg(feature = "nucleo-f446re")]
 pub use nucleo_f446re::{
     BlankOrToBeAnsweredLine, Board, ChipMonitor, ComparatorSide, EmergencyStop, FINGERS,
-    FingerPowerStage, IndependentWatchdog, Outbox, Receiver, SampleError, SampleTrigger, Sampler,
-    StaticMemory, Transmitter, TriggerInput, TriggerOutput, TripCauseRecorder, WindowWatchdog,
-    board_status_now, line_losses, pac, restart_to_save, save_dose_if_changed, stack_is_overrun,
+    FingerPowerStage, FluxConverter, IndependentWatchdog, Outbox, Receiver, SampleError,
+    SampleTrigger, Sampler, StaticMemory, Transmitter, TriggerInput, TriggerOutput,
+    TripCauseRecorder, WindowWatchdog, board_status_now, line_losses, pac, restart_to_save,
+    save_dose_if_changed, stack_is_overrun,
 };

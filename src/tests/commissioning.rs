@@ -23,13 +23,13 @@ const SETTINGS: [&str; 8] = [
 ];
 
 /// A device and its command handler.
-struct Bench<const FINGERS: usize> {
-    handler: CommandHandler<FINGERS>,
-    device: Device<FINGERS>,
+pub struct Bench<const FINGERS: usize> {
+    pub handler: CommandHandler<FINGERS>,
+    pub device: Device<FINGERS>,
 }
 
 impl<const FINGERS: usize> Bench<FINGERS> {
-    fn new() -> Self {
+    pub fn new() -> Self {
         let settings = Settings::default();
         Self {
             handler: CommandHandler::new(settings),
@@ -38,7 +38,7 @@ impl<const FINGERS: usize> Bench<FINGERS> {
     }
 
     /// Sends a line, and returns the answer.
-    fn send(&mut self, line: &str) -> String {
+    pub fn send(&mut self, line: &str) -> String {
         let answer = self
             .handler
             .answer(line, |finger, command| self.device.execute(finger, command));
@@ -173,7 +173,7 @@ fn an_error_names_the_first_finger_that_refuses_and_the_others_execute_the_line(
     );
     assert_eq!(
         five.send("@1 set colour 3"),
-        "@1 err unknown setting 'colour'; known: steps correction tile"
+        "@1 err unknown setting 'colour'; known: steps correction tile flux surface"
     );
     assert_eq!(
         five.send("@0 tune result"),
@@ -203,17 +203,20 @@ fn invalid_arguments_are_refused_and_change_nothing() {
     for (line, answer) in [
         (
             "settings 0",
-            "err line of settings '0' out of range; 1 to 8 (whole)",
+            "err line of settings '0' out of range; 1 to 10 (whole)",
         ),
         (
             "settings 1.5",
-            "err line of settings '1.5' out of range; 1 to 8 (whole)",
+            "err line of settings '1.5' out of range; 1 to 10 (whole)",
         ),
         (
-            "settings 9",
-            "err line of settings '9' out of range; 1 to 8 (whole)",
+            "settings 11",
+            "err line of settings '11' out of range; 1 to 10 (whole)",
         ),
-        ("set", "err setting missing; known: steps correction tile"),
+        (
+            "set",
+            "err setting missing; known: steps correction tile flux surface",
+        ),
         ("set steps", "err border missing; 10 to 22 (whole)"),
         ("set steps 10", "err step missing; -4 to 4 counts"),
         (

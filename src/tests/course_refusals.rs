@@ -90,7 +90,7 @@ fn every_wrong_course_is_refused_with_its_reason() {
         ),
         (
             &["trigger-out land,touch"],
-            "err unknown event 'touch'; known: land lift start end none",
+            "err unknown event 'touch'; known: land lift start end flux none",
         ),
     ] {
         let (last, before) = lines.split_last().expect("a line");

@@ -9,8 +9,9 @@ use contact_model::fixed_point::Celsius;
 use super::device::{arm, samples};
 use super::objects::checksum;
 use crate::device::TriggerEdge;
-use crate::device::command::Command;
+use crate::device::command::{Command, WithSourceFinger};
 use crate::device::drive::BoardOutputs;
+use crate::device::events::UnsolicitedReport;
 use crate::device::safety::Fault;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, FingerIndex, Telemetry};
@@ -78,6 +79,20 @@ impl Bench {
         self.send(&commit)
     }
 
+    /// The line of the next tick's telemetry.
+    fn step_and_line(&mut self) -> String {
+        let telemetry = UnsolicitedReport::Telemetry(self.step());
+        self.unsolicited(WithSourceFinger::from_whole_device(telemetry))
+    }
+
+    /// The line of a report.
+    fn unsolicited(&mut self, report: WithSourceFinger<UnsolicitedReport>) -> String {
+        let device = &mut self.device;
+        let line =
+            UnsolicitedLine::of_report(report, |finger, command| device.execute(finger, command));
+        line.to_string()
+    }
+
     pub(super) fn step(&mut self) -> Telemetry {
         self.tick = self.tick.wrapping_add(1);
         self.device.note_host_activity();
@@ -94,7 +109,8 @@ impl Bench {
         };
         self.outputs.push(self.device.step_finger(FIRST, &samples));
         while let Some(event) = self.device.take_finger_event(FIRST) {
-            self.events.push(UnsolicitedLine(event.content).to_string());
+            let line = self.unsolicited(event);
+            self.events.push(line);
         }
         let telemetry = self.device.finger_telemetry_if_due(FIRST);
         let telemetry = telemetry.expect("streamed on every tick").content;
@@ -421,21 +437,13 @@ fn a_pulse_is_a_course_of_four_points_that_begins_at_once() {
 fn the_host_chooses_the_fields_of_telemetry() {
     let mut bench = Bench::armed();
     bench.send_ok(&["hold 24", "stream 1 display setpoint"]);
-    let telemetry = bench.step();
-    let line = UnsolicitedLine(crate::device::events::UnsolicitedReport::Telemetry(
-        telemetry,
-    ))
-    .to_string();
+    let line = bench.step_and_line();
     let words: Vec<_> = line.split(' ').collect();
     assert_eq!(words.len(), 6, "{line}");
     assert_eq!((words[0], words[2]), ("T", "stimulus"));
     bench.send_ok(&["stream 1"]);
-    let telemetry = bench.step();
-    let line = UnsolicitedLine(crate::device::events::UnsolicitedReport::Telemetry(
-        telemetry,
-    ))
-    .to_string();
+    let line = bench.step_and_line();
     assert_eq!(line.split(' ').count(), 13, "{line}");
-    let unknown = "err unknown field 'heat'; known: setpoint display sink skin room force demand current evaluations";
+    let unknown = "err unknown field 'heat'; known: setpoint display sink skin room force demand current evaluations flux surface finger";
     assert_eq!(bench.send("stream 1 heat"), unknown);
 }

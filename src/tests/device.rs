@@ -6,7 +6,7 @@ use std::string::{String, ToString};
 use crate::device::drive::{ComparatorTest, Drive};
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, FingerIndex};
-use crate::protocol::{CommandHandler, wrap_as_telemetry_line};
+use crate::protocol::{CommandHandler, UnsolicitedLine};
 use crate::settings::Settings;
 
 const FIVE: usize = 5;
@@ -15,6 +15,17 @@ fn host<const FINGERS: usize>(device: &mut Device<FINGERS>, line: &str) -> Strin
     let mut handler = CommandHandler::<FINGERS>::new(Settings::default());
     let done = handler.answer(line, |finger, command| device.execute(finger, command));
     done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
+}
+
+/// The line of a finger's telemetry, if it is due.
+pub fn telemetry_line<const FINGERS: usize>(
+    device: &mut Device<FINGERS>,
+    finger: FingerIndex<FINGERS>,
+) -> Option<String> {
+    let report = device.finger_telemetry_if_due(finger)?.into_report();
+    let line =
+        UnsolicitedLine::of_report(report, |finger, command| device.execute(finger, command));
+    Some(line.to_string())
 }
 
 /// Samples of a device without a fault: 26 °C, the skin 34 °C, no force. `noise`, in counts, lets
@@ -180,9 +191,7 @@ fn answers_and_telemetry_have_the_address_of_their_finger() {
     assert_eq!(host(&mut device, "@2 stream 1"), "@2 ok");
     for finger in FingerIndex::all() {
         device.step_finger(finger, &samples(0));
-        let line = device
-            .finger_telemetry_if_due(finger)
-            .map(|telemetry| wrap_as_telemetry_line(telemetry).to_string());
+        let line = telemetry_line(&mut device, finger);
         assert_eq!(line.is_some(), finger.index() == 2, "{finger:?}");
         assert!(line.is_none_or(|line| line.starts_with("@2 T 1 off ")));
     }
@@ -202,11 +211,6 @@ fn lines_of_a_single_finger_have_no_address() {
         "err unknown finger '1' after @; known: 0 to 0"
     );
     device.step_finger(FingerIndex::FIRST, &samples(0));
-    let line = wrap_as_telemetry_line(
-        device
-            .finger_telemetry_if_due(FingerIndex::FIRST)
-            .expect("telemetry"),
-    )
-    .to_string();
+    let line = telemetry_line(&mut device, FingerIndex::FIRST).expect("telemetry");
     assert!(line.contains(" armed "), "{line}");
 }

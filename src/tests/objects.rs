@@ -272,6 +272,33 @@ fn another_assumed_finger_is_another_set_point() {
 }
 
 #[test]
+fn another_contact_law_is_another_set_point() {
+    let bench = Bench::presenting();
+    let nominal = after(&bench, &["contact nominal"]);
+    let harder = after(&bench, &["@1 contact 0.95 245000 0", "@2 contact nominal"]);
+    assert_eq!(harder[1], nominal[1]);
+    assert!((harder[0] - nominal[0]).abs() > 0.01, "{harder:?}");
+    let with_gap = after(&bench, &["@1 contact 0.95 122500 1000"]);
+    assert!((with_gap[0] - nominal[0]).abs() > 0.01, "{with_gap:?}");
+    let again = after(&bench, &["contact 0.9 245000 500", "contact nominal"]);
+    assert_eq!(again, nominal);
+
+    let mut bench = bench;
+    let told = "ok exponent=0.9000 hardness_pa=245000 gap_w_m2k=500.5";
+    bench.send_ok(&["@1 contact 0.9 245000 500.5"]);
+    assert_eq!(bench.send("@1 contact"), format!("@1 {told}"));
+    // A law belongs to a finger, and Eq. 6-12 to Eq. 6-8.
+    bench.send_ok(&["finger thesis"]);
+    assert_eq!(
+        bench.send("@1 contact 0.9 245000 500"),
+        "@1 err contact needs another finger than the thesis's; finger mean first"
+    );
+    bench.send_ok(&["finger mean"]);
+    let nominal = "@1 ok exponent=0.9500 hardness_pa=122500 gap_w_m2k=0.0";
+    assert_eq!(bench.send("@1 contact"), nominal);
+}
+
+#[test]
 fn fingers_have_the_same_tissue_if_both_or_neither_have_layers() {
     let fingers = AssumedFinger::PROTOCOL_WORDS.map(|(_, finger)| finger);
     for (a, b) in fingers

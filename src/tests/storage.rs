@@ -84,10 +84,16 @@ fn the_record_holds_the_settings_of_each_finger_and_restores_them() {
     let stored = decode_settings_record::<2>(&handler.record_to_save_or_forget(StorageOrder::Save))
         .expect("a valid record")
         .expect("settings rather than factory defaults");
-    assert_eq!(stored[0].calibration.corrections[3].offset_k, 0.125);
-    assert_eq!(stored[0].tile, settings.tile);
-    assert_eq!(stored[1].tile.to_array(), [3.5, 0.06, 0.1, 0.2, 0.02]);
-    assert_eq!(stored[1].calibration.steps_counts[..3], [0.5, -0.25, 0.0]);
+    assert_eq!(stored.fingers[0].calibration.corrections[3].offset_k, 0.125);
+    assert_eq!(stored.fingers[0].tile, settings.tile);
+    assert_eq!(
+        stored.fingers[1].tile.to_array(),
+        [3.5, 0.06, 0.1, 0.2, 0.02]
+    );
+    assert_eq!(
+        stored.fingers[1].calibration.steps_counts[..3],
+        [0.5, -0.25, 0.0]
+    );
 
     let mut restored = CommandHandler::from_stored(&stored);
     for line in

@@ -1,5 +1,5 @@
 //! How close the skin comes to that on objects that are no half-spaces, and with fingers that are not the device's, on samples
-//! of the populations that `cargo xtask fidelity --scenario E F I` runs whole.
+//! of the populations that `cargo xtask fidelity --scenario E F G I` runs whole.
 
 use documented_figures::assert_figure;
 use thermal_campaigns::fidelity::{Percentiles, Population, Way, spread};
@@ -42,6 +42,9 @@ fn skin_follows_with_fingers_that_the_device_does_not_know() {
     assert_figure("population_sample.box_most", of_box.max);
     assert_figure("population_sample.drawn_median", drawn.p50);
     assert_figure("population_sample.drawn_most", drawn.max);
+    let learnt = errors_mk(Population::DesignedSensor, 3, 18);
+    assert_figure("population_sample.sensor_median", learnt.p50);
+    assert_figure("population_sample.sensor_most", learnt.max);
 }
 
 /// What a finger of `finger.draw` has of its draw; the rest is the nominal layered finger.

@@ -10,6 +10,7 @@ use hardware_benches::ngspice;
 use thermal_plant::parameters::{self, Parameter};
 use thermal_plant::sensors::FluxParams;
 use thermal_plant::{Params, tile::TileParams};
+use thermal_settings::FluxSensor;
 use thermal_sim::World;
 use thermal_sim::engine::NativeEngine;
 use thermal_sim::metrics::figures;
@@ -109,6 +110,16 @@ fn an_exact_current_is_no_flux_sensor() {
         "flux-current.conductance",
         0.01 * tile.conductance_w_k() * 10.0 / area_m2,
     );
+}
+
+#[test]
+fn the_sensor_that_the_device_is_told_of_is_the_plants() {
+    let (device, plant) = (FluxSensor::DESIGNED, FluxParams::NOMINAL);
+    assert_eq!(device.counts_per_w_m2, plant.counts_per_w_m2);
+    assert_eq!(device.lag_ms, 1e3 * plant.lag_s);
+    assert_eq!(device.resistance_mm2k_w, 1e6 * plant.resistance_m2k_w);
+    assert_eq!(FluxParams::read_w_m2(device.zero_counts as u16), 0.0);
+    assert_eq!((plant.gain_error, plant.zero_w_m2), (0.0, 0.0));
 }
 
 /// Largest error of the skin after 50 ms on granite at 2 N, mK.

@@ -10,8 +10,8 @@ use embedded_storage::nor_flash::{
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 use thermal_display::settings::{
-    Calibration, Correction, RECORD_MAX_BYTES, SettingsStore, StoredSettings, Tile,
-    TriplicatedSealedFlash,
+    Calibration, Correction, DisplaySurface, FluxSensor, Person, PersonCode, RECORD_MAX_BYTES,
+    SettingsStore, StoredDevice, StoredSettings, Tile, TriplicatedSealedFlash,
 };
 use thermal_sim::FlashCells;
 
@@ -103,14 +103,15 @@ impl NorFlash for Flash {
     }
 }
 
-/// Settings that differ from number to number in every value; for some numbers none, which stands for factory defaults.
+/// Settings that differ from number to number in every value, from 1000 on with heat-flux sensors, surfaces of the display and up to
+/// 16 persons; for some numbers none, which stands for factory defaults.
 #[must_use]
-pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[StoredSettings; FINGERS]> {
+pub fn numbered<const FINGERS: usize>(number: u32) -> Option<StoredDevice<FINGERS>> {
     if number % 50 == 17 {
         return None;
     }
     let of = |i: u32, per: f64| f64::from((number * 7919 + i * 104_729) % 2000) / per;
-    Some(std::array::from_fn(|finger| {
+    let mut stored = StoredDevice::from(std::array::from_fn(|finger| {
         let finger = 40 * finger as u32;
         StoredSettings {
             calibration: Calibration {
@@ -124,8 +125,26 @@ pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[StoredSettings; FI
             tile: Tile::from_array_rounded(
                 [1.0, 0.0, 0.0, 0.1, 0.0].map(|base| base + of(finger + 28, 1e6)),
             ),
+            flux_sensor: (number >= 1000).then(|| {
+                let values = [0.1, 2000.0, 5.0, 30.0].map(|base| base + of(finger + 29, 1e5));
+                FluxSensor::from_array_rounded(values)
+            }),
+            display: if number >= 1000 {
+                let values = [30.0, 1.0, 0.1].map(|base| base + of(finger + 30, 1e5));
+                DisplaySurface::from_array_rounded(values)
+            } else {
+                DisplaySurface::NOMINAL
+            },
         }
-    }))
+    }));
+    let persons = if number >= 1000 { number % 17 } else { 0 };
+    for person in 0..persons {
+        let word = format!("P{}", 100 * (number % 1000) + person);
+        let code = PersonCode::new(&word).expect("a code");
+        let finger = std::array::from_fn(|i| (number * 31 + person * 7 + i as u32) as u8);
+        assert!(stored.persons.insert(Person { code, finger }));
+    }
+    Some(stored)
 }
 
 /// Appends any bytes as the newest record; whether that succeeded.
@@ -159,7 +178,7 @@ fn store<const FINGERS: usize>(cells: FlashCells) -> (SettingsStore<Flash, FINGE
 /// # Panics
 /// They are not valid.
 #[must_use]
-pub fn loaded<const FINGERS: usize>(cells: &FlashCells) -> Option<[StoredSettings; FINGERS]> {
+pub fn loaded<const FINGERS: usize>(cells: &FlashCells) -> Option<StoredDevice<FINGERS>> {
     store(cells.clone()).0.load().expect("valid settings")
 }
 
@@ -170,7 +189,7 @@ pub fn loaded<const FINGERS: usize>(cells: &FlashCells) -> Option<[StoredSetting
 #[must_use]
 pub fn saved<const FINGERS: usize>(
     cells: &FlashCells,
-    settings: Option<&[StoredSettings; FINGERS]>,
+    settings: Option<&StoredDevice<FINGERS>>,
     cut: Option<(u64, u64)>,
 ) -> FlashCells {
     let mut cells = cells.clone();

@@ -1,5 +1,6 @@
-//! ADC1 (RM0390 chapter 13): regular scan sequence, software or timer trigger, sample times, end-of-conversion,
-//! overrun, DMA requests. Injected channels, analog watchdog and multi-ADC modes are refused.
+//! ADC1 and ADC2 (RM0390 chapter 13): regular scan sequence, software or timer trigger, sample times, end-of-conversion,
+//! overrun, DMA requests. Injected channels, analog watchdog and multi-ADC modes are refused, of ADC2 timer triggers and
+//! DMA requests, too.
 use super::stop::{Answer, Refusal, only};
 
 const EOC: u32 = 1 << 1;
@@ -29,14 +30,25 @@ pub(crate) enum Trigger {
     Tim3,
 }
 
+/// Which of the chip's converters; the third is not modelled.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum Unit {
+    /// The one with the internal channels.
+    #[default]
+    Adc1,
+    Adc2,
+}
+
 #[derive(Default)]
 pub(crate) struct Adc {
+    unit: Unit,
     sr: u32,
     cr1: u32,
     cr2: u32,
     smpr: [u32; 2],
     sqr: [u32; 3],
     dr: u32,
+    /// Common to all converters, which the chip tells of every change.
     ccr: u32,
     limits: [u32; 2],
     /// CPU cycles per APB2 clock.
@@ -57,8 +69,9 @@ pub(crate) struct Adc {
 }
 
 impl Adc {
-    pub fn new(bus_divider: u64, pclk2_hz: u32) -> Self {
+    pub fn new(unit: Unit, bus_divider: u64, pclk2_hz: u32) -> Self {
         Self {
+            unit,
             limits: [0xfff, 0],
             bus_divider,
             pclk2_hz,
@@ -73,7 +86,7 @@ impl Adc {
 
     /// Back to the reset values; the bus clock stays.
     pub fn reset(&mut self) {
-        *self = Self::new(self.bus_divider, self.pclk2_hz);
+        *self = Self::new(self.unit, self.bus_divider, self.pclk2_hz);
     }
 
     /// CPU cycles per ADC clock.
@@ -122,6 +135,11 @@ impl Adc {
         for channel in (0..self.length()).map(|position| self.channel_at(position)) {
             match channel {
                 0..=15 => {}
+                _ if self.unit == Unit::Adc2 => {
+                    return Err(Refusal::NotModelled(
+                        "channels above 15 of ADC2, which has no internal ones",
+                    ));
+                }
                 17 | 18 if self.ccr & TSVREFE != 0 => {}
                 18 if self.ccr & VBATE != 0 => {}
                 17 | 18 => {
@@ -226,7 +244,28 @@ impl Adc {
         self.ccr & VBATE != 0
     }
 
-    /// Registers of ADC1 at 0x00.. and the common ones at 0x300..
+    /// Status as the common status register repeats it.
+    pub fn status(&self) -> u32 {
+        self.sr & 0x3f
+    }
+
+    pub fn common_control(&self) -> u32 {
+        self.ccr
+    }
+
+    /// Writes the common control register, of which each converter has the value.
+    pub fn write_common_control(&mut self, value: u32) -> Answer<()> {
+        only(
+            value,
+            0x0003_0000 | TSVREFE | VBATE,
+            "ADC_CCR multi-ADC modes",
+        )?;
+        self.ccr = value;
+        self.bad_channel = self.check_channels().err();
+        Ok(())
+    }
+
+    /// Reads one of the converter's own registers.
     pub fn read(&mut self, offset: u32) -> Answer<u32> {
         Ok(match offset {
             0x00 => self.sr,
@@ -240,12 +279,11 @@ impl Adc {
                 self.sr &= !EOC;
                 self.dr
             }
-            0x300 => self.sr & 0x3f,
-            0x304 => self.ccr,
             _ => return Err(Refusal::Offset),
         })
     }
 
+    /// Writes one of them.
     pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
         match offset {
             0x00 => self.sr &= value,
@@ -282,14 +320,6 @@ impl Adc {
                 self.sqr[(offset as usize - 0x2c) / 4] = value;
             }
             0x38 => only(value, 0, "ADC_JSQR (injected channels)")?,
-            0x304 => {
-                only(
-                    value,
-                    0x0003_0000 | TSVREFE | VBATE,
-                    "ADC_CCR multi-ADC modes",
-                )?;
-                self.ccr = value;
-            }
             _ => return Err(Refusal::Offset),
         }
         self.bad_channel = self.check_channels().err();
@@ -297,7 +327,14 @@ impl Adc {
     }
 
     fn write_cr2(&mut self, value: u32, now: u64) -> Answer<()> {
-        only(value, 0x7f00_0f03, "ADC_CR2 injected channels")?;
+        match self.unit {
+            Unit::Adc1 => only(value, 0x7f00_0f03, "ADC_CR2 injected channels")?,
+            Unit::Adc2 => only(
+                value,
+                0x4000_0c03,
+                "ADC2_CR2 injected channels, triggers and DMA",
+            )?,
+        }
         if value >> 28 & 3 > 1 {
             return Err(Refusal::NotModelled("ADC_CR2.EXTEN = falling edge"));
         }
@@ -341,8 +378,8 @@ mod tests {
 
     /// PCLK2 = 90 MHz at HCLK = 180 MHz, ADCCLK = PCLK2/4 = 22.5 MHz: 8 CPU cycles per ADC clock; on for long enough.
     fn adc(cr1: u32, cr2: u32) -> Adc {
-        let mut adc = Adc::new(2, 90_000_000);
-        adc.write(0x304, 1 << 16, 0).unwrap();
+        let mut adc = Adc::new(Unit::Adc1, 2, 90_000_000);
+        adc.write_common_control(1 << 16).unwrap();
         adc.write(0x04, cr1, 0).unwrap();
         adc.write(0x08, cr2 | ADON, 0).unwrap();
         adc.stable_at = 0;
@@ -352,8 +389,8 @@ mod tests {
     #[test]
     fn a_conversion_in_the_first_3_us_is_misuse() {
         for (after_cycles, allowed) in [(0, false), (539, false), (540, true)] {
-            let mut adc = Adc::new(2, 90_000_000);
-            adc.write(0x304, 1 << 16, 0).unwrap();
+            let mut adc = Adc::new(Unit::Adc1, 2, 90_000_000);
+            adc.write_common_control(1 << 16).unwrap();
             adc.write(0x08, ADON, 1000).unwrap();
             let by_software = adc.write(0x08, ADON | SWSTART, 1000 + after_cycles);
             assert_eq!(by_software.is_ok(), allowed, "{after_cycles}");
@@ -366,7 +403,7 @@ mod tests {
             let mut adc = adc(0, 0);
             adc.write(0x34, channel, 0).unwrap();
             assert!(matches!(adc.start(0), Err(Refusal::Misuse(_))));
-            adc.write(0x304, TSVREFE | 1 << 16, 0).unwrap();
+            adc.write_common_control(TSVREFE | 1 << 16).unwrap();
             assert_eq!(adc.start(0), Ok(()));
         }
     }
@@ -431,7 +468,7 @@ mod tests {
 
     #[test]
     fn the_converter_has_a_clock_limit() {
-        let mut adc = Adc::new(2, 90_000_000);
+        let mut adc = Adc::new(Unit::Adc1, 2, 90_000_000);
         assert!(matches!(
             adc.write(0x08, ADON, 0),
             Err(Refusal::ClockRange { hz: 45_000_000, .. })

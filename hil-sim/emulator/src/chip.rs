@@ -1,6 +1,6 @@
 //! The peripherals, their connections inside the chip, and their events in order of time. Independent of the CPU emulation;
 //! register accesses enter through `chip/bus.rs`.
-use super::adc::{Adc, Trigger};
+use super::adc::{self, Adc, Trigger};
 use super::dac::Dac;
 use super::dma::{self, Dma, Route, Served};
 use super::exti::{Exti, lines};
@@ -39,6 +39,9 @@ const TIM5: usize = 4;
 const TIM8: usize = 7;
 const TIM10: usize = 8;
 const TIM11: usize = 9;
+/// Modelled converters.
+const ADC1: usize = 0;
+const ADC2: usize = 1;
 /// Pins that are outputs of the modelled timers (DS10693, table 11): port, bit, alternate function, timer, channel.
 const TIMER_PINS: [(u8, u8, u8, usize, usize); 10] = [
     (0, 8, 1, TIM1, 0),
@@ -82,7 +85,7 @@ pub(crate) struct Chip<W> {
     ports: [Port; PORTS],
     exti: Exti,
     dma: [Dma; 2],
-    adc: Adc,
+    adcs: [Adc; 2],
     dac: Dac,
     tims: [Tim; TIMERS],
     usart: Usart,
@@ -108,7 +111,7 @@ pub(crate) struct Chip<W> {
     pub misuse: Option<(u32, Refusal)>,
     /// Cycle of the next event of any device.
     pub next: u64,
-    /// As `next`, without the events of converter and serial line, which are nearly all and change no other device's next event.
+    /// As `next`, without the events of converters and serial line, which are nearly all and change no other device's next event.
     next_of_others: u64,
 }
 
@@ -135,7 +138,7 @@ impl<W: Wiring> Chip<W> {
             ports: std::array::from_fn(Port::new),
             exti: Exti::default(),
             dma: [Dma::new(1), Dma::new(2)],
-            adc: Adc::new(1, HSI_HZ),
+            adcs: [adc::Unit::Adc1, adc::Unit::Adc2].map(|unit| Adc::new(unit, 1, HSI_HZ)),
             dac: Dac::default(),
             tims: kinds.map(|kind| Tim::new(kind, 1)),
             usart: Usart::new(1, HSI_HZ, HOST_BAUD),
@@ -209,10 +212,11 @@ impl<W: Wiring> Chip<W> {
         self.refresh_next_of_streams();
     }
 
-    /// As [`Self::refresh_next`], after events of the converter or the serial line only.
+    /// As [`Self::refresh_next`], after events of the converters or the serial line only.
     fn refresh_next_of_streams(&mut self) {
         self.next = (self.next_of_others)
-            .min(self.adc.due)
+            .min(self.adcs[ADC1].due)
+            .min(self.adcs[ADC2].due)
             .min(self.usart.tx_due)
             .min(self.usart.rx_due);
     }
@@ -261,10 +265,12 @@ impl<W: Wiring> Chip<W> {
         }
     }
 
-    /// Handles the events of the converter and of the serial line up to `at`.
+    /// Handles the events of the converters and of the serial line up to `at`.
     fn service_streams(&mut self, at: u64, memory: &mut impl Memory) {
-        if self.adc.due <= at {
-            self.end_conversion(at, memory);
+        for converter in [ADC1, ADC2] {
+            if self.adcs[converter].due <= at {
+                self.end_conversion(converter, at, memory);
+            }
         }
         if self.usart.tx_due <= at {
             let connected = self.ports[0].mode(2) == Mode::Alternate(7);
@@ -283,31 +289,38 @@ impl<W: Wiring> Chip<W> {
         }
     }
 
-    fn end_conversion(&mut self, at: u64, memory: &mut impl Memory) {
-        let code = match self.adc.channel() {
+    fn end_conversion(&mut self, converter: usize, at: u64, memory: &mut impl Memory) {
+        let adc = &self.adcs[converter];
+        let code = match adc.channel() {
             17 => INTERNAL_REFERENCE,
-            18 if self.adc.measures_vbat() => QUARTER_OF_VBAT,
+            18 if adc.measures_vbat() => QUARTER_OF_VBAT,
             18 => INTERNAL_TEMPERATURE,
             DAC_CHANNEL if self.ports[0].mode(DAC_PIN) == Mode::Analog => {
                 (self.dac.output()).unwrap_or_else(|| self.wiring.adc(DAC_CHANNEL, at))
             }
             channel => self.wiring.adc(channel, at),
         };
-        self.adc.finish(code);
+        self.adcs[converter].finish(code);
         self.serve_adc_dma(at, memory);
     }
 
-    /// Transfers a waiting ADC item if a stream is enabled for it.
+    /// Transfers a waiting item of ADC1 if a stream is enabled for it.
     fn serve_adc_dma(&mut self, at: u64, memory: &mut impl Memory) {
-        if self.adc.wants_dma() {
+        if self.adcs[ADC1].wants_dma() {
             for route in &dma::ADC1 {
-                if let Served::Item { last, .. } = self.serve(route, self.adc.data(), at, memory) {
-                    self.adc.dma_read(last);
+                let item = self.adcs[ADC1].data();
+                if let Served::Item { last, .. } = self.serve(route, item, at, memory) {
+                    self.adcs[ADC1].dma_read(last);
                     break;
                 }
             }
         }
-        self.nvic.set_line(ADC_IRQ, self.adc.request(), at);
+        self.nvic.set_line(ADC_IRQ, self.converters_request(), at);
+    }
+
+    /// The interrupt that all converters share.
+    fn converters_request(&self) -> bool {
+        self.adcs.iter().any(Adc::request)
     }
 
     fn serve_usart_dma(&mut self, at: u64, memory: &mut impl Memory) {
@@ -365,8 +378,8 @@ impl<W: Wiring> Chip<W> {
                     }
                 }
             }
-            if source.is_some() && source == self.adc.trigger() {
-                let result = self.adc.start(at);
+            if source.is_some() && source == self.adcs[ADC1].trigger() {
+                let result = self.adcs[ADC1].start(at);
                 if let (Err(refusal), None) = (result, self.misuse) {
                     self.misuse = Some((ADC_CR2, refusal));
                 }
@@ -374,9 +387,9 @@ impl<W: Wiring> Chip<W> {
         }
     }
 
-    /// Tells the timers whether the converter or another timer uses their trigger outputs.
+    /// Tells the timers whether ADC1 or another timer uses their trigger outputs.
     fn connect_triggers(&mut self, now: u64) {
-        let of_adc = self.adc.trigger();
+        let of_adc = self.adcs[ADC1].trigger();
         let starts_timers = [TIM3, TIM4]
             .iter()
             .any(|slave| self.tims[*slave].is_started_by_tim2());

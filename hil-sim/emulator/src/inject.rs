@@ -259,7 +259,7 @@ impl<W: Wiring + 'static> Machine<W> {
         Ok(())
     }
 
-    /// No conversion ends until the converter is reset.
+    /// No conversion of ADC1 ends until it is reset.
     pub fn stop_adc(&mut self) {
         let now = self.now();
         self.chip_mut().stop_adc(now);

@@ -12,6 +12,8 @@ pub const CONVERTER: &str = "ADC";
 pub const RECEIVER: &str = "USART2";
 /// Transmission of the next line to the host.
 pub const REFILL: &str = "DMA1_STREAM6";
+/// The dispatcher of the task that learns the finger: the only one that may calculate with floating point.
+pub const LEARN: &str = "EXTI1";
 /// The dispatcher of the task that answers the host.
 pub const HOST: &str = "EXTI0";
 
@@ -83,7 +85,7 @@ impl Allowed {
 }
 
 /// Panics, all but one in libraries. Each switches the bridges off first, and ends in a reset by the watchdog.
-pub static PANICS: [Entry; 8] = [
+pub static PANICS: [Entry; 9] = [
     Entry {
         trees: &[TICK, REFILL],
         names: &["stm32f4xx_hal::dma::Transfer::next_transfer_common"],
@@ -129,6 +131,14 @@ pub static PANICS: [Entry; 8] = [
         why: "the executor polls no future that has ended",
     },
     Entry {
+        trees: &[LEARN],
+        names: &[
+            "thermal_display::app::learn::{{closure}}",
+            "thermal_display::app::learn::{closure#0}",
+        ],
+        why: "the executor polls no future that has ended",
+    },
+    Entry {
         trees: &[HOST],
         names: &[
             "fixed::FixedI32::saturating_from_float_helper",
@@ -141,9 +151,9 @@ pub static PANICS: [Entry; 8] = [
     },
 ];
 
-/// Loops of the control path. Loops that repeat an exclusive access need no entry: they repeat once for each exception
+/// Loops of the control path and of the learner. Loops that repeat an exclusive access need no entry: they repeat once for each exception
 /// between its load and its store.
-pub static LOOPS: [Entry; 12] = [
+pub static LOOPS: [Entry; 14] = [
     Entry {
         trees: &[TICK, CONVERTER, REFILL],
         names: &["stm32f4xx_hal::dma::stream_disable"],
@@ -183,8 +193,30 @@ pub static LOOPS: [Entry; 12] = [
             "contact_model::fixed_point::relaxation_bank::updated_slow",
             "contact_model::fixed_point::relaxation_bank::RelaxationBank::step",
             "contact_model::fixed_point::relaxation_bank::RelaxationBank::scaled_flux_to_match",
+            "contact_model::fixed_point::relaxation_bank::RelaxationBank::rescale",
+            "contact_model::fixed_point::relaxation_bank::StateFactors::new",
         ],
         why: "at most one iteration for each relaxation of a body, whose states are arrays of constant length",
+    },
+    Entry {
+        trees: &[TICK],
+        names: &[
+            "contact_model::fixed_point::body::weights::TissueWeights::",
+            "thermal_learner::output::LearnerOutput::",
+        ],
+        why: "weights and parameters of a finger, arrays of constant length",
+    },
+    Entry {
+        trees: &[LEARN],
+        names: &[
+            "thermal_learner::estimate::Estimate::",
+            "thermal_learner::output::LearnerOutput::",
+            "thermal_learner::parameters::",
+            "thermal_learner::person::",
+            "thermal_learner::regressors::",
+            "thermal_learner::signals::",
+        ],
+        why: "the parameters, rates or weights of a finger, arrays of constant length",
     },
     Entry {
         trees: &[TICK],
@@ -194,7 +226,7 @@ pub static LOOPS: [Entry; 12] = [
         why: "arrays of constant length",
     },
     Entry {
-        trees: &[TICK, CONVERTER, RECEIVER],
+        trees: &[TICK, CONVERTER, RECEIVER, LEARN],
         names: &["compiler_builtins::mem::", "compiler_builtins::arm::"],
         why: "moves and clears values, whose sizes are those of their types",
     },

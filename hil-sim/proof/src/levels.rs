@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use anyhow::{Context, Result};
 
-use crate::allowed::{CONVERTER, HOST, RECEIVER, REFILL, TICK};
+use crate::allowed::{CONVERTER, HOST, LEARN, RECEIVER, REFILL, TICK};
 use crate::stack::{Budget, Deepest, EXCEPTION, Stacks};
 use crate::{Proof, Section};
 
@@ -18,7 +18,7 @@ const FAILURES: usize = 6;
 static LEVELS: [(&str, &[&str]); 8] = [
     ("background", &["Reset"]),
     ("host", &[HOST]),
-    ("refill", &[REFILL]),
+    ("refill, learner", &[REFILL, LEARN]),
     ("tick", &[TICK, CONVERTER]),
     ("receive", &[RECEIVER]),
     ("any other", &["others"]),

@@ -1,9 +1,9 @@
-//! Loops of the control path: each is listed in [`allowed`](crate::allowed) with the reason why it ends.
+//! Loops of the control path and of the learner: each is listed in [`allowed`](crate::allowed) with the reason why it ends.
 use std::collections::BTreeMap;
 
 use anyhow::Result;
 
-use crate::allowed::{Allowed, CONTROL, LOOPS};
+use crate::allowed::{Allowed, CONTROL, LEARN, LOOPS};
 use crate::flow::Flow;
 use crate::{Proof, Section};
 
@@ -25,7 +25,7 @@ fn owner(proof: &Proof, last: u32) -> String {
     owner.map_or_else(String::new, |frame| frame.function.clone())
 }
 
-/// Checks that the control path has only allowed loops, no recursion and no indirect calls.
+/// Checks that the control path and the learner have only allowed loops, no recursion and no indirect calls.
 ///
 /// # Errors
 /// A handler is missing.
@@ -35,7 +35,7 @@ pub fn check(proof: &Proof) -> Result<Section> {
         ..Section::default()
     };
     let mut allowed = Allowed::new(&LOOPS);
-    for tree in CONTROL {
+    for tree in CONTROL.into_iter().chain([LEARN]) {
         let (mut exclusive, mut owners) = (0, BTreeMap::<String, usize>::new());
         for function in &proof.graph.reached(proof.root(tree)?) {
             let Some(flow) = proof.graph.flow(*function) else {

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 
 use anyhow::Result;
 
-use crate::allowed::{Allowed, CONTROL, HOST, PANICS};
+use crate::allowed::{Allowed, CONTROL, HOST, LEARN, PANICS};
 use crate::flow::Target;
 use crate::graph::Graph;
 use crate::image::Image;
@@ -82,8 +82,8 @@ pub fn sites(image: &Image, graph: &Graph, names: &Names, root: u32) -> Vec<Site
     sites
 }
 
-/// Checks that the control path and the task that answers the host contain no panic of this project's own code and only
-/// the allowed panics of libraries.
+/// Checks that the control path, the learner and the task that answers the host contain no panic of this project's own code
+/// and only the allowed panics of libraries.
 ///
 /// # Errors
 /// A handler is missing.
@@ -93,7 +93,7 @@ pub fn check(proof: &Proof) -> Result<Section> {
         ..Section::default()
     };
     let mut allowed = Allowed::new(&PANICS);
-    for tree in CONTROL.into_iter().chain([HOST]) {
+    for tree in CONTROL.into_iter().chain([LEARN, HOST]) {
         let root = proof.root(tree)?;
         let reached = proof.graph.reached(root);
         let sites = sites(&proof.image, &proof.graph, &proof.names, root);

@@ -59,6 +59,9 @@ pub fn touched() -> Result<Vec<(String, Scene)>> {
 pub fn faulty() -> Result<Vec<(String, Scene)>> {
     let scene = |kind: FaultKind| {
         let mut text = head("copper", 1.5);
+        if kind.needs_flux_sensor() {
+            writeln!(text, "[device]\nflux_sensor = true")?;
+        }
         writeln!(text, "[[force]]\nt_s = 0.2\nforce_n = 2.0")?;
         writeln!(
             text,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use image_proof::allowed::{CONTROL, HOST, TICK};
+use image_proof::allowed::{CONTROL, HOST, LEARN, TICK};
 use image_proof::compiler::recorded_with;
 use image_proof::{Proof, Section, measure, panics};
 
@@ -85,6 +85,12 @@ fn the_checks_find_what_the_image_is_known_to_have() {
         inlined.is_empty() || !recorded_with(&proof.compiler, &inlined),
         "{inlined:?}"
     );
+    // The learner calculates in `f32`.
+    let float: usize = (reached(LEARN).iter())
+        .filter_map(|start| proof.graph.flow(*start))
+        .map(|flow| flow.float.len())
+        .sum();
+    assert!(float > 100, "{float} instructions of floating point");
     // Panics are recognised as functions that never return; the functions named as panics are among them.
     let panicking =
         |name: &str| name.starts_with("core::panicking::") || name.ends_with("unwrap_failed");
@@ -96,7 +102,7 @@ fn the_checks_find_what_the_image_is_known_to_have() {
         assert!(!proof.graph.returns(function.start), "{}", function.name);
     }
     // Each handler returns and uses stack.
-    for tree in CONTROL {
+    for tree in CONTROL.into_iter().chain([LEARN]) {
         let root = proof.root(tree).expect("a handler");
         assert!(proof.graph.returns(root), "{tree}");
         assert!(

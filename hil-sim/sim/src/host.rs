@@ -129,7 +129,7 @@ impl Host {
     pub fn new(scene: &Scene, settings: &[String], stream_ms: u32, set_up_from_ms: u64) -> Self {
         let zero_ms = scene.settle_ms();
         // An infinite time saturates.
-        let at = |t_s: f64| zero_ms.saturating_add((t_s * 1e3).round() as u64);
+        let at = |t_s: f64| zero_ms.saturating_add_signed((t_s * 1e3).round() as i64);
         let mode = match scene.mode {
             ContactModel::ContactResistance => "mode contact",
             ContactModel::SemiInfinite => "mode semi-infinite",

@@ -67,11 +67,26 @@ pub fn run_with<E: Engine>(
     scene: &Scene,
     injections: &[Injection],
     engine: &mut E,
-    mut progress: impl FnMut(f64),
+    progress: impl FnMut(f64),
 ) -> Result<Outcome, RunError<E::Stop>> {
     let settings = commissioning::settings_for_scene(scene).map_err(RunError::Commission)?;
+    let scene = commissioning::with_person(scene).map_err(RunError::Commission)?;
+    run_with_settings(&scene, &settings, injections, engine, progress)
+}
+
+/// Runs a scene on a device with these settings, as lines, whose person is not enrolled.
+///
+/// # Errors
+/// As [`run_with`].
+pub(crate) fn run_with_settings<E: Engine>(
+    scene: &Scene,
+    settings: &[String],
+    injections: &[Injection],
+    engine: &mut E,
+    mut progress: impl FnMut(f64),
+) -> Result<Outcome, RunError<E::Stop>> {
     let began = Instant::now();
-    let recording = SceneRecording::new(scene, &settings, 1, SET_UP_FROM_MS);
+    let recording = SceneRecording::new(scene, settings, 1, SET_UP_FROM_MS);
     let (zero_ms, last_ms) = (recording.zero_ms, recording.end_ms + DRAIN_MS);
     let time_s = |ms: f64| (ms - zero_ms as f64) / 1e3;
     let (from_s, to_s) = (time_s(0.0), time_s(recording.end_ms as f64));

@@ -218,10 +218,11 @@ impl World {
         };
     }
 
-    /// Code of the heat-flux sensor at the end of the last step, 0 to 4095; none if it is not fitted.
+    /// Code at the input of the heat-flux sensor at the end of the last step, 0 to 4095. A board without the sensor has the input
+    /// at ground.
     #[must_use]
-    pub fn flux_code(&self) -> Option<u16> {
-        self.plant.flux_code()
+    pub fn flux_code(&self) -> u16 {
+        self.plant.flux_code().unwrap_or(0)
     }
 
     /// Whether nFAULT is low, pulled by the bridge driver or the comparator.

@@ -22,10 +22,10 @@ pub struct Arguments {
     /// What the finger does; several, or all [default: A, or none with --box]
     #[arg(long, num_args = 1.., value_parser = scenarios())]
     scenario: Vec<Chosen>,
-    /// Fingers, or contact laws, that are drawn in scenarios F and I
+    /// Fingers, or contact laws, that are drawn in scenarios F, G and I
     #[arg(long, value_name = "N", default_value_t = 36)]
     draws: u64,
-    /// Run so many cases of each of E, F and I only, evenly spread
+    /// Run so many cases of each of E, F, G and I only, evenly spread
     #[arg(long, value_name = "N")]
     sample: Option<usize>,
     /// Run so many cases of each of E, F and I on the image, too; its traces must be the same
@@ -53,7 +53,7 @@ pub struct Arguments {
     /// Of the converter, and of the box
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: u64,
-    /// What runs the device's logic [default: image for A to D, native for E, F, I and the box]
+    /// What runs the device's logic [default: image for A to D, native for E, F, G, I and the box]
     #[arg(long, value_enum)]
     engine: Option<EngineKind>,
     /// Image to run instead of the one of the current sources
@@ -85,7 +85,7 @@ enum Chosen {
 
 impl Chosen {
     /// All scenarios.
-    const EACH: [Self; 8] = [
+    const EACH: [Self; 10] = [
         Self::Cases(Scenario::A),
         Self::Cases(Scenario::B),
         Self::Cases(Scenario::C),
@@ -93,6 +93,8 @@ impl Chosen {
         Self::Cases(Scenario::Unseen),
         Self::Populations("E"),
         Self::Populations("F"),
+        Self::Populations("G"),
+        Self::Populations("H"),
         Self::Populations("I"),
     ];
 
@@ -351,7 +353,7 @@ impl Campaign<'_> {
     fn populations(&self, cases: &[PopulationCase]) -> anyhow::Result<Vec<PopulationResult>> {
         let mut jobs = Vec::new();
         for case in cases {
-            jobs.extend(Way::ALL.map(|way| (case, way)));
+            jobs.extend(case.population.ways().iter().map(|way| (case, *way)));
         }
         let device = self.device_of_draws();
         self.map("populations", &jobs, |(case, way)| {

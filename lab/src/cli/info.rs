@@ -3,7 +3,7 @@
 use clap::Args;
 use serde_json::{Map, Value};
 use thermal_client::client::{
-    ClientError, Command, QueryBoard, QueryCause, QueryIdentity, QueryMargins, QueryRaw,
+    ClientError, Command, QueryBoard, QueryCause, QueryFlux, QueryIdentity, QueryMargins, QueryRaw,
     QuerySelfTest, QueryState,
 };
 use thermal_client::commissioning::settings;
@@ -81,6 +81,9 @@ fn collect(
     }
     if identity.can("board") {
         put("board", ask(client, None, &QueryBoard)?);
+    }
+    if identity.can("flux") {
+        put("flux", ask(client, finger, &QueryFlux)?);
     }
     put("tile", ask(client, finger, &QueryMargins)?);
     put("settings", Ok(settings(client, finger)?.into()));

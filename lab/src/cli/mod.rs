@@ -3,6 +3,7 @@
 pub mod analyse;
 pub mod bring_up;
 pub mod commission;
+pub mod contact;
 pub mod info;
 pub mod log;
 pub mod monitor;

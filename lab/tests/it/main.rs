@@ -1,5 +1,6 @@
 //! Lines to real and simulated devices, and the person at the bench.
 
+mod contact;
 mod person;
 mod program;
 mod simulated_device;

@@ -9,16 +9,18 @@ use thermal_commissioning::StorageOrder;
 use thermal_device::StateName;
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_lab::client::{
     Calibrate, Client, CountSettings, PlainCommand, QueryAssumedFinger, QueryBoard, QueryCause,
-    QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState,
-    upload,
+    QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings,
+    QueryState, upload,
 };
 use thermal_lab::commissioning::{arm, clear_calibration};
 use thermal_lab::link::{Link, SimulatedLink};
 use thermal_plant::Params;
+use thermal_settings::FluxSensor;
 use thermal_sim::commissioning::CommissioningSetup;
 use thermal_sim::engine::NativeEngine;
 
@@ -70,6 +72,8 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
         PlainCommand::Checksum(false),
         PlainCommand::Set(setting),
         PlainCommand::ClearCalibration(ThermistorId::Check),
+        PlainCommand::FluxSensor(None),
+        PlainCommand::FluxSensor(Some(FluxSensor::DESIGNED)),
     ];
     orders.extend(upload(&object));
     let refused: Vec<_> = (orders.iter())
@@ -97,6 +101,15 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
         AssumedFinger::MeanOnPad
     );
     assert_eq!(client.ask(&QueryCause).unwrap(), None);
+    // The board has no sensor.
+    client.wait(Duration::from_millis(600)).unwrap();
+    let refused = client.ask(&PlainCommand::FluxZero).unwrap_err();
+    assert!(refused.refusal().unwrap().contains("look at its wires"));
+    let flux = client.ask(&QueryFlux).unwrap().unwrap();
+    assert_eq!(
+        (flux.w_m2, flux.finger),
+        (None, FingerKnowledge::SensorFault)
+    );
     arm(&mut client, None).unwrap();
     client.ask(&PlainCommand::Start).unwrap();
     client.ask(&PlainCommand::Arm).unwrap();
@@ -147,6 +160,9 @@ fn what_the_device_says_it_can_do_it_does() {
     }
     if identity.can("board") {
         client.ask(&QueryBoard).unwrap();
+    }
+    if identity.can("flux") {
+        assert_eq!(client.ask(&QueryFlux).unwrap(), None);
     }
 }
 

@@ -135,8 +135,10 @@ pub(super) fn fraction_of(difference: Celsius, fraction: Fraction) -> Celsius {
     Celsius::from_bits((product.saturating_add(1 << 31) >> 32) as i32)
 }
 
-/// Display temperature at landing, °C (Eq. 6-12 at `t = 0`).
-pub(super) fn preset(ratio: Ratio, skin_c: Celsius, object_c: Celsius) -> Celsius {
+/// Display temperature at landing, °C (Eq. 6-12 at `t = 0`), for a ratio of the resistances of display and object, from the
+/// temperatures of skin and object before contact, °C.
+#[must_use]
+pub fn preset(ratio: Ratio, skin_c: Celsius, object_c: Celsius) -> Celsius {
     let difference = skin_c.saturating_sub(object_c);
     subtract_rounded::<{ Ratio::FRAC_NBITS }>(
         skin_c,

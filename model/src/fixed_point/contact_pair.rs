@@ -2,7 +2,8 @@
 
 use super::properties::{ContactPairError, check, moderate, rate};
 use super::{
-    Celsius, Contact, Fraction, Log2, MantissaExponent, Ratio, contact, logarithm, to_fixed,
+    Celsius, Contact, Fraction, Log2, MantissaExponent, OwnContactLaw, Ratio, contact, logarithm,
+    to_fixed,
 };
 use crate::material::{Material, Surface};
 use crate::reference;
@@ -71,8 +72,18 @@ impl ContactPair {
     /// with that of [`super::log2_relative_pressure`] at most 4e-9 and 2e-9.
     #[must_use]
     pub fn at_pressure(&self, log2_relative_pressure: Log2) -> Contact {
-        let pressure_term =
-            MantissaExponent::from_log2(logarithm::power_0_95(log2_relative_pressure));
+        self.with_pressure_term(logarithm::power_0_95(log2_relative_pressure))
+    }
+
+    /// [`Self::at_pressure`] by a law of the finger's own, without its gap, which [`super::OwnResistances`] have.
+    #[must_use]
+    pub fn at_pressure_by(&self, law: &OwnContactLaw, log2_relative_pressure: Log2) -> Contact {
+        self.with_pressure_term(law.power(log2_relative_pressure))
+    }
+
+    #[inline(never)]
+    fn with_pressure_term(&self, log2: Log2) -> Contact {
+        let pressure_term = MantissaExponent::from_log2(log2);
         Contact {
             weight: self.weight,
             ratio: self.ratio,

@@ -18,7 +18,8 @@
 
 mod conductance;
 
-pub use conductance::ContactConductance;
+pub(super) use conductance::inverse;
+pub use conductance::{ContactConductance, OwnResistances};
 
 use fixed::types::{I0F32, I12F20};
 

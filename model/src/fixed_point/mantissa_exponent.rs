@@ -58,6 +58,7 @@ impl MantissaExponent {
 
     /// Product; relative error below 2^-32.
     #[must_use]
+    #[inline(never)]
     pub const fn times(self, other: Self) -> Self {
         let (a, b) = (self.fraction as u64, other.fraction as u64);
         // Product of the mantissas, from 1 to 4, with 32 binary places.

@@ -13,6 +13,7 @@ mod kernel_table;
 mod log_table;
 mod logarithm;
 mod mantissa_exponent;
+mod own_contact_law;
 mod pressure;
 mod product;
 mod properties;
@@ -24,12 +25,13 @@ pub use body::{
     TissueStateFactors, TissueWeights, WEIGHTS,
 };
 pub use chord_interpolation::ChordInterpolation;
-pub use contact::{Contact, Response};
+pub use contact::{Contact, Response, preset};
 pub use contact_pair::ContactPair;
-pub use half_space::{ContactConductance, HalfSpace};
+pub use half_space::{ContactConductance, HalfSpace, OwnResistances};
 pub use kernel::erfcx;
 pub use logarithm::{Log2, exp2, log2};
 pub use mantissa_exponent::MantissaExponent;
+pub use own_contact_law::OwnContactLaw;
 pub use pressure::{Area, Force, contact_area, log2_relative_pressure};
 pub use product::{Word, product, saturated, saturating_product, to_fixed};
 pub use properties::ContactPairError;

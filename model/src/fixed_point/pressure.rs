@@ -60,7 +60,7 @@ const FIRST_AREA: u32 =
     (THESIS_PRESSURES[0].0 / THESIS_PRESSURES[0].1 * (1u64 << AREA_BITS) as f64 + 0.5) as u32;
 
 /// `log2(H)` of the skin's microhardness in Pa (Eq. 6-8).
-const LOG2_MICROHARDNESS: Log2 = Log2::lit("16.902422223664658");
+pub(super) const LOG2_MICROHARDNESS: Log2 = Log2::lit("16.902422223664658");
 
 /// `log2(P / H)` under a force (section 6.4.2, as [`crate::pressure::pressure_pa`]), input of
 /// [`super::ContactPair::at_pressure`]; error below 6 * 2^-32 for every force.

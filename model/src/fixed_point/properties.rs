@@ -70,11 +70,16 @@ pub(super) fn check(
         ("tick (s)", tick_s),
     ]
     .into_iter()
-    // `value <= 0.0` would accept NaN.
-    .find(|(_, value)| !(*value > 0.0 && value.is_finite()))
+    .find(|(_, value)| !is_positive_and_finite(*value))
     .map_or(Ok(()), |(name, value)| {
         Err(ContactPairError::Property { name, value })
     })
+}
+
+/// Not inlined, because it is asked fourteen times.
+#[inline(never)]
+fn is_positive_and_finite(value: f64) -> bool {
+    value > 0.0 && value.is_finite()
 }
 
 /// Refuses values outside 2^-100 to 2^100, so that their products stay within `f64` and [`MantissaExponent`].

@@ -15,7 +15,10 @@ from .errors import DeviceTripped, LineDamaged, StateTimeout
 from .replies import (
     CalibrationFit,
     Cause,
+    ContactLaw,
+    DisplaySurface,
     Fields,
+    FluxReport,
     IdentifiedTile,
     RawReadings,
     SelfTestReport,
@@ -23,6 +26,7 @@ from .replies import (
 )
 from .telemetry import Stream
 from .words import (
+    ALL_FIELDS,
     TELEMETRY_FIELDS,
     AssumedFinger,
     ContactMode,
@@ -85,6 +89,18 @@ class Commands:
     def margins(self) -> IdentifiedTile:
         """The tile in use, and the stability margins of its loop."""
         return self._connection.ask("margins", IdentifiedTile.read, self._finger)
+
+    def flux(self) -> FluxReport | None:
+        """The heat-flux sensor, its flux, and what is known of the finger by it; `None` without one."""
+        return self._connection.ask("flux", FluxReport.read, self._finger)
+
+    def contact_law(self) -> ContactLaw:
+        """The contact law that is taken for the finger's."""
+        return self._connection.ask("contact", ContactLaw.read, self._finger)
+
+    def surface(self) -> DisplaySurface:
+        """The surface of the display."""
+        return self._connection.ask("surface", DisplaySurface.read, self._finger)
 
     # The object
 
@@ -181,6 +197,18 @@ class Commands:
         return self._connection.ask(
             "finger", lambda reply: cast(AssumedFinger, reply.word("finger")), self._finger
         )
+
+    def set_contact_law(self, law: ContactLaw | None) -> None:
+        """Takes this contact law for the finger's; `None` for Eq. 6-8, the default. Refused for the finger `thesis`."""
+        if law is None:
+            self._tell("contact nominal")
+            return
+        values = [
+            wire.number(law.exponent, "exponent"),
+            wire.number(law.hardness_pa, "hardness_pa"),
+            wire.number(law.gap_w_m2k, "gap_w_m2k"),
+        ]
+        self._tell("contact " + " ".join(values))
 
     def skin(self, skin_c: float | None) -> None:
         """Skin before contact that set-points assume, 15 to 42 °C; `None` for that of the sensor."""
@@ -285,12 +313,12 @@ class Commands:
         1000 lines a second, of all fingers together. 0 ends telemetry, and with it the device's guard: it does not trip any
         more when this program dies. 60000 keeps the guard."""
         chosen = set(fields)
-        unknown = chosen.difference(TELEMETRY_FIELDS)
+        unknown = chosen.difference(ALL_FIELDS)
         if unknown:
-            raise ValueError(f"unknown fields {', '.join(sorted(unknown))}; known: {', '.join(TELEMETRY_FIELDS)}")
+            raise ValueError(f"unknown fields {', '.join(sorted(unknown))}; known: {', '.join(ALL_FIELDS)}")
         if int(interval_ms) != interval_ms:
             raise ValueError(f"interval_ms is {interval_ms}; allowed are whole numbers from 0 to 60000")
-        in_order = tuple(name for name in TELEMETRY_FIELDS if name in chosen)
+        in_order = tuple(name for name in ALL_FIELDS if name in chosen)
         self._connection.set_stream(self._finger, Stream(int(interval_ms), in_order or TELEMETRY_FIELDS))
 
     def trigger_out(self, *kinds: TriggerEvent) -> None:
@@ -315,6 +343,42 @@ class Commands:
     def calibrate_clear(self, thermistor: Thermistor) -> None:
         """Deletes points and correction of a thermistor."""
         self._tell(f"calibrate {thermistor} clear")
+
+    def set_flux_sensor(
+        self, counts_per_w_m2: float, zero_counts: float, lag_ms: float, resistance_mm2k_w: float
+    ) -> None:
+        """The display has this heat-flux sensor: gain, 0.01 to 1 counts of 4096 per W/m²; code without flux, 64 to 4031; time
+        constant, 0.1 to 500 ms; thermal resistance, 0 to 1000 mm² K/W. `save` stores it."""
+        values = [
+            wire.number(counts_per_w_m2, "counts_per_w_m2"),
+            wire.number(zero_counts, "zero_counts"),
+            wire.number(lag_ms, "lag_ms"),
+            wire.number(resistance_mm2k_w, "resistance_mm2k_w"),
+        ]
+        self._tell("flux set " + " ".join(values))
+
+    def remove_flux_sensor(self) -> None:
+        """The display has no heat-flux sensor."""
+        self._tell("flux none")
+
+    def take_flux_zero(self) -> None:
+        """Takes the mean code of the last half second as the zero of the heat-flux sensor. No finger may touch the display, which
+        must have the temperature of the room."""
+        self._tell("flux zero")
+
+    def set_surface(self, conductivity_w_mk: float, roughness_um: float, slope_rad: float) -> None:
+        """The display has this surface: conductivity, 0.1 to 500 W/(m K); RMS roughness, 0.01 to 30 µm; mean slope, 0.001 to 1.5 rad.
+        `save` stores it."""
+        values = [
+            wire.number(conductivity_w_mk, "conductivity_w_mk"),
+            wire.number(roughness_um, "roughness_um"),
+            wire.number(slope_rad, "slope_rad"),
+        ]
+        self._tell("surface set " + " ".join(values))
+
+    def set_nominal_surface(self) -> None:
+        """The display has the surface of the reference design."""
+        self._tell("surface nominal")
 
     def settings(self) -> list[str]:
         """The settings as lines `set …`, which `set_settings` takes."""

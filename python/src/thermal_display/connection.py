@@ -36,7 +36,7 @@ from .events import Event, EventLog, Trip, parse_event
 from .link import Link
 from .replies import Cause, Fields, Identity, Reply, Status
 from .telemetry import LineCounts, Stream, TelemetryBuffer, parse_line
-from .words import TELEMETRY_FIELDS, TelemetryField
+from .words import ALL_FIELDS, TELEMETRY_FIELDS, TelemetryField
 
 log = logging.getLogger("thermal_display")
 
@@ -597,7 +597,7 @@ class Connection:
         finger, content = wire.split_finger(line)
         words = content.split()
         if words[0] == "stream":
-            chosen: list[TelemetryField] = [name for name in TELEMETRY_FIELDS if name in words[2:]]
+            chosen: list[TelemetryField] = [name for name in ALL_FIELDS if name in words[2:]]
             # The device rounds a fraction of a millisecond up.
             stream = Stream(math.ceil(float(words[1])), tuple(chosen) or TELEMETRY_FIELDS)
             if finger is None:
@@ -628,7 +628,7 @@ class Connection:
         parsed = parse_line(content, stream.fields)
         if parsed is None:
             return False
-        tick, state, numbers, evaluations, remark = parsed
+        tick, state, remark = parsed.tick, parsed.state, parsed.remark
         self.clock.observe(tick, at_s)
         # What has arrived has happened.
         host_s = min(self.clock.time_of(tick), at_s)
@@ -641,7 +641,8 @@ class Connection:
             if passed < 1 << 31:
                 lost = max(0, passed // stream.interval_ms - 1)
         self._lost += lost
-        self.telemetry.put((tick, finger, state, *numbers, evaluations, remark, host_s, at_s, lost))
+        before = (tick, finger, state, *parsed.numbers, parsed.evaluations, remark)
+        self.telemetry.put((*before, host_s, at_s, lost, *parsed.of_flux, parsed.known))
         # After the row: who sees the trip sees the row that says so.
         if state != "tripped":
             self._trips.pop(finger, None)

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TypeVar, cast
 
-from .words import ContactMode, State
+from .words import ContactMode, FingerKnowledge, State
 
 Reply = TypeVar("Reply")
 
@@ -242,6 +242,70 @@ class RawReadings:
             supply=reply.real("supply"),
             stop=reply.flag("stop"),
             fault_line=reply.flag("fault_line"),
+        )
+
+
+@dataclass(frozen=True)
+class ContactLaw:
+    """Conductance of skin and display, `h (P/H)^exponent + gap` with the mean conductance `h` of both surfaces."""
+
+    exponent: float
+    """0.3 to 1.5; 0.95 in Eq. 6-8."""
+    hardness_pa: float
+    """Microhardness `H`, 1e3 to 1e8 Pa."""
+    gap_w_m2k: float
+    """Conductance of the gap, 0 to 1e5 W/(m² K)."""
+
+    @classmethod
+    def read(cls, reply: Fields) -> ContactLaw:
+        return cls(reply.real("exponent"), reply.real("hardness_pa"), reply.real("gap_w_m2k"))
+
+
+@dataclass(frozen=True)
+class FluxReport:
+    """Answer to `flux`: the heat-flux sensor, and what is known by it."""
+
+    counts_per_w_m2: float
+    """Gain, counts of 4096 per W/m²."""
+    zero_counts: float
+    """Code without flux."""
+    lag_ms: float
+    resistance_mm2k_w: float
+    """Thermal resistance, mm² K/W."""
+    w_m2: float | None
+    """Flux out of the finger in the last tick, W/m²; `None` for a code that cannot be right."""
+    finger: FingerKnowledge
+
+    @classmethod
+    def read(cls, reply: Fields) -> FluxReport | None:
+        if reply.word("flux") == "none":
+            return None
+        return cls(
+            counts_per_w_m2=reply.real("counts_per_w_m2"),
+            zero_counts=reply.real("zero_counts"),
+            lag_ms=reply.real("lag_ms"),
+            resistance_mm2k_w=reply.real("resistance_mm2k_w"),
+            w_m2=reply.real_or_none("w_m2"),
+            finger=cast(FingerKnowledge, reply.word("finger")),
+        )
+
+
+@dataclass(frozen=True)
+class DisplaySurface:
+    """Answer to `surface`: the surface of the display."""
+
+    conductivity_w_mk: float
+    roughness_um: float
+    """RMS roughness, µm."""
+    slope_rad: float
+    """Mean slope of the asperities, rad."""
+
+    @classmethod
+    def read(cls, reply: Fields) -> DisplaySurface:
+        return cls(
+            conductivity_w_mk=reply.real("conductivity_w_mk"),
+            roughness_um=reply.real("roughness_um"),
+            slope_rad=reply.real("slope_rad"),
         )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .errors import TelemetryTimeout
-from .words import TELEMETRY_FIELDS, State, TelemetryField
+from .words import ALL_FIELDS, FLUX_FIELDS, TELEMETRY_FIELDS, State, TelemetryField
 
 if TYPE_CHECKING:
     from .connection import Connection
@@ -35,17 +35,24 @@ TELEMETRY_DTYPE: np.dtype[Any] = np.dtype(
         ("host_s", np.float64),
         ("received_s", np.float64),
         ("lost_before", np.uint32),
+        ("flux_w_m2", np.float64),
+        ("surface_c", np.float64),
+        ("known", "U12"),
     ]
 )
 """Rows of telemetry. `tick` in ms since the device's reset; temperatures in °C, force in N, currents in A; NaN, and -1 for
 `evaluations`, is what the device does not know or was not asked for. `host_s` is when the tick happened and `received_s` when the
-line arrived, both s of `time.perf_counter()`. `lost_before` lines are missing before this one."""
+line arrived, both s of `time.perf_counter()`. `lost_before` lines are missing before this one. What the heat-flux sensor shows
+comes last: flux out of the skin, W/m², estimate of the display's surface, and what is known of the finger, a word that is empty if
+it was not asked for or there is no sensor."""
 
 TelemetryArray = np.ndarray[Any, np.dtype[np.void]]
 """One-dimensional structured array of `TELEMETRY_DTYPE`."""
 
 _NAN = float("nan")
-_COLUMN = {field: index for index, field in enumerate(TELEMETRY_FIELDS)}
+_NUMBERS = tuple(field for field in ALL_FIELDS if field not in ("evaluations", "finger"))
+_COLUMN = {field: index for index, field in enumerate(_NUMBERS)}
+_OF_FLUX = sum(field in FLUX_FIELDS for field in _NUMBERS)
 _STATES = frozenset(state.value for state in State)
 
 
@@ -69,6 +76,9 @@ class Sample:
     host_s: float
     received_s: float
     lost_before: int
+    flux_w_m2: float
+    surface_c: float
+    known: str
 
     @property
     def fault(self) -> str | None:
@@ -103,20 +113,33 @@ class LineCounts:
     """Telemetry lines that came and were not taken before the buffer was full."""
 
 
-def parse_line(
-    content: str, fields: tuple[TelemetryField, ...]
-) -> tuple[int, str, list[float], int, str] | None:
-    """Tick, state, numbers, evaluations and remark of a line without finger and checksum; `None` if it is no telemetry
-    with these fields."""
+@dataclass(frozen=True)
+class ParsedLine:
+    """A line without its finger and times."""
+
+    tick: int
+    state: str
+    numbers: tuple[float, ...]
+    """In the order of a line, setpoint to current."""
+    evaluations: int
+    remark: str
+    of_flux: tuple[float, ...]
+    """Flux and surface."""
+    known: str
+
+
+def parse_line(content: str, fields: tuple[TelemetryField, ...]) -> ParsedLine | None:
+    """A line without finger and checksum; `None` if it is no telemetry with these fields."""
     words = content.split(" ")
     count = len(fields)
-    # A line with all fields may have more words from a later firmware.
-    if len(words) < count + 4 or (count < len(TELEMETRY_FIELDS) and len(words) != count + 4):
+    # A line for which no fields are chosen may have more words from a later firmware.
+    if len(words) < count + 4 or (fields != TELEMETRY_FIELDS and len(words) != count + 4):
         return None
     if words[0] != "T" or words[2] not in _STATES:
         return None
-    numbers = [_NAN] * 8
+    numbers = [_NAN] * len(_NUMBERS)
     evaluations = -1
+    known = ""
     try:
         tick = int(words[1])
         for field, word in zip(fields, words[3:]):
@@ -124,13 +147,23 @@ def parse_line(
                 continue
             if field == "evaluations":
                 evaluations = int(word)
+            elif field == "finger":
+                known = word
             else:
                 numbers[_COLUMN[field]] = float(word)
     except ValueError:
         return None
     if not 0 <= tick < 1 << 32:
         return None
-    return tick, words[2], numbers, evaluations, words[3 + count]
+    return ParsedLine(
+        tick=tick,
+        state=words[2],
+        numbers=tuple(numbers[:-_OF_FLUX]),
+        evaluations=evaluations,
+        remark=words[3 + count],
+        of_flux=tuple(numbers[-_OF_FLUX:]),
+        known=known,
+    )
 
 
 class TelemetryBuffer:

@@ -48,6 +48,8 @@ class EventKind(str, Enum):
     """A course has ended by itself."""
     TRIGGER = "trigger"
     """A rising edge at the trigger input."""
+    FLUX = "flux"
+    """What is known of the finger by its heat flux has changed."""
 
     def __str__(self) -> str:
         return self.value
@@ -60,6 +62,21 @@ Material = Literal[
 
 AssumedFinger = Literal["mean", "mean-on-pad", "thesis"]
 """Finger that the device assumes for the one that touches."""
+
+FingerKnowledge = Literal[
+    "learning",
+    "trusted",
+    "no-code",
+    "sensor-range",
+    "sensor",
+    "between",
+    "wet",
+    "contact",
+    "unexplained",
+    "arithmetic",
+    "late",
+]
+"""What is known of the finger by its heat flux. With all but the first two, set-points assume the finger of `assume_finger`."""
 
 ContactMode = Literal["contact", "semi-infinite"]
 """Set-point with contact resistance, or for perfect contact."""
@@ -76,14 +93,25 @@ PlayEnd = Literal["hold", "neutral"]
 SlabBack = Literal["insulated", "held"]
 """What is behind a slab: no heat passes, or the temperature stays."""
 
-TriggerEvent = Literal["land", "lift", "start", "end"]
+TriggerEvent = Literal["land", "lift", "start", "end", "flux"]
 """Events that can give a pulse at the trigger output."""
 
 Thermistor = Literal["display", "check", "sink", "skin", "room"]
 """Thermistors; `check` is the second one of the display."""
 
 TelemetryField = Literal[
-    "setpoint", "display", "sink", "skin", "room", "force", "demand", "current", "evaluations"
+    "setpoint",
+    "display",
+    "sink",
+    "skin",
+    "room",
+    "force",
+    "demand",
+    "current",
+    "evaluations",
+    "flux",
+    "surface",
+    "finger",
 ]
 """Fields of telemetry that `stream` can choose."""
 
@@ -98,4 +126,11 @@ TELEMETRY_FIELDS: tuple[TelemetryField, ...] = (
     "current",
     "evaluations",
 )
+"""The fields of a line if none is chosen, in its order."""
+
+FLUX_FIELDS: tuple[TelemetryField, ...] = ("flux", "surface", "finger")
+"""The fields of the heat-flux sensor, which follow the others in a line if they are chosen: flux, estimate of the display's
+surface, and what is known of the finger."""
+
+ALL_FIELDS = TELEMETRY_FIELDS + FLUX_FIELDS
 """All fields, in the order of a line."""

@@ -95,7 +95,7 @@ pub use trigger_input::TriggerInput;
 pub use trigger_output::TriggerOutput;
 pub use trip_cause_recorder::TripCauseRecorder;
 pub use window_watchdog::WindowWatchdog;
-pub use wiring::{FINGERS, FingerPowerStage};
+pub use wiring::{FINGERS, FingerPowerStage, FluxConverter};
 
 use super::{Console, ControlLoop};
 use reset_cause::ResetCause;
@@ -177,7 +177,7 @@ fn create_and_restore_device(
 ) -> DeviceInPlace<FINGERS> {
     let mut device = DeviceInPlace::from_stations(create_stations(places, cause));
     match &storage.settings {
-        Ok(Some(settings)) => device.restore_settings(settings),
+        Ok(Some(stored)) => device.restore_settings(&stored.fingers),
         Ok(None) => {}
         Err(_) => device.trip_all(Fault::SettingsCorrupt),
     }
@@ -224,7 +224,7 @@ fn create_handler(
     storage: &SaveAndLoadResult,
 ) -> &'static mut CommandHandler<FINGERS> {
     place.write(match &storage.settings {
-        Ok(Some(settings)) => CommandHandler::from_stored(settings),
+        Ok(Some(stored)) => CommandHandler::from_stored(stored),
         Ok(None) | Err(_) => CommandHandler::new(Settings::default()),
     })
 }
@@ -387,10 +387,17 @@ impl Board {
             &mut rcc,
         );
 
+        #[cfg(not(feature = "five-fingers"))]
+        let flux_converter =
+            FluxConverter::new(peripherals.ADC2, gpioc.pc5.into_analog(), &mut rcc);
+        #[cfg(feature = "five-fingers")]
+        let flux_converter = wiring::NoFluxConverter;
+
         Self {
             device,
             control_loop: ControlLoop {
                 sampler,
+                flux_converter,
                 stages,
                 comparator_side: ComparatorSide::new(gpiob.pb2),
                 emergency_stop: EmergencyStop::new(gpioc.pc13),

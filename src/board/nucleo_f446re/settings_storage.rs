@@ -15,7 +15,7 @@ use core::sync::atomic::{AtomicU8, AtomicU32};
 use cortex_m::peripheral::SCB;
 use stm32f4xx_hal::pac::FLASH;
 use thermal_display::settings::{
-    RECORD_MAX_BYTES, SettingsRecord, SettingsStore, StoreError, StoredSettings,
+    RECORD_MAX_BYTES, SettingsRecord, SettingsStore, StoreError, StoredDevice,
     decode_settings_record,
 };
 
@@ -29,9 +29,9 @@ const SAVE_PENDING_MAGIC: u32 = 0x7361_7665;
 /// Number of program starts that may try to store the same settings. If a reset interrupts both
 /// attempts, there is no third, because the storing itself may cause the resets.
 const MAX_SAVE_ATTEMPTS: u32 = 2;
-/// Delay before the device restarts to store settings: 2.5 ms, in cycles of 180 MHz. The longest last
-/// line to the host, and the two bytes before it in the USART, take 2.3 ms at 1 Mbaud.
-const LAST_LINE_DELAY_CYCLES: u32 = 180_000_000 / 10_000 * 25;
+/// Delay before the device restarts to store settings: 3 ms, in cycles of 180 MHz. The longest last
+/// line to the host, and the two bytes before it in the USART, take 2.9 ms at 1 Mbaud.
+const LAST_LINE_DELAY_CYCLES: u32 = 180_000_000 / 1000 * 3;
 
 /// Settings in RAM that a reset does not clear, which the next start is to store in flash.
 struct PendingSave {
@@ -112,9 +112,9 @@ impl fmt::Display for PendingSaveError {
 /// What [`save_pending_and_load`] has found and done at the start: the settings that the flash
 /// holds, and whether waiting settings were stored.
 pub struct SaveAndLoadResult {
-    /// The settings of all fingers that the flash holds; `None` if it holds none or factory
+    /// The settings of all fingers and the persons that the flash holds; `None` if it holds none or factory
     /// defaults were stored. An error if the flash cannot be read or holds no valid settings.
-    pub settings: Result<Option<[StoredSettings; FINGERS]>, SettingsStoreError>,
+    pub settings: Result<Option<StoredDevice<FINGERS>>, SettingsStoreError>,
     /// Whether the settings that waited in RAM were stored in flash at this start; `None` if none
     /// waited.
     pub save_result: Option<Result<(), PendingSaveError>>,
@@ -153,7 +153,7 @@ pub fn save_pending_and_load(registers: &FLASH) -> SaveAndLoadResult {
     }
 }
 
-/// Waits 2.5 ms for the end of the last line to the host, copies `bytes`, the record of the settings,
+/// Waits 3 ms for the end of the last line to the host, copies `bytes`, the record of the settings,
 /// to RAM that a reset does not clear, and resets the device. The next start stores the settings in
 /// flash. The bridges must be off, and the DMA stream must already have the last line.
 pub fn restart_to_save(bytes: &SettingsRecord) -> ! {

@@ -10,22 +10,27 @@ use super::session_messages::{
 };
 use super::stability_margins::StabilityMargins;
 use super::tile_identification::tile_from_normal_equations;
-use thermal_device::command::{self, Command, Refused};
+use contact_model::material::MATERIALS;
+use thermal_device::command::{self, ChosenMaterial, Command, Refused};
 use thermal_device::control::ControlParameters;
 use thermal_device::identification::{NORMAL_EQUATION_AND_STATISTICS_ROWS, NormalEquationRow};
+use thermal_device::learning::FluxParameters;
 use thermal_device::sense::CalibrationTables;
 use thermal_settings::{
-    CALIBRATED_ADC_BORDER_COUNT, Calibration, Correction, FIRST_CALIBRATED_ADC_BORDER_INDEX,
-    Settings, Tile,
+    CALIBRATED_ADC_BORDER_COUNT, Calibration, Correction, DisplaySurface,
+    FIRST_CALIBRATED_ADC_BORDER_INDEX, FluxSensor, Settings, Tile,
 };
 
 /// Number of lines of the settings that hold the converter's steps at 13 borders of its segments, up to seven in each
 /// line: 2.
 const CONVERTER_STEPS_LINE_COUNT: usize =
     CALIBRATED_ADC_BORDER_COUNT.div_ceil(CONVERTER_STEPS_PER_LINE_MAX);
-/// Number of lines that hold all commissioned settings of a finger, 8: two for the converter's 13 steps, one for the
-/// correction of each of the five thermistors, and one for the tile.
-pub const SETTINGS_LINE_COUNT: usize = CONVERTER_STEPS_LINE_COUNT + THERMISTOR_WORDS.len() + 1;
+/// Number of lines that hold all commissioned settings of a finger without a heat-flux sensor whose display has the nominal
+/// surface, 8: two for the converter's 13 steps, one for the correction of each of the five thermistors, and one for the tile.
+const LINE_COUNT_ALWAYS: usize = CONVERTER_STEPS_LINE_COUNT + THERMISTOR_WORDS.len() + 1;
+/// Number of lines that hold all commissioned settings of a finger, with one for a heat-flux sensor and one for the surface of the
+/// display.
+pub const SETTINGS_LINE_COUNT_MAX: usize = LINE_COUNT_ALWAYS + 2;
 
 /// A function that executes a command on the station of the session's finger, and returns the station's reply or
 /// refusal. The control tick may be locked out while it runs, so it must end after a bounded, short time.
@@ -72,6 +77,7 @@ impl CommissioningSession {
     /// - [`SessionError::Refused`]: the station refuses a command that the request needs.
     /// - [`SessionError::Identification`]: `tune result`, but the recorded response gives no tile.
     /// - [`SessionError::Point`]: the calibration point is rejected.
+    /// - [`SessionError::ContactPair`]: the surface of the display does not suit the contact model with the chosen material.
     pub fn answer(
         &mut self,
         request: SessionRequest,
@@ -112,13 +118,32 @@ impl CommissioningSession {
                 )?;
             }
             SessionRequest::Set(Setting::Tile(tile)) => self.set_tile(tile, &mut execute)?,
+            SessionRequest::Set(Setting::FluxSensor(sensor)) => {
+                self.set_flux_sensor(sensor, &mut execute)?;
+            }
+            SessionRequest::Flux => {
+                let command::Reply::Flux(state) = execute(Command::Flux)? else {
+                    return Ok(SessionReply::Flux(None));
+                };
+                return Ok(SessionReply::Flux(self.settings.flux_sensor.zip(state)));
+            }
+            SessionRequest::Set(Setting::DisplaySurface(display)) => {
+                self.set_display_surface(display, &mut execute)?;
+            }
+            SessionRequest::DisplaySurface => {
+                return Ok(SessionReply::DisplaySurface(self.settings.display));
+            }
+            SessionRequest::FluxZero => self.take_flux_zero(&mut execute)?,
             SessionRequest::TuneResult => {
                 self.identify_and_set_tile(&mut execute)?;
                 return Ok(self.tile_and_margins_reply());
             }
             SessionRequest::Margins => return Ok(self.tile_and_margins_reply()),
             SessionRequest::CountSettingsLines => {
-                return Ok(SessionReply::SettingsLines(SETTINGS_LINE_COUNT));
+                let flux_sensor = usize::from(self.settings.flux_sensor.is_some());
+                let display = usize::from(self.settings.display != DisplaySurface::NOMINAL);
+                let lines = LINE_COUNT_ALWAYS + flux_sensor + display;
+                return Ok(SessionReply::SettingsLines(lines));
             }
             SessionRequest::SettingsLine(index) => {
                 return Ok(SessionReply::Setting(self.setting_at_line_index(index)));
@@ -156,6 +181,54 @@ impl CommissioningSession {
         execute(Command::Retune(ControlParameters::new(&settings)))?;
         self.settings = settings;
         Ok(())
+    }
+
+    /// Replaces the heat-flux sensor in the station and in this session's settings (in RAM; only `save` writes them to flash).
+    /// If the station refuses it, because it presents an object, nothing changes.
+    #[inline(never)]
+    fn set_flux_sensor(
+        &mut self,
+        sensor: Option<FluxSensor>,
+        execute: &mut impl ExecuteOnStation,
+    ) -> Result<(), Refused> {
+        let parameters = sensor.as_ref().map(FluxParameters::new);
+        execute(Command::FluxSensor(parameters))?;
+        self.settings.flux_sensor = sensor;
+        Ok(())
+    }
+
+    /// Replaces the surface of the display in the station and in this session's settings (in RAM; only `save` writes them to
+    /// flash). If the station refuses it, because it presents an object, or the contact model cannot represent it with the chosen
+    /// material, nothing changes.
+    #[inline(never)]
+    fn set_display_surface(
+        &mut self,
+        display: DisplaySurface,
+        execute: &mut impl ExecuteOnStation,
+    ) -> Result<(), SessionError> {
+        let [(_, any), ..] = MATERIALS;
+        let material = match execute(Command::MaterialProperties)? {
+            command::Reply::Material(Some(material)) => material,
+            _ => any,
+        };
+        let chosen = ChosenMaterial::new("", &material, display.surface())
+            .map_err(SessionError::ContactPair)?;
+        execute(Command::DisplaySurface(chosen.pair))?;
+        self.settings.display = display;
+        Ok(())
+    }
+
+    /// Takes the mean code of half a second without flux as the zero of the heat-flux sensor.
+    #[inline(never)]
+    fn take_flux_zero(&mut self, execute: &mut impl ExecuteOnStation) -> Result<(), Refused> {
+        const NO_SENSOR: Refused = Refused::NoFluxSensor("flux zero");
+        let command::Reply::FluxZero(code) = execute(Command::FluxZero)? else {
+            return Err(NO_SENSOR);
+        };
+        let mut sensor = self.settings.flux_sensor.ok_or(NO_SENSOR)?;
+        sensor.zero_counts = code.mean_counts();
+        let sensor = FluxSensor::from_array_rounded(sensor.to_array());
+        self.set_flux_sensor(Some(sensor), execute)
     }
 
     #[inline(never)]
@@ -276,8 +349,8 @@ impl CommissioningSession {
         })
     }
 
-    /// The content of one line of the settings by its index, 0 to 7: two lines of converter steps, five corrections,
-    /// the tile.
+    /// The content of one line of the settings by its index, 0 to 9: two lines of converter steps, five corrections,
+    /// the tile, then a heat-flux sensor if there is one, and the surface of the display.
     #[inline(never)]
     fn setting_at_line_index(&self, index: usize) -> Setting {
         let calibration = &self.settings.calibration;
@@ -294,7 +367,11 @@ impl CommissioningSession {
         let sensor = index - CONVERTER_STEPS_LINE_COUNT;
         match calibration.corrections.get(sensor) {
             Some(correction) => Setting::Correction(sensor, *correction),
-            None => Setting::Tile(self.settings.tile),
+            None if index < LINE_COUNT_ALWAYS => Setting::Tile(self.settings.tile),
+            None => match self.settings.flux_sensor {
+                Some(sensor) if index == LINE_COUNT_ALWAYS => Setting::FluxSensor(Some(sensor)),
+                _ => Setting::DisplaySurface(self.settings.display),
+            },
         }
     }
 }

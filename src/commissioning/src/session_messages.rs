@@ -1,8 +1,9 @@
 //! Requests to a commissioning session, its replies and its errors.
 
-use thermal_device::command::Refused;
+use contact_model::fixed_point::ContactPairError;
+use thermal_device::command::{FluxState, Refused};
 use thermal_device::sense::THERMISTOR_COUNT;
-use thermal_settings::{Correction, Tile};
+use thermal_settings::{Correction, DisplaySurface, FluxSensor, Tile};
 
 use crate::{IdentificationError, PointError, StabilityMargins};
 
@@ -42,7 +43,13 @@ pub enum SessionRequest {
     /// `margins`: reports the present parameters of the tile, and with them the phase margin and the gain margin of the
     /// temperature loop that the law `pi` closes.
     Margins,
-    /// `set ...`: replaces the part of the settings that the line holds, and uses it from the next tick on. A line with
+    /// `flux`: reports the heat-flux sensor, its flux, and what is known of the finger by it.
+    Flux,
+    /// `flux zero`: takes the mean of the sensor's code over the last half second as its zero.
+    FluxZero,
+    /// `surface`: reports the surface of the display.
+    DisplaySurface,
+    /// `set ...`, `flux set ...`, `flux none`, `surface set ...` and `surface nominal`: replaces the part of the settings that the line holds, and uses it from the next tick on. A line with
     /// a correction also removes the calibration points of its thermistor; a line with steps removes those of both
     /// display thermistors.
     Set(Setting),
@@ -51,8 +58,8 @@ pub enum SessionRequest {
 /// What a commissioning session replies to a request that it has executed; [`SessionError`] is the reply to the others.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SessionReply {
-    /// The request was executed, and there is nothing to report: reply to [`SessionRequest::ClearCalibration`] and
-    /// [`SessionRequest::Set`].
+    /// The request was executed, and there is nothing to report: reply to [`SessionRequest::ClearCalibration`],
+    /// [`SessionRequest::FluxZero`] and [`SessionRequest::Set`].
     Done,
     /// The present parameters of the tile, and with them the stability margins of the temperature loop that the law
     /// `pi` closes: reply to [`SessionRequest::TuneResult`] and [`SessionRequest::Margins`].
@@ -66,6 +73,10 @@ pub enum SessionReply {
         /// reference thermometer, over all its calibration points.
         worst_mk: f64,
     },
+    /// The heat-flux sensor with what its station knows by it; `None` if it is not fitted: reply to [`SessionRequest::Flux`].
+    Flux(Option<(FluxSensor, FluxState)>),
+    /// The surface of the display: reply to [`SessionRequest::DisplaySurface`].
+    DisplaySurface(DisplaySurface),
     /// Number of lines that hold the settings: reply to [`SessionRequest::CountSettingsLines`].
     SettingsLines(usize),
     /// One line of the settings: reply to [`SessionRequest::SettingsLine`].
@@ -93,6 +104,12 @@ pub enum Setting {
     /// relative to the cooling, 1/A), leak (rate at which a temperature deviation decays, 1/s), lag of the display's
     /// thermistor (s) and dead time (s).
     Tile(Tile),
+    /// `flux GAIN ZERO LAG RESISTANCE`: the heat-flux sensor's gain (counts per W/m²), zero (counts), lag (ms) and thermal
+    /// resistance (mm² K/W); `flux none` without one.
+    FluxSensor(Option<FluxSensor>),
+    /// `surface CONDUCTIVITY ROUGHNESS SLOPE`: the display's conductivity (W/mK), roughness (µm) and slope (rad); `surface nominal`
+    /// for those of the reference design.
+    DisplaySurface(DisplaySurface),
 }
 
 /// Why a commissioning session rejects a request. The settings are unchanged then.
@@ -104,6 +121,8 @@ pub enum SessionError {
     Identification(IdentificationError),
     /// The calibration point is rejected; the value is the reason.
     Point(PointError),
+    /// The contact model cannot represent the chosen material on this surface of the display; the value is the reason.
+    ContactPair(ContactPairError),
 }
 
 impl From<Refused> for SessionError {

@@ -4,15 +4,19 @@
 
 use core::fmt;
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::fixed_point::{
-    Body, Celsius, ContactPair, ContactPairError, FingerBody, to_fixed,
+    Body, Celsius, ContactPair, ContactPairError, FingerBody, OwnContactLaw, to_fixed,
 };
 use contact_model::material::{Material, SKIN, Surface};
 use fixed::types::U16F16;
+use thermal_learner::Flux;
+use thermal_settings::Person;
 
 use crate::control::{ControlParameters, Law};
 use crate::events::EventKinds;
 use crate::identification::{AbortReason, NormalEquationRow};
+use crate::learning::{FingerKnowledge, FluxParameters, PersonState, RestingCode};
 use crate::reference::ContactModel;
 use crate::safety::{Fault, PredictedDose, SelfTestReport, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, Samples, ThermistorAverage};
@@ -140,6 +144,32 @@ impl AssumedFinger {
     }
 }
 
+/// A contact law that the host has chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChosenContactLaw {
+    /// The law as the host told it.
+    pub told: ContactLaw,
+    /// The same for the control path; `None` for Eq. 6-8.
+    pub own: Option<OwnContactLaw>,
+}
+
+impl ChosenContactLaw {
+    /// Eq. 6-8.
+    pub const NOMINAL: Self = Self {
+        told: ContactLaw::NOMINAL,
+        own: None,
+    };
+
+    /// Computes the constants of a law. Uses `f64`, which is slow on the microcontroller.
+    #[must_use]
+    pub fn new(told: ContactLaw) -> Self {
+        Self {
+            told,
+            own: OwnContactLaw::new(&told, TICK_S),
+        }
+    }
+}
+
 /// A command or query of the host to one finger's station. All values are within their ranges; whether the station's
 /// state permits the command is decided only when the station executes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,6 +196,10 @@ pub enum Command<'a> {
     /// Choose the finger that is assumed for the one that touches. If that changes it, a finger that touches begins a new
     /// contact. `None` changes nothing: the answer is the assumed finger.
     Finger(Option<AssumedFinger>),
+    /// Choose the contact law of the finger; choosing another finger makes it the nominal one. A finger that touches begins a new
+    /// contact, and with a heat-flux sensor the finger is learnt anew. Refused for the thesis's finger. `None` changes nothing:
+    /// the answer is the law in use.
+    ContactLaw(Option<ChosenContactLaw>),
     /// Choose the object's temperature before contact, °C; `None` takes the room's. If a finger touches, a new contact
     /// begins.
     Object(Option<Celsius>),
@@ -233,6 +267,24 @@ pub enum Command<'a> {
     /// still running ends without a result. Refused while an object is presented, because the finger would feel the
     /// change, and in the self-test, which a step of the readings would disturb.
     Calibrate(CalibrationTables),
+    /// Use this heat-flux sensor from the next tick on, or none, and learn anew with it. Refused while an object is presented,
+    /// because the finger would feel the change.
+    FluxSensor(Option<FluxParameters>),
+    /// The display has another surface from now on: contact constants of skin, chosen material (or any, before a choice) and
+    /// this surface. What was learnt of the finger is forgotten. Refused while an object is presented, because the finger would
+    /// feel the change.
+    DisplaySurface(ContactPair),
+    /// Begin to learn the finger of this person, or of an unknown one for `None`. A finger that touches begins a new contact.
+    /// Refused without a heat-flux sensor, and for the thesis's finger.
+    ChoosePerson(Option<Person>),
+    /// Report the chosen person, and what was learnt of the finger. Refused without a heat-flux sensor.
+    Person,
+    /// Report the flux, and what is known of the finger by it. Never refused.
+    Flux,
+    /// Report the mean code of the heat-flux sensor over half a second without flux. Refused while an object is presented, without
+    /// a sensor, while a finger touches, while display and room differ by more than 0.3 K, with codes that cannot be right, and
+    /// less than half a second after the last contact.
+    FluxZero,
     /// Use these gains and this model of the tile from the next tick on; an identification of the tile ends. Refused
     /// while an object is presented, because the finger would feel the change.
     Retune(ControlParameters),
@@ -255,6 +307,8 @@ pub enum Reply {
     Material(Option<Material>),
     /// Answer to [`Command::Finger`] with `None`: the assumed finger's word in the protocol.
     Finger(&'static str),
+    /// Answer to [`Command::ContactLaw`] with `None`: the law in use.
+    ContactLaw(ContactLaw),
     /// Answer to [`Command::Cause`]: cause of the present trip or, after `clear`, of the last one. `None` if the
     /// station has not tripped since the start of the program, and was not tripped when it started.
     Cause(Option<TripCause>),
@@ -265,8 +319,25 @@ pub enum Reply {
     /// Answer to [`Command::Average`]: mean of one thermistor's sums of 16 conversions over 512 ticks of 1 ms, in
     /// converter counts before any calibration, and whether the thermistor was steady.
     Average(ThermistorAverage),
+    /// Answer to [`Command::Flux`]; `None` without a heat-flux sensor.
+    Flux(Option<FluxState>),
+    /// Answer to [`Command::Person`].
+    Person(PersonState),
+    /// Answer to [`Command::FluxZero`].
+    FluxZero(RestingCode),
     /// Answer to [`Command::NormalEquation`]: one row of the normal equations of the tile's identification.
     NormalEquation(NormalEquationRow),
+}
+
+/// What a station knows by its heat-flux sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FluxState {
+    /// Flux out of the finger in the last tick, W/m²; `None` if the sensor's code cannot be right.
+    pub flux: Option<Flux>,
+    /// Estimated temperature of the display's surface under the finger, °C, then; `None` without an estimate of the plate.
+    pub surface: Option<Celsius>,
+    /// What is known of the finger.
+    pub knowledge: FingerKnowledge,
 }
 
 /// Why a station refuses a command. A refused command changes nothing, except for a `clear` that finds a second fault
@@ -280,6 +351,8 @@ pub enum Refused {
     Testing,
     /// `start` was sent before the first command `material`, so there is no object to present.
     NoMaterial,
+    /// The command with this name, `contact` or `person`, was sent, and the assumed finger is the thesis's.
+    NeedsLayeredFinger(&'static str),
     /// `start` was sent while an object is already presented.
     AlreadyStarted,
     /// The command with this name, `hold` or `play`, was sent in a state that does not drive the display (in tripped the reply is
@@ -288,11 +361,25 @@ pub enum Refused {
     /// `tune` was sent in a state that does not drive the display (in tripped the reply is [`Self::Tripped`]), while an object or
     /// a course is presented, or without a valid reading of the sink.
     TuneNeedsArmed,
-    /// The command was [`Command::Average`], [`Command::Calibrate`] or [`Command::Retune`], and an object or a course is presented:
+    /// The command was [`Command::Average`], [`Command::Calibrate`], [`Command::Retune`], [`Command::FluxSensor`],
+    /// [`Command::DisplaySurface`] or [`Command::FluxZero`], and an object or a course is presented:
     /// the finger would feel the change, or disturb the average.
     Presenting,
-    /// `tune` was sent while a finger touches the display; the finger's heat would distort the result.
-    Touched,
+    /// The command with this name, `tune` or `flux zero`, was sent while a finger touches the display; the finger's heat would
+    /// distort the result.
+    Touched(&'static str),
+    /// The command with this name, `flux zero` or `person`, was sent, and no heat-flux sensor is fitted.
+    NoFluxSensor(&'static str),
+    /// The command was [`Command::FluxZero`], and the sensor's code cannot be right.
+    FluxSensorFault,
+    /// The command was [`Command::FluxZero`], and display and room, °C, given here unless their reading is invalid, differ by more
+    /// than 0.3 K, so that heat flows between display and air.
+    DisplayNotAtRoom {
+        /// Temperature of the display.
+        display: Option<Celsius>,
+        /// Temperature of the room.
+        room: Option<Celsius>,
+    },
     /// A row of the normal equations was requested, but no `tune` has been sent since the last `arm` or `hold`, or
     /// there is no row with this index.
     NotTuned,
@@ -301,7 +388,8 @@ pub enum Refused {
     /// A row of the normal equations was requested, but the identification of the tile has ended early, for this
     /// reason, and has no result.
     TuneAborted(AbortReason),
-    /// The mean of a thermistor was requested before 512 ticks (0.5 s) of samples had been added since the start of the
+    /// The zero of the heat-flux sensor was requested within half a second after a contact or the start of the sensor. Or the
+    /// mean of a thermistor was requested before 512 ticks (0.5 s) of samples had been added since the start of the
     /// program or, if later, since the last accepted `start`. Ticks in which an object is presented are not added,
     /// because a finger may touch the display then.
     TooEarly,

@@ -6,10 +6,12 @@ use core::borrow::BorrowMut;
 use crate::command::{Command, Refused, Reply, WithSourceFinger};
 use crate::drive::BoardOutputs;
 use crate::events::UnsolicitedReport;
+use crate::learning::FingerKnowledge;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
 use crate::{FingerIndex, Station, TriggerEdge};
+use thermal_learner::{LearnerInput, LearnerOutput};
 use thermal_settings::{Settings, StoredSettings};
 
 /// The whole device without its hardware: one [`Station`] for each of its `FINGERS` fingers. The stations share no
@@ -92,6 +94,36 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     /// must set at the finger's bridge and comparator until the next tick.
     pub fn step_finger(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {
         self.station_mut(finger).step(samples)
+    }
+
+    /// Whether a finger's station has a heat-flux sensor, by the settings.
+    #[must_use]
+    pub fn finger_has_flux_sensor(&self, finger: FingerIndex<FINGERS>) -> bool {
+        self.station(finger).has_flux_sensor()
+    }
+
+    /// Notes the code of a finger's heat-flux sensor, 0 to 4095; `None` if its conversion has not ended, as in the first tick. To be
+    /// called before each tick of a finger that [has such a sensor](Self::finger_has_flux_sensor), and for no other.
+    /// Returns whether the finger's learner has something to work on.
+    #[inline]
+    pub fn note_flux_code(&mut self, finger: FingerIndex<FINGERS>, code: Option<u16>) -> bool {
+        self.station_mut(finger).note_flux_code(code)
+    }
+
+    /// What the learner of a finger must work on, once after every tenth tick with a flux code.
+    pub fn take_learner_input(&mut self, finger: FingerIndex<FINGERS>) -> Option<LearnerInput> {
+        self.station_mut(finger).take_learner_input()
+    }
+
+    /// Takes the learner's answer, to be given before the tenth tick after its input was taken. It is applied in that tick.
+    pub fn put_learner_output(&mut self, finger: FingerIndex<FINGERS>, output: &LearnerOutput) {
+        self.station_mut(finger).put_learner_output(output);
+    }
+
+    /// What is known of the finger that touches.
+    #[must_use]
+    pub fn finger_knowledge(&self, finger: FingerIndex<FINGERS>) -> FingerKnowledge {
+        self.station(finger).finger_knowledge()
     }
 
     /// Trips the stations of all fingers by a fault that the board has found outside of a control tick, such as an

@@ -23,16 +23,19 @@ pub enum DeviceEventKind {
     CourseEnded,
     /// An edge at the trigger input.
     Trigger,
+    /// What is known of the finger by its heat flux has changed.
+    FingerKnowledge,
 }
 
 impl DeviceEventKind {
     /// All kinds with their words in the protocol.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 5] = [
+    pub const PROTOCOL_WORDS: [(&'static str, Self); 6] = [
         ("land", Self::Land),
         ("lift", Self::Lift),
         ("start", Self::CourseStarted),
         ("end", Self::CourseEnded),
         ("trigger", Self::Trigger),
+        ("flux", Self::FingerKnowledge),
     ];
 
     /// Its word in the protocol.
@@ -44,6 +47,7 @@ impl DeviceEventKind {
             Self::CourseStarted => "start",
             Self::CourseEnded => "end",
             Self::Trigger => "trigger",
+            Self::FingerKnowledge => "flux",
         }
     }
 }

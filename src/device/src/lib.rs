@@ -14,6 +14,7 @@ pub mod estimate;
 pub mod events;
 mod finger_index;
 pub mod identification;
+pub mod learning;
 mod low_pass;
 pub mod pi;
 mod pwm_period;
@@ -34,6 +35,7 @@ pub use pwm_period::{
 pub use state_name::StateName;
 pub use station::Station;
 pub use telemetry::{Telemetry, TelemetryFields};
+pub use thermal_learner::Flux;
 pub use thermal_settings::{TICK_HZ, TICK_S};
 pub use trigger_edge::TriggerEdge;
 

@@ -11,8 +11,8 @@ use crate::drive::Current;
 pub struct TelemetryFields(u16);
 
 impl TelemetryFields {
-    /// The fields in the order of the line.
-    pub const NAMES: [&'static str; 9] = [
+    /// The fields in the order of the line. The last [`NAMED_ONLY`](Self::NAMED_ONLY) are in a line only if the host names them.
+    pub const NAMES: [&'static str; 12] = [
         "setpoint",
         "display",
         "sink",
@@ -22,16 +22,23 @@ impl TelemetryFields {
         "demand",
         "current",
         "evaluations",
+        "flux",
+        "surface",
+        "finger",
     ];
+    /// Number of fields that lines without chosen fields do not have: those of the heat-flux sensor.
+    pub const NAMED_ONLY: usize = 3;
     /// No field.
     pub const NONE: Self = Self(0);
-    /// All fields.
-    pub const ALL: Self = Self((1 << Self::NAMES.len()) - 1);
+    /// The fields of a line for which the host has chosen none.
+    pub const DEFAULT: Self = Self((1 << (Self::NAMES.len() - Self::NAMED_ONLY)) - 1);
+    /// The fields that are in a line only if the host names them.
+    const NAMED: Self = Self(((1 << Self::NAMES.len()) - 1) & !Self::DEFAULT.0);
 
     /// The set with the field of this index, too.
     #[must_use]
     pub const fn with(self, index: usize) -> Self {
-        Self(self.0 | (1 << index) & Self::ALL.0)
+        Self(self.0 | (1 << index) & (Self::DEFAULT.0 | Self::NAMED.0))
     }
 
     /// Whether the field of this index is in the set.
@@ -39,9 +46,17 @@ impl TelemetryFields {
     pub const fn contains(self, index: usize) -> bool {
         self.0 & 1 << index != 0
     }
+
+    /// Whether a field of the heat-flux sensor is in the set.
+    #[must_use]
+    pub const fn has_flux_fields(self) -> bool {
+        self.0 & Self::NAMED.0 != 0
+    }
 }
 
-/// What one line of telemetry reports to the host: readings, set-point and current of one finger in one control tick.
+/// What one line of telemetry reports to the host: readings, set-point and current of one finger in one control tick. What the
+/// heat-flux sensor shows is asked for when the line is written ([`crate::command::Command::Flux`]): in here it would cost every
+/// tick 40 cycles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Telemetry {
     /// Number of the tick: ticks of 1 ms since the last reset; wraps after 49 days.

@@ -17,21 +17,24 @@ const BETWEEN_CONTACTS: Parameters = [0.05, 0.05, 0.1, 0.02, 0.07, 0.01];
 pub struct Estimate {
     /// The parameters.
     pub parameters: Parameters,
-    covariance: [Parameters; PARAMETERS],
+    /// Their covariance, symmetric.
+    pub covariance: [Parameters; PARAMETERS],
 }
 
 impl Estimate {
     /// What is known before the first contact.
-    pub fn prior() -> Self {
+    pub const PRIOR: Self = {
         let mut covariance = [[0.0; PARAMETERS]; PARAMETERS];
-        for (i, row) in covariance.iter_mut().enumerate() {
-            row[i] = 1.0;
+        let mut i = 0;
+        while i < PARAMETERS {
+            covariance[i][i] = 1.0;
+            i += 1;
         }
         Self {
             parameters: PRIOR,
             covariance,
         }
-    }
+    };
 
     /// Variances.
     pub fn variances(&self) -> Parameters {
@@ -60,7 +63,10 @@ impl Estimate {
         scale: &Scale,
     ) -> Option<f32> {
         let h = &measurement.regressors;
-        let ph = self.covariance.map(|row| dot(&row, h));
+        let mut ph = [0.0; PARAMETERS];
+        for (one, row) in ph.iter_mut().zip(&self.covariance) {
+            *one = dot(row, h);
+        }
         let s = variance_k2 + dot(&ph, h);
         // Neither for a sum that rounding has made negative nor for one that is not a number.
         if !(s >= variance_k2 && s < f32::MAX) {

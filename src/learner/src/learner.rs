@@ -1,18 +1,28 @@
 //! The learner: one finger on one display, window by window.
 
+use contact_model::fixed_point::WEIGHTS;
+
 use crate::estimate::Estimate;
 use crate::output::LearnerOutput;
-use crate::parameters::{Place, RESISTANCE, Scale};
+use crate::parameters::{Place, RESISTANCE, Scale, relative_weights};
+use crate::person::PersonPrior;
 use crate::regressors::{Lagged, Signals};
 use crate::sensor::FluxSensor;
+use crate::signals::BankOutput;
 use crate::trust::{Distrust, Judge, Trust};
-use crate::window::{Contact, LearnerInput, Resistance};
+use crate::window::{Contact, LearnerInput, Resistance, Restart};
 
-/// Ticks after landing from which a contact is learnt from: the display's surface and the sensor have then settled.
-const LEARNT_FROM_TICKS: u32 = 20;
-/// Up to these ticks after landing every window, and every second one, is learnt from; later every fourth.
+/// Ticks after landing from which a contact is learnt from.
+const LEARNT_FROM_TICKS: u32 = 10;
+/// Ticks after landing from which the display's surface and the sensor have settled.
+const SETTLED_TICKS: u32 = 20;
+/// Error of the model before that, K: small enough to show a contact resistance of half or twice the nominal one. No innovation is
+/// judged by it.
+const UNSETTLED_ERROR_K: f32 = 0.3;
+/// Up to these ticks after landing every window, every second one, and every fourth is learnt from; later every eighth.
 const EVERY_WINDOW_TICKS: u32 = 300;
 const EVERY_SECOND_TICKS: u32 = 1000;
+const EVERY_FOURTH_TICKS: u32 = 3000;
 /// Error of the model at landing, K. Its square grows in proportion to the time, so that each octave of time weighs alike.
 const MODEL_ERROR_K: f32 = 20e-3;
 /// Ticks in which the model's squared error at landing is added once more.
@@ -21,6 +31,8 @@ const MODEL_ERROR_TICKS: f32 = 50.0;
 const SURFACE_ERROR_K: f32 = 1.5e-3;
 /// Error of the sensor's zero, W/m²: two of its deviations.
 const ZERO_ERROR_W_M2: f32 = 7.0;
+/// Ticks of a contact after which the finger is well enough known to be stored.
+const STORED_FROM_TICKS: u32 = 8000;
 /// Part of the parameters that remains per window once the finger is distrusted.
 const REMAINING_IF_DISTRUSTED: f32 = 0.75;
 /// Unit of [`Resistance`], m² K/W.
@@ -29,35 +41,82 @@ const M2K_W_PER_BIT: f32 = 1e-6 / (1u32 << Resistance::FRAC_NBITS) as f32;
 /// Learns a finger from the flux into the display. All methods are total, take bounded time and do not panic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Learner {
+    place: Place,
     sensor: FluxSensor,
+    person: Option<PersonPrior>,
     scale: Scale,
     signals: Signals,
-    estimate: Estimate,
+    pub(crate) estimate: Estimate,
     judge: Judge,
     /// Of the present contact, modulo 256.
     windows_in_contact: Option<u8>,
+    /// Ticks since landing at the end of the last window with contact.
+    ticks_since_landing: u32,
+    /// Contacts since the restart or the last distrust that were trusted and long enough to be stored.
+    stored_contacts: u8,
+    /// Whether the estimate has changed since the last output. Most windows without contact and most of a long one leave it.
+    has_changed: bool,
+    output: LearnerOutput,
+    /// Its weights.
+    weights: BankOutput,
+}
+
+impl Default for Learner {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Learner {
-    /// A learner of a finger that is at `place` before its contacts.
+    /// A learner for an input with a [`Restart`], which must be its first.
     #[must_use]
-    pub fn new(sensor: FluxSensor, place: Place) -> Self {
+    pub const fn new() -> Self {
+        Self::of_unknown_finger(Place::Air, FluxSensor::UNKNOWN)
+    }
+
+    const fn of_unknown_finger(place: Place, sensor: FluxSensor) -> Self {
         Self {
-            scale: Scale::new(place, sensor.lag_deviation),
+            scale: Scale::new(place, sensor.lag_deviation()),
+            place,
             sensor,
-            signals: Signals::default(),
-            estimate: Estimate::prior(),
+            person: None,
+            signals: Signals::NEW,
+            estimate: Estimate::PRIOR,
             judge: Judge::NEW,
             windows_in_contact: None,
+            ticks_since_landing: 0,
+            stored_contacts: 0,
+            has_changed: true,
+            output: LearnerOutput::MEAN,
+            weights: [1.0; WEIGHTS],
         }
     }
 
+    pub(crate) fn begin(restart: Restart) -> Self {
+        let mut learner = Self::of_unknown_finger(restart.place, restart.sensor);
+        learner.person = restart.person;
+        learner.estimate = learner.prior();
+        learner.weights = relative_weights(&learner.estimate.parameters);
+        learner
+    }
+
+    /// What is known of the finger before its contacts.
+    fn prior(&self) -> Estimate {
+        self.person.map_or(Estimate::PRIOR, |person| {
+            person.estimate(self.place, &self.scale)
+        })
+    }
+
     /// Takes one window's measurements, and returns what is known of the finger after it.
-    pub fn advance(&mut self, input: &LearnerInput) -> LearnerOutput {
-        if let Some(place) = input.restart {
-            *self = Self::new(self.sensor, place);
+    pub fn advance(&mut self, input: &LearnerInput) -> &LearnerOutput {
+        if let Some(restart) = input.restart {
+            *self = Self {
+                output: self.output,
+                ..Self::begin(restart)
+            };
         }
         let lagged = self.signals.advance(input, &self.sensor);
+        let mut person = None;
         match &input.contact {
             Some(contact) => {
                 if self.windows_in_contact.is_none() {
@@ -67,6 +126,10 @@ impl Learner {
                     .windows_in_contact
                     .map_or(1, |windows| windows.wrapping_add(1));
                 self.windows_in_contact = Some(windows);
+                self.ticks_since_landing = contact.ticks_since_landing;
+                if input.flux_w_m2.is_none() {
+                    self.judge.distrust(Distrust::Sensor);
+                }
                 let is_learnt_from =
                     contact.is_steady && contact.ticks_since_landing >= LEARNT_FROM_TICKS;
                 if is_learnt_from && !matches!(self.judge.trust(), Trust::Mean(_)) {
@@ -76,19 +139,33 @@ impl Learner {
             None => {
                 if self.windows_in_contact.take().is_some() {
                     self.estimate.widen(&self.scale);
+                    person = self.person_after_contact();
+                    self.has_changed = true;
                 }
             }
         }
         if let Trust::Mean(why) = self.judge.trust() {
             self.approach_mean(why);
+            self.stored_contacts = 0;
         }
-        self.output(input.sequence)
+        self.output(input.sequence, person)
     }
 
     fn land(&mut self) {
         if !self.judge.land() {
-            self.estimate = Estimate::prior();
+            self.estimate = self.prior();
+            self.has_changed = true;
         }
+    }
+
+    /// What to store of the finger after a contact, if that was trusted and long enough.
+    fn person_after_contact(&mut self) -> Option<PersonPrior> {
+        let is_stored =
+            self.judge.trust() == Trust::Trusted && self.ticks_since_landing >= STORED_FROM_TICKS;
+        is_stored.then(|| {
+            self.stored_contacts = self.stored_contacts.saturating_add(1);
+            PersonPrior::new(&self.estimate, self.stored_contacts, self.place)
+        })
     }
 
     fn learn(&mut self, contact: &Contact, windows: u8, lagged: &Lagged) {
@@ -96,22 +173,32 @@ impl Learner {
         let every = match ticks {
             ..EVERY_WINDOW_TICKS => 1,
             EVERY_WINDOW_TICKS..EVERY_SECOND_TICKS => 2,
-            EVERY_SECOND_TICKS.. => 4,
+            EVERY_SECOND_TICKS..EVERY_FOURTH_TICKS => 4,
+            EVERY_FOURTH_TICKS.. => 8,
         };
         if !windows.is_multiple_of(every) {
             return;
         }
         let resistance_m2k_w = contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT;
         let parameters = self.estimate.parameters;
+        if self.has_changed {
+            self.weights = relative_weights(&parameters);
+        }
         let measurement =
-            lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &parameters);
+            lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &self.weights);
 
-        let model_k2 = MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_ERROR_TICKS);
+        let mut model_k2 = MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_ERROR_TICKS);
+        let is_settled = ticks >= SETTLED_TICKS;
+        if !is_settled {
+            model_k2 += UNSETTLED_ERROR_K * UNSETTLED_ERROR_K;
+        }
         let factor = 1.0 + parameters[RESISTANCE] * self.scale.deviations[RESISTANCE];
         let zero_k = factor * resistance_m2k_w * ZERO_ERROR_W_M2;
         let variance_k2 =
             (model_k2 + zero_k * zero_k + SURFACE_ERROR_K * SURFACE_ERROR_K) / f32::from(every);
+        self.has_changed = true;
         let innovation = self.estimate.update(&measurement, variance_k2, &self.scale);
+        let innovation = innovation.map(|innovation| if is_settled { innovation } else { 0.0 });
         let parameters = &self.estimate.parameters;
         let state = (resistance_m2k_w, ticks);
         self.judge
@@ -121,6 +208,7 @@ impl Learner {
     /// Takes the parameters towards those of the mean finger, in some 100 ms so that set-points do not jump. That the contact
     /// is better than usual is kept.
     fn approach_mean(&mut self, why: Distrust) {
+        self.has_changed = true;
         for (index, parameter) in self.estimate.parameters.iter_mut().enumerate() {
             if index != RESISTANCE || why != Distrust::Wet {
                 *parameter *= REMAINING_IF_DISTRUSTED;
@@ -128,9 +216,15 @@ impl Learner {
         }
     }
 
-    fn output(&self, sequence: u16) -> LearnerOutput {
-        let variances = self.estimate.variances();
-        let (parameters, trust) = (&self.estimate.parameters, self.judge.trust());
-        LearnerOutput::new(sequence, parameters, &variances, &self.scale, trust)
+    fn output(&mut self, sequence: u16, person: Option<PersonPrior>) -> &LearnerOutput {
+        if self.has_changed {
+            let revision = self.output.revision.wrapping_add(1);
+            self.weights = relative_weights(&self.estimate.parameters);
+            self.output = LearnerOutput::new(revision, &self.estimate, &self.weights, &self.scale);
+            self.has_changed = false;
+        }
+        (self.output.sequence, self.output.trust) = (sequence, self.judge.trust());
+        self.output.person = person;
+        &self.output
     }
 }

@@ -10,6 +10,7 @@ mod estimate;
 mod learner;
 mod output;
 mod parameters;
+mod person;
 mod regressors;
 mod sensor;
 mod signals;
@@ -19,9 +20,10 @@ mod window;
 pub use learner::Learner;
 pub use output::LearnerOutput;
 pub use parameters::{PARAMETERS, Place};
+pub use person::PersonPrior;
 pub use sensor::FluxSensor;
 pub use trust::{Distrust, Trust};
-pub use window::{Contact, Flux, LearnerInput, Resistance, WINDOW_TICKS};
+pub use window::{Contact, Flux, LearnerInput, Resistance, Restart, WINDOW_TICKS};
 
 #[cfg(test)]
 mod tests;

@@ -2,15 +2,13 @@
 
 use fixed::traits::Fixed;
 
-use crate::parameters::{
-    MEAN_WEIGHTS, Parameters, RELATIVE_COMPONENTS, Scale, clamped, relative_weights,
-};
+use crate::parameters::{MEAN_WEIGHTS, Parameters, RELATIVE_COMPONENTS, Scale, clamped};
 use crate::sensor::FluxSensor;
 use crate::signals::{Bank, BankOutput, Lag, dot};
 use crate::window::{LearnerInput, WINDOW_TICKS};
 
 /// All signals that pass the sensor's lag, and the banks that they drive.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signals {
     skin_above_display: Lag,
     skin_above_display_twice: Lag,
@@ -41,6 +39,16 @@ fn to_float<T: Fixed<Bits = i32>>(value: T) -> f32 {
 }
 
 impl Signals {
+    /// Before the first window.
+    pub const NEW: Self = Self {
+        skin_above_display: Lag::ZERO,
+        skin_above_display_twice: Lag::ZERO,
+        air: Lag::ZERO,
+        touching: Lag::ZERO,
+        by_flux: Bank::ZERO,
+        by_air: Bank::ZERO,
+    };
+
     /// Advances by a window.
     pub fn advance(&mut self, input: &LearnerInput, sensor: &FluxSensor) -> Lagged {
         let (above, air, touching) = input.contact.as_ref().map_or((0.0, 0.0, 0.0), |contact| {
@@ -49,16 +57,18 @@ impl Signals {
             let air = to_float(contact.air_flux_w_m2) * touching;
             (to_float(contact.skin_above_display_k), air, touching)
         });
-        let flux_w_m2 = to_float(input.flux_w_m2);
+        let flux_w_m2 = input.flux_w_m2.map_or(0.0, to_float);
         let above_k = self.skin_above_display.advance(above, sensor);
         let air_w_m2 = self.air.advance(air, sensor);
+        let banks = [&mut self.by_flux, &mut self.by_air];
+        let [by_flux, by_air] = Bank::advance_both(banks, [flux_w_m2 - air_w_m2, air_w_m2]);
         Lagged {
             flux_w_m2,
             above_k,
             above_twice_k: self.skin_above_display_twice.advance(above_k, sensor),
             touching: self.touching.advance(touching, sensor),
-            by_flux: self.by_flux.advance(flux_w_m2 - air_w_m2),
-            by_air: self.by_air.advance(air_w_m2),
+            by_flux,
+            by_air,
         }
     }
 }
@@ -84,24 +94,24 @@ fn rise_k(output: &BankOutput, relative: &BankOutput) -> f32 {
 }
 
 impl Lagged {
-    /// The measurement of this window, for a nominal contact resistance, m² K/W, with the present parameters of the finger.
+    /// The measurement of this window, for a nominal contact resistance, m² K/W, with the present relative weights of the finger.
     pub fn measurement(
         &self,
         resistance_m2k_w: f32,
         sensor: &FluxSensor,
         scale: &Scale,
-        parameters: &Parameters,
+        weights: &BankOutput,
     ) -> Measurement {
         let [first, second] = &RELATIVE_COMPONENTS;
         let contact_k = resistance_m2k_w * self.flux_w_m2;
         let residual_k = self.above_k
             - dot(&self.by_flux, &MEAN_WEIGHTS)
             - contact_k
-            - sensor.resistance_m2k_w * self.flux_w_m2;
+            - sensor.resistance_m2k_w() * self.flux_w_m2;
         let mut regressors = [
             rise_k(&self.by_flux, first),
             rise_k(&self.by_flux, second),
-            -rise_k(&self.by_air, &relative_weights(parameters)),
+            -rise_k(&self.by_air, weights),
             -self.touching,
             contact_k,
             self.above_k - self.above_twice_k,

@@ -1,42 +1,66 @@
 //! The flux sensor.
 
-use crate::decay::WindowDecay;
+use contact_model::fixed_point::to_fixed;
+use fixed::types::{U0F32, U16F16};
+
 use crate::window::{Resistance, WINDOW_S};
 
 /// Shortest lag that is distinguished from none, s.
 const LAG_MIN_S: f64 = 1e-4;
 
-/// Properties of the flux sensor, as the learner needs them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Properties of the flux sensor, as the learner needs them; in fixed point, because they pass the control path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FluxSensor {
     /// Part of the lag's state that remains at a window's end.
-    pub(crate) remaining: f32,
+    remaining: U0F32,
     /// Mean of that part over the window.
-    pub(crate) mean: f32,
+    mean: U0F32,
     /// Prior deviation of the lag, relative: 10 % and 1 ms.
-    pub(crate) lag_deviation: f32,
-    /// Resistance, m² K/W.
-    pub(crate) resistance_m2k_w: f32,
+    lag_deviation: U16F16,
+    resistance_mm2k_w: Resistance,
 }
 
 impl FluxSensor {
+    /// Before the sensor is known.
+    pub(crate) const UNKNOWN: Self = Self {
+        remaining: U0F32::ZERO,
+        mean: U0F32::ZERO,
+        lag_deviation: U16F16::ONE,
+        resistance_mm2k_w: Resistance::ZERO,
+    };
+
     /// A sensor of this lag, µs (lags below 100 µs count as 100 µs), whose layer has this resistance. In `f64`, so for set-up
     /// only.
     #[must_use]
-    pub const fn new(lag_us: u32, resistance_mm2k_w: Resistance) -> Self {
-        let mut lag_s = lag_us as f64 * 1e-6;
-        if lag_s < LAG_MIN_S {
-            lag_s = LAG_MIN_S;
-        }
-        let decay = WindowDecay::new(1.0 / lag_s);
+    pub fn new(lag_us: u32, resistance_mm2k_w: Resistance) -> Self {
+        let lag_s = f64::from(lag_us) * 1e-6;
+        let lag_s = if lag_s < LAG_MIN_S { LAG_MIN_S } else { lag_s };
+        let windows = WINDOW_S / lag_s;
+        let remaining = libm::exp(-windows);
         Self {
-            remaining: decay.remaining as f32,
-            mean: decay.mean as f32,
-            lag_deviation: (0.1 + 1e-3 / lag_s) as f32,
-            resistance_m2k_w: (resistance_mm2k_w.to_bits() as f64 * 1e-6
-                / (1u32 << Resistance::FRAC_NBITS) as f64) as f32,
+            remaining: to_fixed(remaining),
+            mean: to_fixed((1.0 - remaining) / windows),
+            lag_deviation: to_fixed(0.1 + 1e-3 / lag_s),
+            resistance_mm2k_w,
         }
+    }
+
+    pub(crate) const fn remaining(&self) -> f32 {
+        self.remaining.to_bits() as f32 / FRACTION_ONE as f32
+    }
+
+    pub(crate) const fn mean(&self) -> f32 {
+        self.mean.to_bits() as f32 / FRACTION_ONE as f32
+    }
+
+    pub(crate) const fn lag_deviation(&self) -> f32 {
+        self.lag_deviation.to_bits() as f32 / (1u32 << U16F16::FRAC_NBITS) as f32
+    }
+
+    /// Resistance, m² K/W.
+    pub(crate) const fn resistance_m2k_w(&self) -> f32 {
+        (self.resistance_mm2k_w.to_bits() as f32 / (1u32 << Resistance::FRAC_NBITS) as f32) * 1e-6
     }
 }
 
-const _: () = assert!(1.0 / LAG_MIN_S * WINDOW_S < 1e4);
+const FRACTION_ONE: u64 = 1 << U0F32::FRAC_NBITS;

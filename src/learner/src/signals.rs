@@ -11,14 +11,16 @@ use crate::window::WINDOW_S;
 pub const RATES: usize = WEIGHTS - 1;
 
 /// The flux sensor's lag, applied to another signal.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag(f32);
 
 impl Lag {
+    pub const ZERO: Self = Self(0.0);
+
     /// Mean of the lagged signal over a window in which the signal is constant.
     pub fn advance(&mut self, signal: f32, sensor: &FluxSensor) -> f32 {
-        let mean = signal + (self.0 - signal) * sensor.mean;
-        self.0 = signal + (self.0 - signal) * sensor.remaining;
+        let mean = signal + (self.0 - signal) * sensor.mean();
+        self.0 = signal + (self.0 - signal) * sensor.remaining();
         mean
     }
 }
@@ -34,6 +36,16 @@ struct UnitRelaxation {
     mean: f32,
     /// Mean of the state over the window, over the input, s.
     mean_gain_s: f32,
+}
+
+impl UnitRelaxation {
+    /// Mean of the state over a window with this mean input.
+    #[inline(always)]
+    fn advance(&self, state: &mut f32, input: f32) -> f32 {
+        let mean = self.mean * *state + self.mean_gain_s * input;
+        *state = self.remaining * *state + self.gain_s * input;
+        mean
+    }
 }
 
 const UNIT_RELAXATIONS: [UnitRelaxation; RATES] = {
@@ -58,7 +70,7 @@ const UNIT_RELAXATIONS: [UnitRelaxation; RATES] = {
 };
 
 /// Unit relaxations of the mean finger's rates, all driven by one flux.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bank([f32; RATES]);
 
 /// Window means of a bank's states, J/m², and the flux itself, W/m²: with the weights of a finger their sum is the rise of its
@@ -66,19 +78,24 @@ pub struct Bank([f32; RATES]);
 pub type BankOutput = [f32; WEIGHTS];
 
 impl Bank {
-    /// Output of a window with this mean flux, W/m².
-    pub fn advance(&mut self, flux_w_m2: f32) -> BankOutput {
-        let mut output = [flux_w_m2; WEIGHTS];
-        let states = self.0.iter_mut().zip(&UNIT_RELAXATIONS);
-        for ((state, one), mean) in states.zip(&mut output) {
-            *mean = one.mean * *state + one.mean_gain_s * flux_w_m2;
-            *state = one.remaining * *state + one.gain_s * flux_w_m2;
+    pub const ZERO: Self = Self([0.0; RATES]);
+
+    /// Outputs of two banks in a window with these mean fluxes, W/m². In one loop, because of the coefficients.
+    pub fn advance_both(banks: [&mut Self; 2], fluxes_w_m2: [f32; 2]) -> [BankOutput; 2] {
+        let mut outputs = fluxes_w_m2.map(|flux_w_m2| [flux_w_m2; WEIGHTS]);
+        let ([first, second], [of_first, of_second]) = (banks, &mut outputs);
+        let states = first.0.iter_mut().zip(&mut second.0);
+        let means = of_first.iter_mut().zip(of_second);
+        for ((states, means), one) in states.zip(means).zip(&UNIT_RELAXATIONS) {
+            *means.0 = one.advance(states.0, fluxes_w_m2[0]);
+            *means.1 = one.advance(states.1, fluxes_w_m2[1]);
         }
-        output
+        outputs
     }
 }
 
-/// The sum of products, from the first to the last.
-pub fn dot<const N: usize>(a: &[f32; N], b: &[f32; N]) -> f32 {
+/// The sum of products, from the first to the last. Not inlined, so that its loop is in the program once.
+#[inline(never)]
+pub fn dot(a: &[f32], b: &[f32]) -> f32 {
     a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
 }

@@ -1,6 +1,6 @@
 //! Whether the measured flux fits any finger on the display.
 
-use crate::parameters::{FIRST_COMPONENT, Parameters, RESISTANCE, SECOND_COMPONENT, Scale};
+use crate::parameters::{FIRST_COMPONENT, Parameters, RESISTANCE, Scale};
 use crate::regressors::Measurement;
 
 /// Why a contact is not learnt from. What the words name is the most likely cause; the learner sees the flux only.
@@ -124,9 +124,8 @@ impl Judge {
             }
         };
         let resistance = limit(RESISTANCE);
-        let is_at_limit = [resistance, limit(FIRST_COMPONENT), limit(SECOND_COMPONENT)]
-            .iter()
-            .any(Option::is_some);
+        // The second component is small, and takes what else is special about a finger.
+        let is_at_limit = resistance.is_some() || limit(FIRST_COMPONENT).is_some();
         if counted(&mut self.strange_innovations, is_strange) >= STRANGE_IN_A_ROW {
             self.distrust(self.cause(explained(measurement), ticks, resistance));
         } else if counted(&mut self.at_limit, is_at_limit) >= AT_LIMIT_IN_A_ROW {

@@ -4,6 +4,8 @@ use contact_model::fixed_point::Celsius;
 use fixed::types::{I20F12, U16F16};
 
 use crate::parameters::Place;
+use crate::person::PersonPrior;
+use crate::sensor::FluxSensor;
 
 /// Ticks of 1 ms in a window.
 pub const WINDOW_TICKS: u32 = 10;
@@ -14,16 +16,27 @@ pub type Flux = I20F12;
 /// Thermal resistance, mm² K/W (1e-6 m² K/W): 0 to 65 536, resolution 1.5e-5.
 pub type Resistance = U16F16;
 
+/// Begins to learn another finger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Restart {
+    /// Where the finger is before its contacts.
+    pub place: Place,
+    /// The sensor that measures its flux.
+    pub sensor: FluxSensor,
+    /// What is known of the finger; `None` for nothing.
+    pub person: Option<PersonPrior>,
+}
+
 /// Measurements of one window of ten ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LearnerInput {
     /// Number of the window, which the output repeats.
     pub sequence: u16,
-    /// Forgets the finger before this window, because another one may follow, which is at this place before its contacts.
-    pub restart: Option<Place>,
+    /// Begins anew before this window.
+    pub restart: Option<Restart>,
     /// Measured flux out of the skin, mean of the ten ticks; those without contact count as 0, except in the first five lags of
-    /// the sensor after lifting.
-    pub flux_w_m2: Flux,
+    /// the sensor after lifting. `None` if the sensor was beyond its range or faulty in a tick.
+    pub flux_w_m2: Option<Flux>,
     /// The contact; `None` if no tick of the window had one.
     pub contact: Option<Contact>,
 }
@@ -42,7 +55,7 @@ pub struct Contact {
     pub resistance_mm2k_w: Resistance,
     /// Ticks since landing, at the window's end.
     pub ticks_since_landing: u32,
-    /// Whether the finger may be learnt from this window: force steady or slowly changing, temperatures and flux valid, the
-    /// display not at a limit.
+    /// Whether the finger may be learnt from this window: force steady or slowly changing, temperatures valid, the display not
+    /// at a limit.
     pub is_steady: bool,
 }

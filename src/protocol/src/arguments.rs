@@ -78,10 +78,21 @@ pub fn read_numbers_in_ranges<const N: usize>(
     ranges: &'static [Range; N],
 ) -> Result<[f64; N], Error> {
     let mut values = [0.0; N];
+    read_into(words, ranges, &mut values)?;
+    Ok(values)
+}
+
+/// Not generic, so that the program contains this code only once.
+#[inline(never)]
+fn read_into(
+    words: &mut Words<'_>,
+    ranges: &'static [Range],
+    values: &mut [f64],
+) -> Result<(), Error> {
     for (value, range) in values.iter_mut().zip(ranges) {
         *value = read_fixed_point_in_range(words, range)?.to_num();
     }
-    Ok(values)
+    Ok(())
 }
 
 /// Reads the next word of a line as a whole number within `range`, both limits included. The errors are those of

@@ -1,11 +1,13 @@
-//! Parsing of the commands `calibrate`, `settings` and `set`.
+//! Parsing of the commands `calibrate`, `settings`, `set`, `flux` and `surface`.
 
 use thermal_commissioning::{
-    CONVERTER_STEPS_PER_LINE_MAX, SETTINGS_LINE_COUNT, SessionRequest, Setting, THERMISTOR_WORDS,
+    CONVERTER_STEPS_PER_LINE_MAX, SETTINGS_LINE_COUNT_MAX, SessionRequest, Setting,
+    THERMISTOR_WORDS,
 };
 use thermal_settings::{
     ADC_ERROR_STEP_RANGE, CALIBRATED_ADC_BORDER_COUNT, CORRECTION_RANGES, Calibration, Correction,
-    FIRST_CALIBRATED_ADC_BORDER_INDEX, Range, TILE_RANGES, Tile, round_to_decimals,
+    DISPLAY_SURFACE_RANGES, DisplaySurface, FIRST_CALIBRATED_ADC_BORDER_INDEX, FLUX_SENSOR_RANGES,
+    FluxSensor, Range, TILE_RANGES, Tile, round_to_decimals,
 };
 
 use crate::Error;
@@ -24,7 +26,7 @@ static SETTINGS_LINE_NUMBER_RANGE: Range = Range {
     name: "line of settings",
     unit: "(whole)",
     min: 1.0,
-    max: SETTINGS_LINE_COUNT as f64,
+    max: SETTINGS_LINE_COUNT_MAX as f64,
 };
 static ADC_SEGMENT_BORDER_INDEX_RANGE: Range = Range {
     name: "border",
@@ -34,8 +36,16 @@ static ADC_SEGMENT_BORDER_INDEX_RANGE: Range = Range {
 };
 
 /// First arguments of the command `set`, which name what it replaces: steps of the converter, the correction of a
-/// thermistor, or the parameters of the tile.
-pub const SET_COMMAND_TARGET_WORDS: [&str; 3] = ["steps", "correction", "tile"];
+/// thermistor, the parameters of the tile, the heat-flux sensor, or the surface of the display.
+pub const SET_COMMAND_TARGET_WORDS: [&str; 5] = ["steps", "correction", "tile", "flux", "surface"];
+
+/// First arguments of the command `flux`, which without one is a query.
+pub const FLUX_COMMAND_WORDS: [&str; 3] = ["set", "none", "zero"];
+
+/// First arguments of the command `surface`, which without one is a query. The second one stands in `set surface`, too.
+pub const SURFACE_COMMAND_WORDS: [&str; 2] = ["set", NOMINAL_SURFACE_WORD];
+/// The surface of the reference design, in place of the three values of another one.
+pub const NOMINAL_SURFACE_WORD: &str = "nominal";
 
 fn parse_thermistor_name_to_index(words: &mut Words<'_>) -> Result<usize, Error> {
     let name = word_or_empty(words);
@@ -56,7 +66,7 @@ pub fn parse_calibration_point_or_clear(words: &mut Words<'_>) -> Result<Session
     })
 }
 
-/// Reads the argument of the command `settings`: a number from 1 to 8 requests the line of the settings with this
+/// Reads the argument of the command `settings`: a number from 1 to 9 requests the line of the settings with this
 /// number. Without an argument, the number of lines is requested.
 pub fn parse_settings_query(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
     if words.clone().next().is_none() {
@@ -69,7 +79,8 @@ pub fn parse_settings_query(words: &mut Words<'_>) -> Result<SessionRequest, Err
 
 /// Reads the arguments of the command `set`, which replaces settings. They are `steps` with the index of a border
 /// between two segments of the converter and one to seven steps, at this border and the next ones; or `correction` with
-/// a thermistor and three coefficients; or `tile` with five parameters.
+/// a thermistor and three coefficients; or `tile` with five parameters; or `flux` with the four values of a heat-flux sensor, or
+/// `none`; or `surface` with the three values of the display's surface, or `nominal`.
 #[inline(never)]
 pub fn parse_set_arguments(words: &mut Words<'_>) -> Result<Setting, Error> {
     Ok(match word_or_empty(words) {
@@ -98,6 +109,49 @@ pub fn parse_set_arguments(words: &mut Words<'_>) -> Result<Setting, Error> {
             words,
             &TILE_RANGES,
         )?)),
+        "flux" if skip_if_next_is(words, "none") => Setting::FluxSensor(None),
+        "flux" => parse_flux_sensor(words)?,
+        "surface" if skip_if_next_is(words, NOMINAL_SURFACE_WORD) => {
+            Setting::DisplaySurface(DisplaySurface::NOMINAL)
+        }
+        "surface" => parse_display_surface(words)?,
         other => return Err(Error::UnknownSetting(other.into())),
+    })
+}
+
+fn parse_flux_sensor(words: &mut Words<'_>) -> Result<Setting, Error> {
+    let values = read_numbers_in_ranges(words, &FLUX_SENSOR_RANGES)?;
+    let sensor = FluxSensor::from_array_rounded(values);
+    Ok(Setting::FluxSensor(Some(sensor)))
+}
+
+/// Reads the arguments of the command `flux`: nothing for a query, `set` with the four values of a heat-flux sensor, `none`, or
+/// `zero`.
+pub fn parse_flux(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
+    Ok(match word_or_empty(words) {
+        "" => SessionRequest::Flux,
+        "set" => SessionRequest::Set(parse_flux_sensor(words)?),
+        "none" => SessionRequest::Set(Setting::FluxSensor(None)),
+        "zero" => SessionRequest::FluxZero,
+        other => return Err(Error::UnknownFluxOrder(other.into())),
+    })
+}
+
+fn parse_display_surface(words: &mut Words<'_>) -> Result<Setting, Error> {
+    let values = read_numbers_in_ranges(words, &DISPLAY_SURFACE_RANGES)?;
+    let surface = DisplaySurface::from_array_rounded(values);
+    Ok(Setting::DisplaySurface(surface))
+}
+
+/// Reads the arguments of the command `surface`: nothing for a query, `set` with conductivity, roughness and slope of the display,
+/// or `nominal`.
+pub fn parse_surface(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
+    Ok(match word_or_empty(words) {
+        "" => SessionRequest::DisplaySurface,
+        "set" => SessionRequest::Set(parse_display_surface(words)?),
+        NOMINAL_SURFACE_WORD => {
+            SessionRequest::Set(Setting::DisplaySurface(DisplaySurface::NOMINAL))
+        }
+        other => return Err(Error::UnknownSurfaceOrder(other.into())),
     })
 }

@@ -6,13 +6,20 @@ use contact_model::fixed_point::Body;
 use contact_model::material::{Material, SKIN};
 use contact_model::slab::{Back, Slab};
 use thermal_commissioning::{CommissioningSession, SessionReply, SessionRequest, StorageOrder};
-use thermal_device::command::{self, Command, ObjectBody, Refused, WithSourceFinger};
+use thermal_device::command::{
+    self, ChosenMaterial, Command, ObjectBody, Refused, WithSourceFinger,
+};
+use thermal_device::learning::PersonState;
 use thermal_device::{FingerIndex, StateName, TICK_S};
-use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode_settings_record};
+use thermal_settings::{
+    Person, PersonCode, Persons, Settings, SettingsRecord, StoredDevice, StoredSettings,
+    encode_settings_record,
+};
 
 use crate::arguments::{expect_end, read_word};
 use crate::finger_address::{legible_address, split_address};
 use crate::line_checksum::{ChecksumError, line_checksum, strip_checksum, write_line};
+use crate::person::{ENROL_CONTACTS, PersonCodes, PersonReply, PersonRequest};
 use crate::upload::{Upload, UploadStep};
 use crate::{BoardStatus, Error, OutgoingLine, Reply, Request, UploadError};
 
@@ -40,6 +47,7 @@ pub type ExecutionResult = Result<WithSourceFinger<command::Reply>, WithSourceFi
 #[derive(Clone, Debug)]
 pub struct CommandHandler<const FINGERS: usize> {
     sessions: [CommissioningSession; FINGERS],
+    persons: Persons,
     upload: Upload,
     /// The finger whose address the lines of the upload have.
     upload_owner: Option<FingerIndex<FINGERS>>,
@@ -55,6 +63,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     pub fn new(settings: Settings) -> Self {
         Self {
             sessions: array::from_fn(|_| CommissioningSession::new(settings)),
+            persons: Persons::new(),
             upload: Upload::new(),
             upload_owner: None,
             checksums: false,
@@ -62,15 +71,16 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// A handler for a device whose fingers have the calibration and the tile that were loaded from flash, one element
-    /// for each finger, and factory defaults for all other settings.
+    /// A handler for a device with the persons, and whose fingers have the calibration, tile, heat-flux sensor and display, that
+    /// were loaded from flash; all other settings have factory defaults.
     #[must_use]
-    pub fn from_stored(stored: &[StoredSettings; FINGERS]) -> Self {
+    pub fn from_stored(stored: &StoredDevice<FINGERS>) -> Self {
         let session = |stored: &StoredSettings| {
             CommissioningSession::new(stored.to_settings_with_factory_defaults())
         };
         Self {
-            sessions: stored.each_ref().map(session),
+            sessions: stored.fingers.each_ref().map(session),
+            persons: stored.persons.clone(),
             upload: Upload::new(),
             upload_owner: None,
             checksums: false,
@@ -78,15 +88,17 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// The bytes to be written to flash for the command `save` (the present settings of all fingers) or `forget`
+    /// The bytes to be written to flash for the command `save` (the present settings of all fingers, and the persons) or `forget`
     /// (factory defaults).
     #[must_use]
     pub fn record_to_save_or_forget(&self, order: StorageOrder) -> SettingsRecord {
         match order {
             StorageOrder::Save => {
                 let sessions = self.sessions.each_ref();
-                let stored = sessions.map(|one| StoredSettings::from_settings(one.settings()));
-                encode_settings_record(Some(&stored))
+                encode_settings_record(Some(&StoredDevice {
+                    fingers: sessions.map(|one| StoredSettings::from_settings(one.settings())),
+                    persons: self.persons.clone(),
+                }))
             }
             StorageOrder::Forget => encode_settings_record::<FINGERS>(None),
         }
@@ -139,7 +151,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             finger: number,
             content,
         };
-        let request = Request::parse(line, self.sessions[0].settings()).map_err(rejected)?;
+        let owner = finger.map_or(0, FingerIndex::index);
+        let request = Request::parse(line, self.sessions[owner].settings()).map_err(rejected)?;
         match request {
             Request::Checksum(_) if finger.is_some() && FINGERS > 1 => {
                 Err(rejected(Error::WholeDevice("checksum")))
@@ -152,6 +165,11 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 fingers: FINGERS as u8,
             })),
             Request::Board => Ok(addressed(Reply::Board(self.board))),
+            Request::Station(Command::Material(chosen))
+                if finger.is_none() && self.displays_differ() =>
+            {
+                self.choose_material_on_each_display(&chosen, execute)
+            }
             Request::Station(command) => Self::execute_in_stations(command, finger, execute),
             Request::Slab { thickness_mm, back } => {
                 let material = Self::chosen_material(finger, &mut execute);
@@ -184,6 +202,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             Request::Commissioning(request) => {
                 self.execute_in_commissioning_sessions(request, finger, execute)
             }
+            Request::Person(request) => self.answer_about_persons(request, finger, execute),
             Request::Storage(order) => match Self::save_or_forget_rejection(order, finger, execute)
             {
                 None => Ok(addressed(Reply::Restart(order))),
@@ -203,6 +222,117 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             Ok(reply) => Ok(reply.map_content(Reply::Station)),
             Err(refused) => Err(refused.map_content(Error::from)),
         }
+    }
+
+    /// Whether the displays of the fingers have different surfaces.
+    fn displays_differ(&self) -> bool {
+        let [first, others @ ..] = &self.sessions[..] else {
+            return false;
+        };
+        let first = first.settings().display;
+        others.iter().any(|one| one.settings().display != first)
+    }
+
+    /// Chooses a material in the stations of all fingers, with the contact constants of each one's display.
+    #[inline(never)]
+    fn choose_material_on_each_display(
+        &self,
+        chosen: &ChosenMaterial,
+        mut execute: impl ExecuteOnStations<FINGERS>,
+    ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
+        let mut first_error = None;
+        for (one, session) in FingerIndex::all().zip(&self.sessions) {
+            let display = session.settings().display.surface();
+            let done = ChosenMaterial::new(chosen.name, &chosen.properties, display)
+                .map_err(Error::ContactPair)
+                .and_then(|chosen| {
+                    let done = execute(Some(one), Command::Material(chosen));
+                    done.map_err(|refused| Error::Refused(refused.content))
+                });
+            if let Err(content) = done {
+                first_error.get_or_insert(WithSourceFinger {
+                    finger: one.index_unless_single_finger(),
+                    content,
+                });
+            }
+        }
+        let done = WithSourceFinger::from_whole_device(Reply::DONE);
+        first_error.map_or(Ok(done), Err)
+    }
+
+    /// Executes an order about persons. They are those of the whole device; who is chosen, and what was learnt, is a finger's.
+    #[inline(never)]
+    fn answer_about_persons(
+        &mut self,
+        request: PersonRequest,
+        finger: Option<FingerIndex<FINGERS>>,
+        execute: impl ExecuteOnStations<FINGERS>,
+    ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
+        let is_one = finger.is_some() || FINGERS == 1;
+        let answer = match request {
+            PersonRequest::Choose(code) => match code.map(|code| (code, self.persons.get(code))) {
+                Some((code, None)) => Err(Error::UnknownPerson(code)),
+                known => {
+                    let person = known.and_then(|(_, person)| person.copied());
+                    let command = Command::ChoosePerson(person);
+                    return Self::execute_in_stations(command, finger, execute);
+                }
+            },
+            PersonRequest::List => Ok(Reply::Persons(PersonCodes::new(&self.persons))),
+            PersonRequest::Store(person) => self.store_person(person),
+            PersonRequest::Forget(code) if self.persons.remove(code) => Ok(Reply::DONE),
+            PersonRequest::Forget(code) => Err(Error::UnknownPerson(code)),
+            PersonRequest::Enrol(_) if !is_one => Err(Error::Missing("finger (as @0)")),
+            PersonRequest::Query => Self::person_state(finger, execute).map(|state| {
+                Reply::Person(PersonReply {
+                    person: state.chosen,
+                    contacts: state.contacts(),
+                })
+            }),
+            PersonRequest::Enrol(code) => {
+                Self::person_state(finger, execute).and_then(|state| self.enrol(code, &state))
+            }
+        };
+        let finger = finger.map(FingerIndex::index_u8);
+        match answer {
+            Ok(content) => Ok(WithSourceFinger { finger, content }),
+            Err(content) => Err(WithSourceFinger { finger, content }),
+        }
+    }
+
+    /// The chosen person of a finger, of the first one for `None`, and what was learnt of it.
+    fn person_state(
+        finger: Option<FingerIndex<FINGERS>>,
+        mut execute: impl ExecuteOnStations<FINGERS>,
+    ) -> Result<PersonState, Error> {
+        match execute(Some(finger.unwrap_or(FingerIndex::FIRST)), Command::Person) {
+            Ok(WithSourceFinger {
+                content: command::Reply::Person(state),
+                ..
+            }) => Ok(state),
+            Ok(_) => Ok(PersonState::new(None)),
+            Err(refused) => Err(Error::Refused(refused.content)),
+        }
+    }
+
+    /// Stores what was learnt of a finger as that of this person.
+    fn enrol(&mut self, code: PersonCode, state: &PersonState) -> Result<Reply, Error> {
+        let contacts = state.contacts();
+        let learnt = state.learnt.filter(|_| contacts >= ENROL_CONTACTS);
+        let finger = learnt.ok_or(Error::NotEnrolled(contacts))?.0;
+        let person = Person { code, finger };
+        self.store_person(person)?;
+        Ok(Reply::Person(PersonReply {
+            person: Some(person),
+            contacts,
+        }))
+    }
+
+    fn store_person(&mut self, person: Person) -> Result<Reply, Error> {
+        let is_stored = self.persons.insert(person);
+        is_stored
+            .then_some(Reply::DONE)
+            .ok_or(Error::NoRoomForPerson)
     }
 
     /// Loads the course of the upload in the station of `finger`, or in all stations for `None`. A course that has only begun
@@ -302,7 +432,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     }
 
     /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. With
-    /// `None` on a device with several fingers, the queries `settings` and `margins` are answered by the first finger;
+    /// `None` on a device with several fingers, the queries `settings`, `margins`, `flux` and `surface` are answered by the first finger;
     /// a new calibration point and `tune result`, which are computed for milliseconds, are rejected.
     fn execute_in_commissioning_sessions(
         &mut self,
@@ -314,6 +444,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             SessionRequest::CountSettingsLines
             | SessionRequest::SettingsLine(_)
             | SessionRequest::Margins
+            | SessionRequest::Flux
+            | SessionRequest::DisplaySurface
                 if FINGERS > 1 =>
             {
                 finger.or(Some(FingerIndex::FIRST))

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use contact_model::decimal::{Rounded, Shortest};
-use contact_model::fixed_point::{BodyError, ContactPairError};
+use contact_model::fixed_point::{BodyError, Celsius, ContactPairError};
 use contact_model::material::MATERIALS;
 
 use thermal_commissioning::{
@@ -19,12 +19,15 @@ use thermal_device::stimulus::{
     COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, CourseEnd, CourseError,
     CourseStart, TemperatureKind,
 };
-use thermal_settings::Range;
+use thermal_settings::{Person, PersonCode, Persons, Range};
 
-use crate::calibrate_settings_set_commands::SET_COMMAND_TARGET_WORDS;
+use crate::calibrate_settings_set_commands::{
+    FLUX_COMMAND_WORDS, SET_COMMAND_TARGET_WORDS, SURFACE_COMMAND_WORDS,
+};
 use crate::events::NO_EVENTS_WORD;
 use crate::line_checksum::TwoHexDigits;
 use crate::object::{BACK_WORDS, OBJECT_ARGUMENTS};
+use crate::person::ENROL_CONTACTS;
 use crate::request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, SWITCH_WORDS};
 use crate::upload::UploadError;
 use crate::{ChecksumError, LINE_MAX_BYTES, LineError, Request};
@@ -129,8 +132,12 @@ pub enum Error {
     Course(CourseError),
     /// The point of a course in the row with this index is refused, for this reason; the upload goes on.
     CoursePoint(usize, CourseError),
-    /// The word after `set`, quoted here, is none of `steps`, `correction` and `tile`.
+    /// The word after `set`, quoted here, is none of `steps`, `correction`, `tile`, `flux` and `surface`.
     UnknownSetting(QuotedWordExcerpt),
+    /// The word after `flux`, quoted here, is none of `set`, `none` and `zero`.
+    UnknownFluxOrder(QuotedWordExcerpt),
+    /// The word after `surface`, quoted here, is neither `set` nor `nominal`.
+    UnknownSurfaceOrder(QuotedWordExcerpt),
     /// The line lacks the word with this name. The name is `command` if the line has no command, and
     /// `finger (as @0)` if the line must address a single finger but has no address.
     Missing(&'static str),
@@ -163,6 +170,16 @@ pub enum Error {
     Identification(IdentificationError),
     /// The calibration point of a `calibrate` line is rejected, for this reason; the calibration is unchanged.
     Point(PointError),
+    /// The word quoted here stands where the code of a person is expected, but is none.
+    NotPersonCode(QuotedWordExcerpt),
+    /// The word quoted here stands where what was learnt of a finger is expected, but is not that.
+    NotPersonData(QuotedWordExcerpt),
+    /// No person with this code is stored.
+    UnknownPerson(PersonCode),
+    /// As many persons are stored as there is room for.
+    NoRoomForPerson,
+    /// `person enrol` was sent, and the finger is learnt from this number of long contacts, which is not enough.
+    NotEnrolled(u8),
 }
 
 impl From<Refused> for Error {
@@ -177,6 +194,7 @@ impl From<SessionError> for Error {
             SessionError::Refused(refused) => Self::Refused(refused),
             SessionError::Identification(error) => Self::Identification(error),
             SessionError::Point(error) => Self::Point(error),
+            SessionError::ContactPair(error) => Self::ContactPair(error),
         }
     }
 }
@@ -243,8 +261,14 @@ impl fmt::Display for Error {
             Self::UnknownSetting(word) => {
                 write_word_not_in_list(f, "setting", word, &SET_COMMAND_TARGET_WORDS)
             }
+            Self::UnknownFluxOrder(word) => {
+                write_word_not_in_list(f, "flux", word, &FLUX_COMMAND_WORDS)
+            }
+            Self::UnknownSurfaceOrder(word) => {
+                write_word_not_in_list(f, "surface", word, &SURFACE_COMMAND_WORDS)
+            }
             Self::UnknownEventKind(word) => {
-                let known = ["land", "lift", "start", "end", NO_EVENTS_WORD];
+                let known = ["land", "lift", "start", "end", "flux", NO_EVENTS_WORD];
                 write_word_not_in_list(f, "event", word, &known)
             }
             Self::UnknownTelemetryField(word) => {
@@ -299,6 +323,29 @@ impl fmt::Display for Error {
             Self::Refused(refused) => write_station_refusal(f, refused),
             Self::Identification(error) => write_identification_error(f, error),
             Self::Point(error) => write_calibration_point_error(f, error),
+            Self::NotPersonCode(word) if word.is_empty() => {
+                f.write_str("person missing; a code of 1 to 8 of A-Z, 0-9")
+            }
+            Self::NotPersonCode(word) => {
+                write!(f, "person {word}: a code is 1 to 8 of A-Z, 0-9")
+            }
+            Self::NotPersonData(word) => {
+                write!(
+                    f,
+                    "data {word} is not {} hexadecimal digits",
+                    2 * Person::FINGER_BYTES
+                )
+            }
+            Self::UnknownPerson(code) => {
+                write!(f, "no person {code} is stored; persons lists those who are")
+            }
+            Self::NoRoomForPerson => {
+                write!(f, "{} persons are stored; forget person CODE", Persons::MAX)
+            }
+            Self::NotEnrolled(contacts) => write!(
+                f,
+                "enrol needs {ENROL_CONTACTS} contacts of 8 s, trusted, since the last choice of finger or person; there are {contacts}"
+            ),
         }
     }
 }
@@ -444,6 +491,12 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         Refused::NotArmed => "start needs arm first",
         Refused::Testing => "the self-test goes on; ask again in a second",
         Refused::NoMaterial => "start needs a material first",
+        Refused::NeedsLayeredFinger(command) => {
+            return write!(
+                f,
+                "{command} needs another finger than the thesis's; finger mean first"
+            );
+        }
         Refused::AlreadyStarted => "already started; arm takes the object away",
         Refused::NeedsDrivenDisplay(command) => {
             return write!(f, "{command} needs a driven display: arm first");
@@ -451,7 +504,21 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         Refused::TuneNeedsArmed => "tune needs the state armed",
         Refused::Presenting => "not while an object or a course is presented: abort or arm first",
         Refused::NoCourse => "no course is loaded; upload begin course first",
-        Refused::Touched => "tune needs a display without a finger on it",
+        Refused::Touched(command) => {
+            return write!(f, "{command} needs a display without a finger on it");
+        }
+        Refused::NoFluxSensor(command) => {
+            return write!(f, "{command} needs a heat-flux sensor; flux set first");
+        }
+        Refused::FluxSensorFault => {
+            "the code of the heat-flux sensor is at a rail or does not change; look at its wires"
+        }
+        Refused::DisplayNotAtRoom { display, room } => {
+            f.write_str("flux zero needs the display within 0.3 C of the room; they have ")?;
+            write_celsius_or_dash(f, *display)?;
+            f.write_str(" and ")?;
+            return write_celsius_or_dash(f, *room);
+        }
         Refused::NotTuned => "nothing was tuned since arm; tune first",
         Refused::Tuning => "tuning goes on; ask again in a second",
         Refused::TuneAborted(why) => return write!(f, "tune was ended: {}", why.description()),
@@ -473,6 +540,13 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         }
         Refused::NothingToClear => "no fault to clear",
     })
+}
+
+fn write_celsius_or_dash(f: &mut fmt::Formatter<'_>, value: Option<Celsius>) -> fmt::Result {
+    match value {
+        Some(celsius) => write!(f, "{} C", Rounded(celsius.to_num(), 2)),
+        None => f.write_str("-"),
+    }
 }
 
 fn write_identification_error(

@@ -37,7 +37,7 @@ pub fn parse_trigger_output(words: &mut Words<'_>) -> Result<EventKinds, Error> 
     Ok(kinds)
 }
 
-/// Reads the names of the chosen fields; all fields if there is none.
+/// Reads the names of the chosen fields; the default ones if there is none.
 pub fn parse_telemetry_fields(words: &mut Words<'_>) -> Result<TelemetryFields, Error> {
     let mut fields = TelemetryFields::NONE;
     for word in words {
@@ -45,7 +45,7 @@ pub fn parse_telemetry_fields(words: &mut Words<'_>) -> Result<TelemetryFields, 
         fields = fields.with(index.ok_or(Error::UnknownTelemetryField(word.into()))?);
     }
     Ok(if fields == TelemetryFields::NONE {
-        TelemetryFields::ALL
+        TelemetryFields::DEFAULT
     } else {
         fields
     })

@@ -17,6 +17,7 @@ mod line_buffer;
 mod line_checksum;
 mod line_reader;
 mod object;
+mod person;
 mod reply;
 mod request;
 mod stimulus;
@@ -28,9 +29,10 @@ pub use command_handler::{CommandHandler, ExecuteOnStations, ExecutionResult};
 pub use error::{Error, QuotedWordExcerpt, StorageFailureText};
 pub use line_checksum::{ChecksumError, OutgoingLine, line_checksum, strip_checksum, write_line};
 pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
+pub use person::{PersonCodes, PersonReply, PersonRequest};
 pub use reply::Reply;
-pub use request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, Request};
-pub use telemetry::{TelemetryLine, UnsolicitedLine, wrap_as_telemetry_line};
+pub use request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, NOMINAL_CONTACT_LAW_WORD, Request};
+pub use telemetry::{TelemetryLine, UnsolicitedLine};
 pub use upload::UploadError;
 
 #[cfg(test)]

@@ -7,13 +7,14 @@ use core::fmt;
 
 use contact_model::fixed_point::{Celsius, Force};
 
+use thermal_device::Flux;
 use thermal_device::drive::Current;
 use thermal_device::sense::SupplyVoltage;
 
-/// Capacity of a [`LineBuffer`], bytes: enough for the longest answer to `state`, which is longer than any telemetry.
-const LINE_CAPACITY_BYTES: usize = 144;
+/// Capacity of a [`LineBuffer`], bytes: enough for the longest telemetry and the longest answer to `state`.
+const LINE_CAPACITY_BYTES: usize = 160;
 
-/// A line to the host that is being written, of at most 144 ASCII characters. A word or number that does not fit is
+/// A line to the host that is being written, of at most 160 ASCII characters. A word or number that does not fit is
 /// left out as a whole.
 pub(super) struct LineBuffer {
     bytes: [u8; LINE_CAPACITY_BYTES],
@@ -61,6 +62,14 @@ impl LineBuffer {
         }
     }
 
+    /// Appends a heat flux in W/m² with one decimal, or `-` for `None`.
+    pub(super) fn push_flux_or_dash(&mut self, value: Option<Flux>) {
+        match value {
+            Some(value) => self.push_fixed_point_bits::<12, 1>(value.to_bits().into()),
+            None => self.push_byte_if_fits(b'-'),
+        }
+    }
+
     /// Appends a current in A with three decimals, after a `-` if it is negative.
     pub(super) fn push_current(&mut self, value: Current) {
         self.push_fixed_point_bits::<24, 3>(value.to_bits().into());
@@ -104,7 +113,7 @@ impl LineBuffer {
     fn push_fixed_point_bits<const FRACTION: u32, const DIGITS: usize>(&mut self, bits: i64) {
         let scale = const { 10u64.pow(DIGITS as u32) };
         let scaled = (bits.unsigned_abs() * scale + (1 << (FRACTION - 1))) >> FRACTION;
-        // All fixed-point types are below 2^10, so a `u32` holds five decimals.
+        // Fixed-point types are below 2^10, so a `u32` holds five decimals; a flux is below 2^19 and has one.
         let scaled = u32::try_from(scaled).unwrap_or(u32::MAX);
         if bits < 0 && scaled != 0 {
             self.push_byte_if_fits(b'-');

@@ -7,7 +7,7 @@ pub const LINE_MAX_BYTES: usize = 96;
 
 /// Length of the longest line to the host, bytes, without the address of a finger, its checksum and its line ending. It
 /// is the answer to an unknown command, which lists all commands.
-pub const ANSWER_MAX_BYTES: usize = 250;
+pub const ANSWER_MAX_BYTES: usize = 286;
 
 /// A complete line from the host, without its line ending: at most 96 characters of printable ASCII.
 pub type Line = String<LINE_MAX_BYTES>;

@@ -2,24 +2,27 @@
 
 use core::fmt::{self, Display as _};
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::decimal::Rounded;
 use thermal_commissioning::{
     CONVERTER_STEPS_PER_LINE_MAX, SessionReply, Setting, StorageOrder, THERMISTOR_WORDS,
 };
-use thermal_device::command::{self, Status};
+use thermal_device::command::{self, FluxState, Status};
 use thermal_device::safety::{SelfTestReport, SideLine, TripCause};
 use thermal_device::sense::Samples;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
-use thermal_settings::{Calibration, Tile};
+use thermal_settings::{Calibration, DisplaySurface, FluxSensor, Tile};
 
 use crate::BoardStatus;
+use crate::calibrate_settings_set_commands::NOMINAL_SURFACE_WORD;
 use crate::line_buffer::LineBuffer;
+use crate::person::{PersonCodes, PersonReply};
 use crate::request::CONTACT_MODEL_WORDS;
 
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
 const PROTOCOL_VERSION: u32 = 1;
 /// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
-const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course";
+const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course,flux,contact,surface,person";
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
@@ -39,6 +42,10 @@ pub enum Reply {
     /// Answer to a request that was executed by the commissioning session of one finger, or by the sessions of all
     /// fingers. The session of a finger is its settings and calibration points.
     Commissioning(SessionReply),
+    /// Answer to the commands `person` and `person enrol`.
+    Person(PersonReply),
+    /// Answer to the command `persons`.
+    Persons(PersonCodes),
     /// The line was `save` or `forget`, and may be executed. The caller must now restart the device, which stores the
     /// settings and only then sends the answer, `ok` or an error.
     Restart(StorageOrder),
@@ -61,6 +68,8 @@ impl fmt::Display for Reply {
             Self::Board(status) => status.fmt(f),
             Self::Station(reply) => write_station_reply(f, reply),
             Self::Commissioning(reply) => write_session_reply(f, reply),
+            Self::Person(reply) => reply.fmt(f),
+            Self::Persons(codes) => write!(f, "ok persons={codes}"),
             Self::Restart(_) => f.write_str("ok"),
         }
     }
@@ -76,14 +85,27 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
             pulse_test_answer_words(report).fmt(f)
         }
         command::Reply::Raw(samples) => raw_answer_line(samples).fmt(f),
-        // No line from the host requests averages and normal equations, which commissioning sessions evaluate.
         command::Reply::Finger(name) => write!(f, "ok finger={name}"),
+        command::Reply::ContactLaw(law) => write_contact_law(f, law),
         // No line from the host requests a material's properties.
         command::Reply::Material(_) => f.write_str("ok"),
-        command::Reply::Done | command::Reply::Average(_) | command::Reply::NormalEquation(_) => {
-            f.write_str("ok")
-        }
+        // Averages, normal equations and flux are evaluated by commissioning sessions, persons by the handler.
+        command::Reply::Done
+        | command::Reply::Average(_)
+        | command::Reply::Flux(_)
+        | command::Reply::Person(_)
+        | command::Reply::FluxZero(_)
+        | command::Reply::NormalEquation(_) => f.write_str("ok"),
     }
+}
+
+fn write_contact_law(f: &mut fmt::Formatter<'_>, law: &ContactLaw) -> fmt::Result {
+    let exponent = Rounded(law.exponent, 4);
+    let (hardness, gap) = (Rounded(law.hardness_pa, 0), Rounded(law.gap_w_m2k, 1));
+    write!(
+        f,
+        "ok exponent={exponent} hardness_pa={hardness} gap_w_m2k={gap}"
+    )
 }
 
 fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt::Result {
@@ -102,9 +124,45 @@ fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt:
             let worst_mk = Rounded(*worst_mk, 2);
             write!(f, "ok points={points} worst_mk={worst_mk}")
         }
+        SessionReply::Flux(None) => f.write_str("ok flux=none"),
+        SessionReply::Flux(Some((sensor, state))) => write_flux_answer(f, sensor, state),
+        SessionReply::DisplaySurface(display) => write_surface_answer(f, display),
         SessionReply::SettingsLines(lines) => write!(f, "ok lines={lines}"),
         SessionReply::Setting(setting) => write_set_line(f, setting),
     }
+}
+
+fn write_flux_answer(
+    f: &mut fmt::Formatter<'_>,
+    sensor: &FluxSensor,
+    state: &FluxState,
+) -> fmt::Result {
+    f.write_str("ok flux=fitted")?;
+    let names = [
+        "counts_per_w_m2",
+        "zero_counts",
+        "lag_ms",
+        "resistance_mm2k_w",
+    ];
+    let values = sensor.to_array().into_iter().zip(FluxSensor::DECIMALS);
+    for (name, (value, decimals)) in names.into_iter().zip(values) {
+        write!(f, " {name}={}", Rounded(value, decimals as usize))?;
+    }
+    match state.flux {
+        Some(flux) => write!(f, " w_m2={}", Rounded(flux.to_num(), 1))?,
+        None => f.write_str(" w_m2=-")?,
+    }
+    write!(f, " finger={}", state.knowledge.name())
+}
+
+fn write_surface_answer(f: &mut fmt::Formatter<'_>, display: &DisplaySurface) -> fmt::Result {
+    f.write_str("ok")?;
+    let names = ["conductivity_w_mk", "roughness_um", "slope_rad"];
+    let values = (display.to_array().into_iter()).zip(DisplaySurface::DECIMALS);
+    for (name, (value, decimals)) in names.into_iter().zip(values) {
+        write!(f, " {name}={}", Rounded(value, decimals as usize))?;
+    }
+    Ok(())
 }
 
 fn state_answer_line(status: &Status) -> LineBuffer {
@@ -256,6 +314,20 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
             )?;
             let decimals = Calibration::CORRECTION_DECIMALS.map(|decimals| decimals as usize);
             write_numbers(f, &correction.to_array(), &decimals)
+        }
+        Setting::FluxSensor(None) => f.write_str("flux none"),
+        Setting::FluxSensor(Some(sensor)) => {
+            f.write_str("flux")?;
+            let decimals = FluxSensor::DECIMALS.map(|decimals| decimals as usize);
+            write_numbers(f, &sensor.to_array(), &decimals)
+        }
+        Setting::DisplaySurface(DisplaySurface::NOMINAL) => {
+            write!(f, "surface {NOMINAL_SURFACE_WORD}")
+        }
+        Setting::DisplaySurface(display) => {
+            f.write_str("surface")?;
+            let decimals = DisplaySurface::DECIMALS.map(|decimals| decimals as usize);
+            write_numbers(f, &display.to_array(), &decimals)
         }
         Setting::Tile(tile) => {
             f.write_str("tile")?;

@@ -1,10 +1,11 @@
 //! Parsing of a line from the host to a request.
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::material::{MATERIALS, Material, Surface};
 use contact_model::slab::Back;
 
 use thermal_commissioning::{SessionRequest, StorageOrder};
-use thermal_device::command::{AssumedFinger, ChosenMaterial, Command};
+use thermal_device::command::{AssumedFinger, ChosenContactLaw, ChosenMaterial, Command};
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_settings::{Range, Settings};
@@ -15,10 +16,12 @@ use crate::arguments::{
     skip_if_next_is, table_entry_for_word_or_none, word_or_empty,
 };
 use crate::calibrate_settings_set_commands::{
-    parse_calibration_point_or_clear, parse_set_arguments, parse_settings_query,
+    parse_calibration_point_or_clear, parse_flux, parse_set_arguments, parse_settings_query,
+    parse_surface,
 };
 use crate::events::{parse_switch, parse_telemetry_fields, parse_trigger_output};
 use crate::object::parse_object;
+use crate::person::{PersonRequest, parse_forget, parse_person};
 use crate::stimulus::{Pulse, parse_hold, parse_play, parse_pulse, parse_skin};
 
 /// A line from the host after parsing: a command with its arguments, which are within their ranges.
@@ -49,8 +52,10 @@ pub enum Request {
     /// A line `upload`: begin, a row, or commit.
     Upload,
     /// A line about settings or calibration, which the commissioning sessions of the addressed fingers execute:
-    /// `calibrate`, `tune result`, `margins`, `settings` or `set`.
+    /// `calibrate`, `tune result`, `margins`, `settings`, `set`, `flux` or `surface`.
     Commissioning(SessionRequest),
+    /// A line about persons: `person`, `persons` or `forget person`.
+    Person(PersonRequest),
     /// The line `save` or `forget`: store the present settings of all fingers, or factory defaults, in flash.
     Storage(StorageOrder),
 }
@@ -87,6 +92,9 @@ impl Request {
         "material" => Self::Station(parse_material_and_compute_contact(words, display)?),
         "object" => parse_object(words)?,
         "finger" => Self::Station(Command::Finger(words.next().map(parse_finger).transpose()?)),
+        "contact" => Self::Station(Command::ContactLaw(parse_contact_law(words)?)),
+        "person" => parse_person(words)?,
+        "persons" => Self::Person(PersonRequest::List),
         "upload" => Self::Upload,
         "mode" => Self::Station(Command::Mode(parse_contact_model(words)?)),
         "law" => Self::Station(Command::Law(words.next().map(parse_control_law_word).transpose()?)),
@@ -109,8 +117,10 @@ impl Request {
         "margins" => Self::Commissioning(SessionRequest::Margins),
         "settings" => Self::Commissioning(parse_settings_query(words)?),
         "set" => Self::Commissioning(SessionRequest::Set(parse_set_arguments(words)?)),
+        "flux" => Self::Commissioning(parse_flux(words)?),
+        "surface" => Self::Commissioning(parse_surface(words)?),
         "save" => Self::Storage(StorageOrder::Save),
-        "forget" => Self::Storage(StorageOrder::Forget),
+        "forget" => parse_forget(words)?,
     });
 
     /// Parses a line from the host without its address. `settings` give the surface of the display, on which the
@@ -123,7 +133,7 @@ impl Request {
     pub fn parse(line: &str, settings: &Settings) -> Result<Self, Error> {
         let mut words = line.split_ascii_whitespace();
         let name = read_word(&mut words, "command")?;
-        let request = Self::parse_arguments(name, &mut words, &settings.display)?;
+        let request = Self::parse_arguments(name, &mut words, settings.display.surface())?;
         if matches!(request, Self::Upload) {
             // Its arguments depend on the upload so far.
             return Ok(request);
@@ -145,6 +155,29 @@ pub const SWITCH_WORDS: [(&str, bool); 2] = [("on", true), ("off", false)];
 /// conductivity (W/mK), density (kg/m³), specific heat (J/kgK), roughness (µm) and slope of the asperities (rad).
 pub const CUSTOM_MATERIAL_WORD: &str = "custom";
 
+/// Argument of the command `contact` for the contact law of Eq. 6-8, in place of the three values of another one.
+pub const NOMINAL_CONTACT_LAW_WORD: &str = "nominal";
+
+static CONTACT_LAW_RANGES: [Range; 3] = [
+    Range {
+        name: "exponent",
+        unit: "",
+        min: *ContactLaw::EXPONENTS.start(),
+        max: *ContactLaw::EXPONENTS.end(),
+    },
+    Range {
+        name: "microhardness",
+        unit: "Pa",
+        min: *ContactLaw::HARDNESSES_PA.start(),
+        max: *ContactLaw::HARDNESSES_PA.end(),
+    },
+    Range {
+        name: "gap",
+        unit: "W/(m2 K)",
+        min: *ContactLaw::GAPS_W_M2K.start(),
+        max: *ContactLaw::GAPS_W_M2K.end(),
+    },
+];
 static STREAM_INTERVAL_RANGE: Range = Range {
     name: "interval",
     unit: "ms",
@@ -201,6 +234,21 @@ fn parse_finger(name: &str) -> Result<AssumedFinger, Error> {
     let found = table_entry_for_word_or_none(&AssumedFinger::PROTOCOL_WORDS, name);
     let (_, finger) = found.ok_or(Error::UnknownAssumedFinger(name.into()))?;
     Ok(finger)
+}
+
+fn parse_contact_law(words: &mut Words<'_>) -> Result<Option<ChosenContactLaw>, Error> {
+    if words.clone().next().is_none() {
+        return Ok(None);
+    }
+    if skip_if_next_is(words, NOMINAL_CONTACT_LAW_WORD) {
+        return Ok(Some(ChosenContactLaw::NOMINAL));
+    }
+    let [exponent, hardness_pa, gap_w_m2k] = read_numbers_in_ranges(words, &CONTACT_LAW_RANGES)?;
+    Ok(Some(ChosenContactLaw::new(ContactLaw {
+        exponent,
+        hardness_pa,
+        gap_w_m2k,
+    })))
 }
 
 fn parse_contact_model(words: &mut Words<'_>) -> Result<ContactModel, Error> {

@@ -10,22 +10,23 @@ use std::vec::Vec;
 use contact_model::fixed_point::{Celsius, Force};
 
 use super::{
-    ANSWER_MAX_BYTES, BoardStatus, Error, LINE_MAX_BYTES, LineError, LineReader, Reply, Request,
-    TelemetryLine,
+    ANSWER_MAX_BYTES, BoardStatus, Error, LINE_MAX_BYTES, LineError, LineReader, PersonCodes,
+    PersonReply, PersonRequest, Reply, Request, TelemetryLine,
 };
-use thermal_commissioning::IdentificationError;
-use thermal_device::TelemetryFields;
-use thermal_device::command::AssumedFinger;
-use thermal_device::command::{self, Command, ObjectBody, Status};
+use contact_model::contact_law::ContactLaw;
+use thermal_commissioning::{IdentificationError, StorageOrder};
+use thermal_device::command::{self, Command, FluxState, ObjectBody, Status};
+use thermal_device::command::{AssumedFinger, ChosenContactLaw};
 use thermal_device::control::Law;
 use thermal_device::drive::Current;
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::{
     ComparatorSideReport, Fault, SelfTestReport, SelfTestResult, SideLine,
 };
 use thermal_device::sense::SupplyVoltage;
-use thermal_device::{StateName, Telemetry};
-use thermal_settings::Settings;
+use thermal_device::{Flux, StateName, Telemetry, TelemetryFields};
+use thermal_settings::{Person, PersonCode, Persons, Settings};
 
 fn parse(line: &str) -> Result<Request, Error> {
     Request::parse(line, &Settings::default())
@@ -38,6 +39,49 @@ fn refusal(line: &str) -> String {
 }
 
 #[test]
+fn each_line_about_persons_is_parsed() {
+    let code = |word: &str| PersonCode::new(word).expect("a code");
+    let finger = core::array::from_fn(|i| [0x01, 0x23, 0x45, 0x67, 0x89, 0xab, 0xcd, 0xef][i % 8]);
+    let person = Person {
+        code: code("ABCDEFGH"),
+        finger,
+    };
+    for (line, request) in [
+        ("person", PersonRequest::Query),
+        ("person P07", PersonRequest::Choose(Some(code("P07")))),
+        ("person none", PersonRequest::Choose(None)),
+        ("person enrol P07", PersonRequest::Enrol(code("P07"))),
+        (
+            "person ABCDEFGH 0123456789abcdef0123456789ABCDEF01234567",
+            PersonRequest::Store(person),
+        ),
+        ("persons", PersonRequest::List),
+        ("forget person 7", PersonRequest::Forget(code("7"))),
+    ] {
+        assert_eq!(parse(line), Ok(Request::Person(request)), "{line}");
+    }
+    assert_eq!(parse("forget"), Ok(Request::Storage(StorageOrder::Forget)));
+    let reply = PersonReply {
+        person: Some(person),
+        contacts: 255,
+    };
+    assert_eq!(
+        Reply::Person(reply).to_string(),
+        "ok person=ABCDEFGH contacts=255 data=0123456789ABCDEF0123456789ABCDEF01234567"
+    );
+    let mut persons = Persons::new();
+    let listed = |persons: &Persons| Reply::Persons(PersonCodes::new(persons)).to_string();
+    assert_eq!(listed(&persons), "ok persons=none");
+    for number in 0..16 {
+        let code = code(&std::format!("ABCDEF{number:02}"));
+        assert!(persons.insert(Person { code, ..person }));
+    }
+    let list = listed(&persons);
+    assert!(list.starts_with("ok persons=ABCDEF00,ABCDEF01,") && list.ends_with(",ABCDEF15"));
+    assert!(list.len() <= ANSWER_MAX_BYTES);
+}
+
+#[test]
 fn every_command_is_parsed() {
     assert_eq!(parse("id"), Ok(Request::Identify));
     assert_eq!(parse("board"), Ok(Request::Board));
@@ -47,14 +91,14 @@ fn every_command_is_parsed() {
             "stream 0",
             Command::Stream {
                 interval_ms: 0,
-                fields: TelemetryFields::ALL,
+                fields: TelemetryFields::DEFAULT,
             },
         ),
         (
             " stream  60000 ",
             Command::Stream {
                 interval_ms: 60_000,
-                fields: TelemetryFields::ALL,
+                fields: TelemetryFields::DEFAULT,
             },
         ),
         ("object room", Command::Object(None)),
@@ -63,6 +107,19 @@ fn every_command_is_parsed() {
         (
             "finger thesis",
             Command::Finger(Some(AssumedFinger::Thesis)),
+        ),
+        ("contact", Command::ContactLaw(None)),
+        (
+            "contact nominal",
+            Command::ContactLaw(Some(ChosenContactLaw::NOMINAL)),
+        ),
+        (
+            "contact 0.875 61250 1000",
+            Command::ContactLaw(Some(ChosenContactLaw::new(ContactLaw {
+                exponent: 0.875,
+                hardness_pa: 61_250.0,
+                gap_w_m2k: 1000.0,
+            }))),
         ),
         ("object -20", Command::Object(Some(Celsius::lit("-20")))),
         ("object 23.25", Command::Object(Some(Celsius::lit("23.25")))),
@@ -107,13 +164,23 @@ fn both_ends_of_a_range_are_allowed() {
     }
 }
 
+/// The values of Eq. 6-8 themselves are the law that costs nothing.
+#[test]
+fn a_contact_law_of_nominal_values_is_the_nominal_one() {
+    let Ok(Request::Station(Command::ContactLaw(Some(law)))) = parse("contact 0.95 122500 0")
+    else {
+        panic!("a contact law");
+    };
+    assert_eq!(law.own, None);
+}
+
 #[test]
 fn every_error_message_names_the_mistake_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id board state stream events trigger-out checksum material object finger upload mode law arm hold play pulse skin start abort clear cause self-test raw \
-             calibrate tune margins settings set save forget",
+            "err unknown command 'fly'; known: id board state stream events trigger-out checksum material object finger contact person persons upload mode law arm hold play pulse skin start abort clear cause self-test raw \
+             calibrate tune margins settings set flux surface save forget",
         ),
         (
             "material unobtainium-of-the-first-kind",
@@ -145,10 +212,92 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
         ),
         ("mode", "err mode missing; known: contact semi-infinite"),
         (
+            "contact soft",
+            "err exponent 'soft' is not a decimal number; 0.3 to 1.5 ",
+        ),
+        (
+            "contact 0.9 122500",
+            "err gap missing; 0 to 100000 W/(m2 K)",
+        ),
+        (
+            "contact 0.9 999 0",
+            "err microhardness '999' out of range; 1000 to 100000000 Pa",
+        ),
+        (
             "calibrate",
             "err sensor missing; known: display check sink skin room",
         ),
-        ("set", "err setting missing; known: steps correction tile"),
+        (
+            "set",
+            "err setting missing; known: steps correction tile flux surface",
+        ),
+        ("flux fit", "err unknown flux 'fit'; known: set none zero"),
+        ("flux set", "err gain missing; 0.01 to 1 counts per W/m2"),
+        (
+            "flux set 1.1 2048 5 30",
+            "err gain '1.1' out of range; 0.01 to 1 counts per W/m2",
+        ),
+        (
+            "set flux 0.1 63 5 30",
+            "err zero '63' out of range; 64 to 4031 counts",
+        ),
+        (
+            "flux set 0.1 2048 0 30",
+            "err lag '0' out of range; 0.1 to 500 ms",
+        ),
+        (
+            "flux set 0.1 2048 5 3e3",
+            "err resistance '3e3' out of range; 0 to 1000 mm2 K/W",
+        ),
+        ("flux none 1", "err unexpected '1' after the command"),
+        (
+            "surface rough",
+            "err unknown surface 'rough'; known: set nominal",
+        ),
+        ("surface set", "err conductivity missing; 0.1 to 500 W/mK"),
+        (
+            "surface set 0.09 1 0.1",
+            "err conductivity '0.09' out of range; 0.1 to 500 W/mK",
+        ),
+        (
+            "set surface 36 31 0.1",
+            "err roughness '31' out of range; 0.01 to 30 um",
+        ),
+        (
+            "surface set 36 1 1.6",
+            "err slope '1.6' out of range; 0.001 to 1.5 rad",
+        ),
+        ("surface nominal 1", "err unexpected '1' after the command"),
+        (
+            "person p07",
+            "err person 'p07': a code is 1 to 8 of A-Z, 0-9",
+        ),
+        (
+            "person enrol ABCDEFGHI",
+            "err person 'ABCDEFGHI': a code is 1 to 8 of A-Z, 0-9",
+        ),
+        (
+            "person enrol",
+            "err person missing; a code of 1 to 8 of A-Z, 0-9",
+        ),
+        (
+            "forget person",
+            "err person missing; a code of 1 to 8 of A-Z, 0-9",
+        ),
+        (
+            "person P07 0123456789abcdef0123456789abcdef0123456",
+            "err data '0123456789abcdef0123' is not 40 hexadecimal digits",
+        ),
+        (
+            "person P07 0123456789abcdef0123456789abcdef0123456+",
+            "err data '0123456789abcdef0123' is not 40 hexadecimal digits",
+        ),
+        ("person none P07", "err unexpected 'P07' after the command"),
+        ("persons P07", "err unexpected 'P07' after the command"),
+        (
+            "forget persons",
+            "err unexpected 'persons' after the command",
+        ),
         ("arm now", "err unexpected 'now' after the command"),
         ("object room 3", "err unexpected '3' after the command"),
         (
@@ -292,12 +441,30 @@ fn the_longest_answers_fit_their_limit() {
         demand: Current::MIN,
         current: Current::MIN,
         evaluations: u32::MAX,
-        fields: TelemetryFields::ALL,
+        fields: TelemetryFields::DEFAULT,
     };
-    let line = TelemetryLine(longest).to_string();
+    let flux = Some(FluxState {
+        flux: Some(Flux::MIN),
+        surface: Some(Celsius::MIN),
+        knowledge: FingerKnowledge::SensorFault,
+    });
+    let write = |telemetry| TelemetryLine { telemetry, flux }.to_string();
+    let line = write(longest);
     assert!(
-        line.len() <= ANSWER_MAX_BYTES && line.ends_with(" display-short"),
+        line.len() <= ANSWER_MAX_BYTES && line.ends_with(" 4294967295 display-short"),
         "{line}"
+    );
+    let all = Telemetry {
+        fields: (0..TelemetryFields::NAMES.len())
+            .fold(TelemetryFields::NONE, TelemetryFields::with),
+        ..longest
+    };
+    assert_eq!(
+        write(all),
+        line.replace(
+            " display-short",
+            " -524288.0 -512.0000 sensor-range display-short"
+        )
     );
 }
 

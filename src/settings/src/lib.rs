@@ -7,6 +7,9 @@ extern crate std;
 
 mod calibration;
 mod checksum;
+mod display_surface;
+mod flux_sensor;
+mod persons;
 mod range;
 mod settings_record;
 mod settings_store;
@@ -19,16 +22,20 @@ pub use calibration::{
     round_to_decimals,
 };
 pub use checksum::{CRC_32, Crc32Digest};
-pub use range::{ADC_ERROR_STEP_RANGE, CORRECTION_RANGES, Range, TILE_RANGES};
+pub use display_surface::DisplaySurface;
+pub use flux_sensor::FluxSensor;
+pub use persons::{Person, PersonCode, Persons};
+pub use range::{
+    ADC_ERROR_STEP_RANGE, CORRECTION_RANGES, DISPLAY_SURFACE_RANGES, FLUX_SENSOR_RANGES, Range,
+    TILE_RANGES,
+};
 pub use settings_record::{
-    RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode_settings_record,
-    encode_settings_record,
+    RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredDevice, StoredSettings,
+    decode_settings_record, encode_settings_record,
 };
 pub use settings_store::{SettingsStore, StoreError};
 pub use tile::Tile;
 pub use triplicated_sealed_flash::{TriplicatedSealedFlash, TriplicatedSealedFlashError};
-
-use contact_model::material::{REFERENCE_DISPLAY, Surface};
 
 /// Control ticks per second of each finger: a tick is 1 ms.
 pub const TICK_HZ: u32 = 1000;
@@ -65,12 +72,14 @@ pub struct Settings {
     /// Gains of the control law `pi-10hz`, which updates the module's current ten times a second; [`Self::set_tile`]
     /// computes them.
     pub gains_10hz: PiGains,
-    /// Surface of the display: thermal conductivity (W/mK), RMS roughness (µm) and mean slope of the asperities (rad).
-    /// The thermal contact resistance between display and skin is computed from these properties.
-    pub display: Surface,
+    /// Surface of the display, from whose conductivity, roughness and slope the thermal contact resistance between display and
+    /// skin is computed.
+    pub display: DisplaySurface,
     /// Steps of the converter's error and corrections of the five thermistors, found by calibration with a reference
     /// thermometer; all zero before the first calibration.
     pub calibration: Calibration,
+    /// The sensor of the heat flux between skin and display; `None` if it is not fitted.
+    pub flux_sensor: Option<FluxSensor>,
     /// Thermal parameters of the tile, nominal until the command `tune` has identified them. [`Self::set_tile`]
     /// replaces them, because the gains follow from them.
     pub tile: Tile,
@@ -235,8 +244,9 @@ impl Default for Settings {
             },
             gains,
             gains_10hz,
-            display: REFERENCE_DISPLAY,
+            display: DisplaySurface::NOMINAL,
             calibration: Calibration::default(),
+            flux_sensor: None,
             tile: Tile::FACTORY_DEFAULT,
         }
     }

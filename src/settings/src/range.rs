@@ -4,7 +4,7 @@ use core::fmt;
 
 use contact_model::decimal::Shortest;
 
-use super::{Calibration, Tile};
+use super::{Calibration, DisplaySurface, FluxSensor, Tile};
 
 /// Allowed range of a quantity in a line from the host or in the record in flash, with its name and unit for error
 /// messages. `Display` writes limits and unit, as in `15 to 42 C`.
@@ -102,6 +102,56 @@ pub static TILE_RANGES: [Range; 5] = [
         max: 1.0,
     },
 ];
+/// Allowed ranges of a heat-flux sensor's values, in the order of [`FluxSensor::to_array`]. The zeros are the codes that the
+/// sensor's amplifier can give without being at a rail.
+pub static FLUX_SENSOR_RANGES: [Range; 4] = [
+    Range {
+        name: "gain",
+        unit: "counts per W/m2",
+        min: 0.01,
+        max: 1.0,
+    },
+    Range {
+        name: "zero",
+        unit: "counts",
+        min: 64.0,
+        max: 4031.0,
+    },
+    Range {
+        name: "lag",
+        unit: "ms",
+        min: 0.1,
+        max: 500.0,
+    },
+    Range {
+        name: "resistance",
+        unit: "mm2 K/W",
+        min: 0.0,
+        max: 1000.0,
+    },
+];
+/// Allowed ranges of a display's surface, in the order of [`DisplaySurface::to_array`]: from those of glazes to those of metals,
+/// and from polished to blasted ones.
+pub static DISPLAY_SURFACE_RANGES: [Range; 3] = [
+    Range {
+        name: "conductivity",
+        unit: "W/mK",
+        min: 0.1,
+        max: 500.0,
+    },
+    Range {
+        name: "roughness",
+        unit: "um",
+        min: 0.01,
+        max: 30.0,
+    },
+    Range {
+        name: "slope",
+        unit: "rad",
+        min: 0.001,
+        max: 1.5,
+    },
+];
 
 impl Calibration {
     /// The first value of this calibration that lies outside its allowed range, with that range; `None` if all values
@@ -125,6 +175,22 @@ impl Tile {
     #[must_use]
     pub fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
         first_value_out_of_range(TILE_RANGES.iter().zip(self.to_array()))
+    }
+}
+
+impl DisplaySurface {
+    /// The first value of the surface that is outside its allowed range, with that range; `None` if all are inside.
+    #[must_use]
+    pub fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
+        first_value_out_of_range(DISPLAY_SURFACE_RANGES.iter().zip(self.to_array()))
+    }
+}
+
+impl FluxSensor {
+    /// The first value of the sensor that is outside its allowed range, with that range; `None` if all are inside.
+    #[must_use]
+    pub fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
+        first_value_out_of_range(FLUX_SENSOR_RANGES.iter().zip(self.to_array()))
     }
 }
 

@@ -12,7 +12,7 @@ use sequential_storage::cache::page_states::ArrayPageStates;
 use sequential_storage::map::{MapConfig, MapStorage};
 
 use super::{
-    RECORD_MAX_BYTES, RecordError, StoredSettings, TriplicatedSealedFlash,
+    RECORD_MAX_BYTES, RecordError, StoredDevice, TriplicatedSealedFlash,
     TriplicatedSealedFlashError, decode_settings_record, encode_settings_record,
 };
 
@@ -108,7 +108,7 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
     /// its newest record cannot be found. [`StoreError::Record`]: the newest record holds no valid settings of a device
     /// with `FINGERS` fingers.
     #[inline(never)]
-    pub fn load(&mut self) -> Result<Option<[StoredSettings; FINGERS]>, StoreError<F::Error>> {
+    pub fn load(&mut self) -> Result<Option<StoredDevice<FINGERS>>, StoreError<F::Error>> {
         let (mut log, buffer) = self.record_log_and_buffer();
         let record = block_on(log.fetch_item::<&[u8]>(buffer, &()))?;
         record.map_or(Ok(None), |bytes| {
@@ -130,7 +130,7 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
     #[inline(never)]
     pub fn save(
         &mut self,
-        settings: Option<&[StoredSettings; FINGERS]>,
+        settings: Option<&StoredDevice<FINGERS>>,
     ) -> Result<(), StoreError<F::Error>> {
         let bytes = encode_settings_record(settings);
         let mut saved = self.append_and_verify(&bytes);

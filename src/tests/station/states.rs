@@ -112,7 +112,7 @@ fn state_and_id_report_the_station_and_the_device() {
     );
     assert_eq!(
         bench.send("id"),
-        "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000 protocol=1 capabilities=upload,checksum,board,self-test,raw,course"
+        "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000 protocol=1 capabilities=upload,checksum,board,self-test,raw,course,flux,contact,surface,person"
     );
 }
 

@@ -9,20 +9,21 @@ use std::fmt::Display;
 
 use thermal_display::device::command::{self, Command, Status, WithSourceFinger};
 use thermal_display::device::drive::{BoardOutputs, ComparatorTest, Drive};
+use thermal_display::device::events::UnsolicitedReport;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, FingerIndex, StateName, TriggerEdge};
 use thermal_display::protocol::{
     CommandHandler, Error, LineError, LineReader, OutgoingLine, UnsolicitedLine,
-    wrap_as_telemetry_line,
 };
 use thermal_display::settings::Settings;
+use thermal_learner::{Learner, LearnerOutput};
 
 use crate::tile::{FULL_SCALE, Tile, sum_at};
 
 /// Longest answer and telemetry line, bytes: the text, and `@n ` before it.
 const ANSWER_MAX: usize = thermal_display::protocol::ANSWER_MAX_BYTES + 3;
-const TELEMETRY_MAX: usize = 128 + 3;
+const TELEMETRY_MAX: usize = 160 + 3;
 /// Largest error of a display's reading, whatever settings lines have set, K: 2.52 of its
 /// correction, 0.18 of the converter's steps, 0.04 of its self-heating.
 pub const READING_ERROR_MAX_K: f64 = 2.8;
@@ -31,12 +32,36 @@ pub const READING_ERROR_MAX_K: f64 = 2.8;
 const SURELY_COLD_C: f64 = 13.5 - READING_ERROR_MAX_K;
 const SURELY_HOT_C: f64 = 43.0 + READING_ERROR_MAX_K;
 
+/// Codes of the heat-flux sensor.
+#[derive(Clone, Copy, Debug)]
+pub enum FluxCodes {
+    /// Some flux under a force, with the noise of another channel.
+    OfForce,
+    /// These two in turn; a converter has 12 bits.
+    InTurn([u16; 2]),
+}
+
+/// What answers the inputs of the learner.
+#[derive(Clone, Copy, Debug)]
+pub enum Answers {
+    /// The learner.
+    Learner,
+    /// Nothing.
+    None,
+    /// This, with the number of the input.
+    Always(LearnerOutput),
+}
+
 /// A device and its command handler, on one tile for each finger.
 #[derive(Clone, Debug)]
 pub struct CheckedDevice<const FINGERS: usize> {
     device: Device<FINGERS>,
     handler: CommandHandler<FINGERS>,
     tiles: [Tile; FINGERS],
+    learners: [Learner; FINGERS],
+    flux_codes: FluxCodes,
+    answers: Answers,
+    ticks: u32,
 }
 
 impl<const FINGERS: usize> CheckedDevice<FINGERS> {
@@ -47,7 +72,26 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
             device: Device::new(&settings),
             handler: CommandHandler::new(settings),
             tiles: [Tile::default(); FINGERS],
+            learners: [const { Learner::new() }; FINGERS],
+            flux_codes: FluxCodes::OfForce,
+            answers: Answers::Learner,
+            ticks: 0,
         }
+    }
+
+    /// Has the heat-flux sensors read these codes from now on.
+    pub fn set_flux_codes(&mut self, codes: FluxCodes) {
+        self.flux_codes = codes;
+    }
+
+    /// Has this answer the learner's inputs from now on.
+    pub fn set_answers(&mut self, answers: Answers) {
+        self.answers = answers;
+    }
+
+    /// An answer that nobody has asked for, or to this input.
+    pub fn answer_unasked(&mut self, finger: FingerIndex<FINGERS>, output: &LearnerOutput) {
+        self.device.put_learner_output(finger, output);
     }
 
     /// The tile of a finger.
@@ -132,7 +176,29 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     /// Runs one tick and checks the outputs, the change of state and the telemetry.
     pub fn step(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {
         let before = self.state(finger);
+        if self.device.finger_has_flux_sensor(finger) {
+            self.ticks = self.ticks.wrapping_add(1);
+            let code = match self.flux_codes {
+                FluxCodes::OfForce => 1843 + samples.force / 32 + samples.display % 4,
+                FluxCodes::InTurn(codes) => codes[self.ticks as usize % 2] & 0x0fff,
+            };
+            self.device.note_flux_code(finger, Some(code));
+        }
         let outputs = self.device.step_finger(finger, samples);
+        if let Some(input) = self.device.take_learner_input(finger) {
+            let output = match self.answers {
+                Answers::Learner => Some(*self.learners[finger.index()].advance(&input)),
+                Answers::None => None,
+                Answers::Always(output) => Some(LearnerOutput {
+                    sequence: input.sequence,
+                    revision: input.sequence,
+                    ..output
+                }),
+            };
+            if let Some(output) = output {
+                self.device.put_learner_output(finger, &output);
+            }
+        }
         let Status {
             state, setpoint, ..
         } = self.status(finger);
@@ -156,18 +222,16 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
             );
         }
         while let Some(event) = self.device.take_finger_event(finger) {
-            let event = event.map_content(UnsolicitedLine);
-            check_text(&self.to_host(&event), TELEMETRY_MAX);
+            let line = self.unsolicited(event);
+            check_text(&self.to_host(&line), TELEMETRY_MAX);
         }
         if let Some(telemetry) = self.device.finger_telemetry_if_due(finger) {
             let demand_a: f64 = telemetry.content.demand.to_num();
             assert!(demand_a.abs() <= 6.0, "demand {demand_a} A");
             let off = outputs.drive == Drive::Off;
             assert!(!off || demand_a == 0.0, "demand {demand_a} A while off");
-            check_text(
-                &self.to_host(&wrap_as_telemetry_line(telemetry)),
-                TELEMETRY_MAX,
-            );
+            let line = self.unsolicited(telemetry.into_report());
+            check_text(&self.to_host(&line), TELEMETRY_MAX);
         }
         outputs
     }
@@ -190,6 +254,14 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     }
 
     /// A line to the host; its checksum is checked and taken away.
+    fn unsolicited(
+        &mut self,
+        report: WithSourceFinger<UnsolicitedReport>,
+    ) -> WithSourceFinger<UnsolicitedLine> {
+        let device = &mut self.device;
+        UnsolicitedLine::of_report(report, |finger, command| device.execute(finger, command))
+    }
+
     fn to_host(&self, content: &dyn Display) -> String {
         let mut line = OutgoingLine::new();
         self.handler.write_line(&mut line, content);

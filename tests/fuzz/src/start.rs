@@ -22,7 +22,7 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
 
     /// The device with this index, modulo their number: off, in self-test, armed, at the preset, in contact, ready,
     /// tripped, identifying the tile (begun, driving pulses, done), streaming telemetry in contact under the PI law, playing a
-    /// course and waiting for a landing to play one, with events.
+    /// course and waiting for a landing to play one, with events; in contact with a heat-flux sensor.
     pub fn get(&self, index: u8) -> CheckedDevice<FINGERS> {
         let all = self.0.get_or_init(|| {
             let device_after = |lines: &[&str], force_n: f64, ticks: u32| {
@@ -79,6 +79,8 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
             };
             let playing = with_course("now 100");
             let waiting = with_course("landing 3 neutral");
+            let sensor = "flux set 0.1192 2048 5 30";
+            let learning = device_after(&[sensor, "material granite", "arm", "start"], 2.0, 1000);
             let mut all = vec![
                 off,
                 testing,
@@ -93,6 +95,7 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
                 streaming,
                 playing,
                 waiting,
+                learning,
             ];
             let states: Vec<_> = all
                 .iter_mut()
@@ -112,6 +115,7 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
                 StateName::Contact,
                 StateName::Stimulus,
                 StateName::Stimulus,
+                StateName::Contact,
             ];
             assert_eq!(states, expected);
             all

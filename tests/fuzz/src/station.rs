@@ -1,6 +1,8 @@
 //! A device with one finger under samples of any kind, with lines and faults in between.
 
 use arbitrary::{Arbitrary, Unstructured};
+use contact_model::fixed_point::WEIGHTS;
+use fixed::types::{I2F30, I4F28, I10F22};
 use thermal_display::commissioning::THERMISTOR_WORDS;
 use thermal_display::device::FingerIndex;
 use thermal_display::device::drive::Drive;
@@ -9,6 +11,10 @@ use thermal_display::device::sense::{
     ADC_CHANNELS_PER_FINGER, DigitalInputs, SCANS_PER_TICK, Samples, Scan,
 };
 
+use thermal_display::device::learning::FingerKnowledge;
+use thermal_learner::{Learner, LearnerInput, LearnerOutput, Trust};
+
+use crate::device::{Answers, FluxCodes};
 use crate::start::StartDevices;
 
 static STARTS: StartDevices<1> = StartDevices::new();
@@ -59,6 +65,48 @@ enum Event {
     Line(Line),
     /// The lines of an upload.
     Upload(Upload),
+    /// A heat-flux sensor, or none.
+    FluxSensor(Option<[u16; 4]>),
+    /// Codes of the heat-flux sensor: as of a force, or two in turn.
+    FluxCodes(Option<[u16; 2]>),
+    /// What answers the learner's inputs: the learner, nothing, or this.
+    Answers(Option<Option<Answer>>),
+    /// An answer that nobody has asked for.
+    Unasked(Answer),
+}
+
+/// Any answer of a learner, whether a learner would give it or not.
+#[derive(Arbitrary, Clone, Copy, Debug)]
+struct Answer {
+    sequence: u16,
+    weights: [i32; WEIGHTS],
+    air: i32,
+    skin: i32,
+    resistance: i32,
+    trust: u8,
+}
+
+impl Answer {
+    fn output(&self) -> LearnerOutput {
+        let mean = *Learner::new().advance(&LearnerInput {
+            sequence: self.sequence,
+            restart: None,
+            flux_w_m2: None,
+            contact: None,
+        });
+        let trusts = FingerKnowledge::PROTOCOL_WORDS.map(|(_, knowledge)| match knowledge {
+            FingerKnowledge::Learnt(trust) => trust,
+            _ => Trust::Learning,
+        });
+        LearnerOutput {
+            weights: self.weights.map(I2F30::from_bits),
+            air_change: I4F28::from_bits(self.air),
+            skin_offset_k: I10F22::from_bits(self.skin),
+            resistance_factor: I4F28::from_bits(self.resistance),
+            trust: element(&trusts, self.trust),
+            ..mean
+        }
+    }
 }
 
 /// A line of the protocol whose numbers are within their ranges most of the time.
@@ -116,7 +164,7 @@ impl Upload {
 }
 
 /// Lines without numbers.
-const WORDS: [&str; 33] = [
+const WORDS: [&str; 36] = [
     "arm",
     "start",
     "abort",
@@ -150,6 +198,9 @@ const WORDS: [&str; 33] = [
     "skin 33",
     "events on",
     "trigger-out land,lift,start,end",
+    "flux",
+    "flux zero",
+    "flux set 0.1192 2048 5 30",
 ];
 
 const MATERIALS: [&str; 9] = [
@@ -237,6 +288,18 @@ impl Line {
             }
         }
     }
+}
+
+/// The line that tells of a heat-flux sensor with these values, over the ranges that are allowed and a little beyond.
+fn flux_line(sensor: Option<[u16; 4]>) -> String {
+    let Some(values) = sensor else {
+        return "flux none".into();
+    };
+    let ranges = [(0.01, 1.01), (60.0, 4040.0), (0.1, 502.0), (0.0, 1010.0)];
+    let values = values.iter().zip(ranges).map(|(value, (low, high))| {
+        format!(" {:.4}", low + (high - low) * f64::from(*value) / 65535.0)
+    });
+    format!("flux set{}", values.collect::<String>())
 }
 
 /// The sum of the channel with this index, modulo their number.
@@ -356,6 +419,18 @@ pub fn run(input: &[u8]) -> bool {
                     let _ = device.line(&line);
                 }
             }
+            Event::FluxSensor(sensor) => {
+                let _ = device.line(&flux_line(sensor));
+            }
+            Event::FluxCodes(codes) => {
+                device.set_flux_codes(codes.map_or(FluxCodes::OfForce, FluxCodes::InTurn));
+            }
+            Event::Answers(answers) => device.set_answers(match answers {
+                None => Answers::Learner,
+                Some(None) => Answers::None,
+                Some(Some(answer)) => Answers::Always(answer.output()),
+            }),
+            Event::Unasked(answer) => device.answer_unasked(FINGER, &answer.output()),
         }
     }
     true

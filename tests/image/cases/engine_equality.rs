@@ -114,6 +114,25 @@ fn both_engines_write_the_same_trace_of_a_layered_object_and_of_a_drawn_finger()
     }
 }
 
+/// A drawn finger, learnt from the designed heat-flux sensor in two contacts.
+#[test]
+fn both_engines_write_the_same_trace_of_a_finger_that_is_learnt() {
+    let finger = "[device]\nflux_sensor = true\n[finger]\ntissue = \"layered\"\ndraw = 3\n";
+    let touched = forces(&[(1.0, 2.0), (4.0, 0.0), (7.0, 0.5), (8.0, 0.0)]);
+    let tables = [finger, &touched, &host(&[(0.2, "events on")])].concat();
+    for material in ["granite", "copper"] {
+        let scene = scene(material, 9.0, "", &tables);
+        let (native, image) = (natively(&scene), on_image(&scene));
+        assert_eq!(native.events, image.events, "{material}");
+        // What is known of the finger changes: it is trusted.
+        let is_learnt = |(_, line): &(f64, String)| line.ends_with("flux");
+        assert!(image.events.iter().any(is_learnt), "{:?}", image.events);
+        let [native, image] = [(&native, "native"), (&image, "image")]
+            .map(|(outcome, engine)| csv(outcome, &format!("{engine}-learnt-{material}")));
+        assert!(native == image, "{material}");
+    }
+}
+
 /// A layered finger, repeated contacts, a plant of the parameter box, and random draws by an infrared camera.
 #[test]
 fn both_engines_write_the_same_trace_of_the_example_scenes() {

@@ -19,7 +19,7 @@ const ANSWERED_IN_MS: usize = 300;
 
 /// Lines to a finger that touches, in contact with an uploaded object. Each choice is made where it changes most: a material
 /// after an object with a body, a finger after one of another tissue.
-const IN_CONTACT: [&str; 46] = [
+const IN_CONTACT: [&str; 53] = [
     "id",
     "board",
     "state",
@@ -57,6 +57,13 @@ const IN_CONTACT: [&str; 46] = [
     "set tile 2.949416 0.058449 0.102339 0.101742 0.015895",
     "arm",
     "arm",
+    "flux set 0.1192 2048 5 30",
+    "flux",
+    "finger thesis",
+    "finger mean",
+    "set flux 0.1 2000 4 20",
+    "flux zero",
+    "flux none",
     "hold 30",
     "start",
     "arm",
@@ -261,7 +268,7 @@ const FLASH_TIMINGS: [FlashTiming; 3] = [
 ];
 
 /// The command that locks longest if the flash needs no wait states.
-const LONGEST: &str = "material copper";
+const LONGEST: &str = "finger thesis";
 
 /// Sends the longest command at times 0.5 us apart over one turn, so that one of them begins to lock right before a finger's
 /// last scan ends.

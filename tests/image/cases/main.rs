@@ -8,6 +8,7 @@ mod engine_equality;
 mod five_finger_faults;
 mod five_finger_locks;
 mod five_fingers;
+mod learner_cost;
 mod processor_faults;
 mod range_limits;
 mod safety;

@@ -127,7 +127,7 @@ impl Bare {
 
     /// The answers to `settings 1` to `settings 8`.
     pub fn settings(&mut self) -> Vec<String> {
-        (1..=8)
+        (1..=9)
             .map(|line| self.answer(&format!("settings {line}")))
             .collect()
     }

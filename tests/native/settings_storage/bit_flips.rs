@@ -27,7 +27,7 @@ fn flip_each_bit<const FINGERS: usize>(saves: u32) {
     for bit in (0..8 * BYTES).filter(|bit| in_header(*bit) || bit % step == 0) {
         flash.flip(bit);
         let found = SettingsStore::new(flash.clone()).load();
-        assert_eq!(found, Ok(newest), "{saves} saves, bit {bit}");
+        assert_eq!(found, Ok(newest.clone()), "{saves} saves, bit {bit}");
         flipped += 1;
         if in_header(bit) || bit % STRIDE == 0 {
             let after = saved(&flash.cells(), next.as_ref(), None);

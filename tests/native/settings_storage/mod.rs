@@ -56,7 +56,7 @@ fn campaign<const FINGERS: usize>(saves: u32, stride: u32) -> Coverage {
             }
         }
         cells = after;
-        before = settings.copied();
+        before = settings.cloned();
     }
     coverage
 }
@@ -73,6 +73,16 @@ fn settings_of_five_fingers_survive_a_power_cut_in_any_flash_operation() {
     let coverage = campaign::<5>(45, 20);
     assert_figure("storage.cuts_five", coverage.cuts as f64);
     assert!(coverage.page_changes >= 5, "{coverage:?}");
+}
+
+#[test]
+fn settings_of_ten_fingers_with_heat_flux_sensors_can_be_stored() {
+    let mut cells = erased();
+    for number in 1000..1010 {
+        let settings = numbered::<10>(number);
+        cells = saved(&cells, settings.as_ref(), None);
+        assert_eq!(loaded(&cells), settings, "save {number}");
+    }
 }
 
 #[test]

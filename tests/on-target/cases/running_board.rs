@@ -54,8 +54,9 @@ pub fn run_tick(board: &mut Board) -> Result<(u32, u32), SampleError> {
     while !NVIC::is_pending(Interrupt::DMA2_STREAM0) {}
     let begun = cycles::now();
     let control_loop = &mut board.control_loop;
+    // A new device has no heat-flux sensor, and its learner no input.
     let (result, cost) =
-        cycles::measure(|| control_loop.run_finger_tick(&mut board.device, &host_is_active));
+        cycles::measure(|| control_loop.run_finger_tick(&mut board.device, &host_is_active, || ()));
     NVIC::unpend(Interrupt::DMA2_STREAM0);
     board.watchdog.feed();
     result.map(|_| (begun, cost))

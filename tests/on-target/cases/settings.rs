@@ -34,7 +34,7 @@ fn settings(number: usize) -> [StoredSettings; FINGERS] {
 }
 
 fn record(number: usize) -> SettingsRecord {
-    encode_settings_record(Some(&settings(number)))
+    encode_settings_record(Some(&settings(number).into()))
 }
 
 fn flash() -> FLASH {

@@ -7,7 +7,7 @@ use thermal_sim::named_enum;
 use thermal_sim::run::Outcome;
 use thermal_sim::trace::TraceRow;
 
-use super::{ExpectedReaction, FaultCase, InjectionPoint};
+use super::{ExpectedReaction, FaultCase, InjectionPoint, LearningExpected};
 
 /// Allowed skin temperature, °C: between the thresholds of pain.
 const SKIN_C: std::ops::RangeInclusive<f64> = 13.0..=45.0;
@@ -15,6 +15,8 @@ const SKIN_C: std::ops::RangeInclusive<f64> = 13.0..=45.0;
 const DOSE_MIN: f64 = 1.0;
 /// Longest allowed time from the first symptom to zero current, ms.
 const SAFE_MS: f64 = 50.0;
+/// Time after a fault of the learning from which the skin is compared, s.
+const COMPARED_AFTER_S: f64 = 0.2;
 /// Decimals of the time of a fault in s and of times after it in ms, for faults at a tick and for bit flips between ticks.
 pub(super) const MILLISECONDS: (usize, usize) = (3, 0);
 pub(super) const MICROSECONDS: (usize, usize) = (6, 1);
@@ -38,8 +40,11 @@ named_enum! {
         Late = "late",
         /// The device reported a wrong trip cause, or none.
         Reason = "reason",
-        /// The set-point differed from that without the fault, which must not change it.
+        /// The set-point differed from that without the fault, which must not change it; or the skin by more than it may from that on
+        /// a display that assumes its finger, or has learnt it without the fault.
         Changed = "changed",
+        /// The device reported what it cannot know about the finger.
+        Knowledge = "knowledge",
         /// One of five fingers, which does not have the fault, did not render as without it.
         Others = "others",
     }
@@ -64,6 +69,12 @@ pub struct RunAssessment {
     pub cem43_min: f64,
     /// Display, °C.
     pub display_c: Extremes,
+    /// Largest difference of the skin from the run that it is compared with, for faults of the learning, K.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skin_difference_k: Option<f64>,
+    /// What the device knows of the finger, with a heat-flux sensor, as its word in the protocol.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub knowledge: Option<String>,
     /// Limits that the run broke.
     pub breaches: Vec<Breach>,
     /// Why the run ended early.
@@ -86,6 +97,8 @@ impl RunAssessment {
             skin_c: unknown,
             cem43_min: f64::NAN,
             display_c: unknown,
+            skin_difference_k: None,
+            knowledge: None,
             breaches: vec![Breach::Ended],
             ended: Some(format!("{error:#}")),
         }
@@ -150,10 +163,19 @@ impl RunAssessment {
             skin_c: figures.skin_c,
             cem43_min: figures.cem43_min,
             display_c: figures.display_c,
+            skin_difference_k: (fault_case.learning)
+                .and_then(|_| skin_difference_k(rows, fault_free, t_s + COMPARED_AFTER_S)),
+            knowledge: end.knowledge.map(Into::into),
             breaches: Vec::new(),
             ended: None,
         };
-        let changed = fault_case.unchanged && setpoints_differ(rows, fault_free);
+        let changed = match fault_case.learning {
+            Some(LearningExpected { skin_max_k, .. }) => {
+                let difference_k = assessment.skin_difference_k;
+                !difference_k.is_some_and(|difference_k| difference_k <= skin_max_k)
+            }
+            None => fault_case.unchanged && setpoints_differ(rows, fault_free),
+        };
         assessment.judge(fault_case, &rows[..from], before, changed);
         assessment
     }
@@ -176,6 +198,12 @@ impl RunAssessment {
                 .took_ms
                 .is_some_and(|took_ms| took_ms <= SAFE_MS + 1e-6);
         let said = self.reason.as_str();
+        let is_misjudged = fault_case.learning.is_some_and(|learning| {
+            let words = learning.knowledge.iter().map(|one| one.name());
+            !words
+                .map(Some)
+                .any(|word| word == self.knowledge.as_deref())
+        });
         let right = match fault_case.expected {
             ExpectedReaction::Trip(faults) => {
                 let named = faults.iter().any(|fault| fault.name() == said);
@@ -193,6 +221,7 @@ impl RunAssessment {
             (Breach::Late, late),
             (Breach::Reason, !right),
             (Breach::Changed, changed),
+            (Breach::Knowledge, is_misjudged),
         ] {
             if is_so {
                 self.breaches.push(breach);
@@ -240,6 +269,13 @@ fn setpoints_differ(rows: &[TraceRow], others: &[TraceRow]) -> bool {
     both.peek().is_none() || both.any(|(one, other)| one.setpoint_c != other.setpoint_c)
 }
 
+/// Largest difference of the skin on the display from that of the other run, K, from a time on, s; none without a row of both.
+fn skin_difference_k(rows: &[TraceRow], others: &[TraceRow], from_s: f64) -> Option<f64> {
+    let both = rows.iter().zip(others).filter(|(row, _)| row.t_s >= from_s);
+    both.map(|(row, other)| (row.skin_c - other.skin_c).abs())
+        .max_by(f64::total_cmp)
+}
+
 /// Time after which no current flows; `None` if current flows at the end.
 fn safe(rows: &[TraceRow]) -> Option<f64> {
     let last = rows.iter().rposition(|row| row.current_a.abs() > NONE_A);
@@ -252,6 +288,8 @@ struct FinalAnswers<'a> {
     state: Option<(&'a str, &'a str)>,
     /// The present fault for which the device refused `clear`.
     refused_clear: Option<&'a str>,
+    /// Word of the last `flux` answer for what is known of the finger.
+    knowledge: Option<&'a str>,
 }
 
 impl<'a> FinalAnswers<'a> {
@@ -270,6 +308,7 @@ impl<'a> FinalAnswers<'a> {
         Self {
             state,
             refused_clear,
+            knowledge: lines().rev().find_map(|(_, line)| word(line, "finger=")),
         }
     }
 

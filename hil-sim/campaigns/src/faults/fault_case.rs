@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
 use thermal_sim::processor::MachineFault;
 use thermal_sim::scene::{ActiveFault, FaultKind, Sensor};
@@ -99,6 +100,18 @@ pub enum ExpectedReaction {
     Restart,
 }
 
+/// What a fault must do to the learning of the finger from the heat flux.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LearningExpected {
+    /// What the device may say of the finger at the end.
+    pub knowledge: &'static [FingerKnowledge],
+    /// Whether the skin is compared with that on a display that assumes the finger, or that has learnt it without the fault. Not the
+    /// set-point: it runs ahead of a display that is at the limit of its current.
+    pub assumes: bool,
+    /// Largest difference of the skin, from 0.2 s after the fault on, K.
+    pub skin_max_k: f64,
+}
+
 /// One row of the matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaultCase {
@@ -112,6 +125,8 @@ pub struct FaultCase {
     pub latent: bool,
     /// Whether the set-point must remain what it is in the same scene without the fault.
     pub unchanged: bool,
+    /// Without it, the device has no heat-flux sensor.
+    pub learning: Option<LearningExpected>,
     /// Scenes in which it is worst; they are run before the others.
     pub scenes: &'static [FaultScene],
     /// Scenes in which it is meaningless.

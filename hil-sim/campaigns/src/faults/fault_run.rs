@@ -7,7 +7,7 @@ use thermal_sim::SceneRunner;
 use thermal_sim::metrics::Figures;
 use thermal_sim::processor::NotInjected;
 use thermal_sim::run::Outcome;
-use thermal_sim::scene::Scene;
+use thermal_sim::scene::{FaultKind, Scene, ScheduledFault};
 
 use super::assessment::RunAssessment;
 use super::{FaultCase, InjectedFault, InjectionPoint, Touch, scene_text};
@@ -15,6 +15,9 @@ use super::{FaultCase, InjectedFault, InjectionPoint, Touch, scene_text};
 /// Questions at the end and their times before it, s. The state is queried twice because a reset can truncate a line of
 /// telemetry, which then merges with the first answer.
 const QUESTIONS: [(f64, &str); 2] = [(0.2, "state"), (0.1, "state")];
+
+/// The same about the finger, if there is a heat-flux sensor.
+const KNOWLEDGE_QUESTION: (f64, &str) = (0.3, "flux");
 
 /// Runs a scene; `None` if the fault does not apply to the engine.
 fn run_if_applicable(
@@ -30,7 +33,8 @@ fn run_if_applicable(
     }
 }
 
-/// The run of the scene without the fault, if a symptom or the comparison of an unchanged set-point needs it.
+/// The run of the scene without the fault, if a symptom or a comparison needs it; or with a heat-flux sensor from
+/// which nothing is learnt.
 fn fault_free_run(
     device: &dyn SceneRunner,
     fault_case: &FaultCase,
@@ -44,7 +48,17 @@ fn fault_free_run(
             .iter()
             .any(|sign| sign.needs_fault_free_run());
     match fault_case.fault {
-        InjectedFault::Hardware(broken) if needed || fault_case.unchanged => {
+        _ if fault_case.learning.is_some_and(|one| one.assumes) => {
+            fault_free.injections.clear();
+            fault_free.faults = vec![ScheduledFault {
+                fault: FaultKind::FluxOpen.into(),
+                t_s: 0.0,
+                until_s: f64::INFINITY,
+            }];
+        }
+        InjectedFault::Hardware(broken)
+            if needed || fault_case.unchanged || fault_case.learning.is_some() =>
+        {
             fault_free
                 .faults
                 .retain(|fault| fault.fault.kind != broken.kind);
@@ -87,13 +101,17 @@ impl FaultRun {
         point: InjectionPoint,
         seed: u64,
     ) -> anyhow::Result<Option<Self>> {
+        let touch = match fault_case.learning {
+            Some(_) => Touch::learnt(seed),
+            None => Touch::default(),
+        };
         let text = scene_text(
             &[(fault_case.fault, point.t_s)],
             point,
             fault_case.after_s,
             seed,
             &[],
-            &Touch::default(),
+            &touch,
         );
         Self::run_text(device, fault_case, point, &text)
     }
@@ -148,7 +166,8 @@ pub(super) fn scene_text(
     for (fault, t_s) in faults {
         text += &scene_text::fault_text(fault, *t_s);
     }
-    for (before_s, line) in QUESTIONS {
+    let asked = touch.has_flux_sensor().then_some(KNOWLEDGE_QUESTION);
+    for (before_s, line) in asked.into_iter().chain(QUESTIONS) {
         text += &scene_text::host_line(line, end_s - before_s);
     }
     text += "[plant]\n";

@@ -6,10 +6,11 @@ use std::sync::LazyLock;
 
 use anyhow::Context;
 use serde::Deserialize;
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
 use toml::Value;
 
-use super::{ExpectedReaction, FaultCase, FaultScene, InjectedFault, Symptom};
+use super::{ExpectedReaction, FaultCase, FaultScene, InjectedFault, LearningExpected, Symptom};
 
 /// Default duration of the scene after a fault, s: long enough for the heat of the sink to return.
 const AFTER_S: f64 = 24.0;
@@ -23,6 +24,7 @@ struct Table {
     select_lines: Vec<Row>,
     symptoms: Groups,
     causes: Groups,
+    knowledge: Groups,
     scenes: Groups,
 }
 
@@ -38,6 +40,9 @@ struct Row {
     restarts: bool,
     latent: bool,
     unchanged: bool,
+    knowledge: Vec<Value>,
+    assumed_k: Option<f64>,
+    learnt_k: Option<f64>,
     scenes: Vec<Value>,
     never_at: Vec<Value>,
     after_s: Option<f64>,
@@ -77,6 +82,14 @@ fn fault_case(row: &Row, table: &Table) -> anyhow::Result<FaultCase> {
             named(&FaultScene::ALL, FaultScene::name),
         )
     };
+    let learning = match (row.assumed_k, row.learnt_k) {
+        (None, None) => None,
+        (assumed_k, learnt_k) => Some(LearningExpected {
+            knowledge: expand(&row.knowledge, &table.knowledge, knowledge)?,
+            assumes: assumed_k.is_some(),
+            skin_max_k: (assumed_k.xor(learnt_k)).context("has two limits of the skin")?,
+        }),
+    };
     let causes = expand(&row.causes, &table.causes, named(Fault::ALL, Fault::name))?;
     Ok(FaultCase {
         fault: InjectedFault::from_text(row.fault.clone().leak()).context("is unknown")?,
@@ -89,6 +102,7 @@ fn fault_case(row: &Row, table: &Table) -> anyhow::Result<FaultCase> {
         },
         latent: row.latent,
         unchanged: row.unchanged,
+        learning,
         scenes: scenes(&row.scenes)?,
         never_at: scenes(&row.never_at)?,
         after_s: row.after_s.unwrap_or(AFTER_S),
@@ -117,6 +131,15 @@ fn named<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> impl Fn(Value) -> O
     }
 }
 
+/// The knowledge of a finger that a word of the protocol names.
+fn knowledge(word: Value) -> Option<FingerKnowledge> {
+    let known = FingerKnowledge::PROTOCOL_WORDS.into_iter();
+    known
+        .filter(|(name, _)| word.as_str() == Some(name))
+        .map(|(_, knowledge)| knowledge)
+        .next()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,11 +166,20 @@ mod tests {
                 r#""pi10hz" is unknown"#,
             ),
             (
+                r#"fault = "flux-open", knowledge = ["contacts"], assumed_k = 1"#,
+                r#""contacts" is unknown"#,
+            ),
+            (
+                r#"fault = "flux-open", assumed_k = 1, learnt_k = 1"#,
+                "two limits",
+            ),
+            (
                 r#"fault = "adc-stuck", cause = []"#,
                 "unknown field `cause`",
             ),
         ] {
-            let table = format!("cases = [{{ {row} }}]\n[symptoms]\n[causes]\n[scenes]\n");
+            let table =
+                format!("cases = [{{ {row} }}]\n[symptoms]\n[causes]\n[knowledge]\n[scenes]\n");
             let error = read(&table).expect_err(row);
             assert!(format!("{error:#}").contains(expected), "{row}: {error:#}");
         }

@@ -32,7 +32,7 @@ mod table;
 mod touch;
 
 pub use assessment::{Breach, RunAssessment};
-pub use fault_case::{ExpectedReaction, FaultCase, InjectedFault};
+pub use fault_case::{ExpectedReaction, FaultCase, InjectedFault, LearningExpected};
 pub use fault_run::FaultRun;
 pub use fault_scene::{FaultScene, InjectionPoint};
 pub use five_fingers::{FiveFingerRun, Reference, five_finger_cases};

@@ -10,6 +10,7 @@ use thermal_device::control::Law;
 use thermal_plant::parameters::stream_seed;
 use thermal_sim::SceneRunner;
 use thermal_sim::metrics::Extremes;
+use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
 use super::drawn_course::course_tables;
@@ -28,6 +29,8 @@ const HELD: f64 = 0.125;
 const PLAYED: f64 = 0.125;
 /// Time from one course to the next, s.
 const PLAYED_EVERY_S: f64 = 20.0;
+/// Time from one question about the finger to the next, s: less than from a landing to the next.
+const ASKED_EVERY_S: f64 = 0.25;
 /// Noise of a conversion, counts: the whole range of the parameter, which is not among the drawn ones.
 const NOISE_COUNTS: std::ops::RangeInclusive<f64> = 0.4..=1.2;
 /// Range of the forces, N, drawn with a uniform logarithm.
@@ -49,9 +52,10 @@ impl UseSession {
         (hours as f64 * 3600.0 / WHOLE_S).ceil() as u64
     }
 
-    /// Draws a session; it depends only on seed and number.
+    /// Draws a session; it depends only on seed and number. With a heat-flux sensor every finger is drawn, and the device is asked
+    /// what it knows of it.
     #[must_use]
-    pub fn new(seed: u64, number: u64) -> Self {
+    pub fn new(seed: u64, number: u64, with_flux_sensor: bool) -> Self {
         let mut draw =
             Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, &format!("session {number}")));
         let device = PlantDraw::in_use(seed, number / ON_ONE_DEVICE);
@@ -71,10 +75,14 @@ impl UseSession {
             None if draw.random_bool(0.25) => draw.random_range(0.0..=20.0),
             None => 0.0,
         };
-        let touch = Touch::new(
-            stream_seed(seed, &format!("session {number} touch")),
-            material,
-        );
+        let touch_seed = stream_seed(seed, &format!("session {number} touch"));
+        let touch = if with_flux_sensor {
+            let mut touch = Touch::learnt(touch_seed);
+            touch.draw_flux_errors(device.seed);
+            touch
+        } else {
+            Touch::new(touch_seed, material)
+        };
         let mut text = format!(
             "duration_s = {SESSION_S:?}\nskin_c = {skin_c:?}\nroom_c = 24\nseed = {}\nlaw = \"{law}\"\n[device]\n{}\
              [object]\nmaterial = \"{material}\"\nstart_c = {object_c:?}\nappears_t_s = {appears_s:?}\n{}{}",
@@ -102,6 +110,11 @@ impl UseSession {
                 text += &course_tables(seed, t_s, SESSION_S);
             }
         }
+        if with_flux_sensor {
+            for part in 1..(SESSION_S / ASKED_EVERY_S) as u32 {
+                text += &scene_text::host_line("flux", f64::from(part) * ASKED_EVERY_S);
+            }
+        }
         let mut device_draw = Xoshiro256PlusPlus::seed_from_u64(stream_seed(device.seed, "noise"));
         let noise_counts = device_draw.random_range(NOISE_COUNTS);
         text += "[plant]\n";
@@ -118,17 +131,17 @@ impl UseSession {
     pub fn run(&self, device: &dyn SceneRunner) -> SessionResult {
         let run = || -> anyhow::Result<_> {
             let scene = Scene::parse(&self.text, "session".as_ref())?;
-            let (_, figures) = device.run(&scene)?;
-            Ok(figures)
+            device.run(&scene)
         };
         match run() {
             Err(error) => SessionResult {
                 number: self.number,
                 skin_c: None,
                 cem43_min: None,
+                distrusts: Vec::new(),
                 failure: Some(format!("{error:#}")),
             },
-            Ok(figures) => {
+            Ok((outcome, figures)) => {
                 let mut trips: Vec<_> = (figures.faults.into_iter())
                     .map(|tripped| tripped.fault)
                     .collect();
@@ -137,11 +150,28 @@ impl UseSession {
                     number: self.number,
                     skin_c: Some(figures.skin_c),
                     cem43_min: Some(figures.cem43_min),
+                    distrusts: distrusts(&outcome),
                     failure: (!trips.is_empty()).then(|| trips.join(", ")),
                 }
             }
         }
     }
+}
+
+/// Words for which the finger was not learnt, and when they were first heard, s.
+fn distrusts(outcome: &Outcome) -> Vec<(f64, String)> {
+    let mut last = "";
+    let mut distrusts = Vec::new();
+    for (t_s, line) in &outcome.answers {
+        let Some((_, word)) = line.split_once(" finger=") else {
+            continue;
+        };
+        if word != last && !["learning", "trusted"].contains(&word) {
+            distrusts.push((*t_s, word.into()));
+        }
+        last = word;
+    }
+    distrusts
 }
 
 fn press(t_s: f64, force_n: f64, ramp_s: f64) -> String {
@@ -157,6 +187,9 @@ pub struct SessionResult {
     pub skin_c: Option<Extremes>,
     /// Dose of the skin, CEM43 in minutes.
     pub cem43_min: Option<f64>,
+    /// Words for which a finger was not learnt in spite of a heat-flux sensor, and when each was first heard, s.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub distrusts: Vec<(f64, String)>,
     /// Trips and resets, or why the session or the commissioning of its device failed.
     pub failure: Option<String>,
 }
@@ -180,6 +213,16 @@ pub fn session_table(used: &[SessionResult]) -> String {
             .filter_map(|one| one.cem43_min)
             .fold(0.0, f64::max),
     );
+    let distrusted = used.iter().filter(|one| !one.distrusts.is_empty());
+    let count: usize = distrusted.clone().map(|one| one.distrusts.len()).sum();
+    let _ = writeln!(text, "distrusts      {count:>9}");
+    for one in distrusted {
+        let words = one.distrusts.iter();
+        let words: Vec<_> = words
+            .map(|(t_s, word)| format!("{word} at {t_s:.2} s"))
+            .collect();
+        let _ = writeln!(text, "number {}: {}", one.number, words.join(", "));
+    }
     for one in failed() {
         // Writing to a String cannot fail.
         let _ = writeln!(
@@ -199,7 +242,7 @@ mod tests {
     #[test]
     fn every_session_is_a_scene_without_faults() {
         for number in 0..300 {
-            let session = UseSession::new(5, number);
+            let session = UseSession::new(5, number, number % 2 == 0);
             let scene = Scene::parse(&session.text, "session".as_ref()).expect("a scene");
             assert!(scene.faults.is_empty() && scene.injections.is_empty() && scene.commissioned);
             assert!(scene.forces.iter().any(|force| force.force_n >= 0.1));
@@ -209,8 +252,14 @@ mod tests {
 
     #[test]
     fn sessions_repeat_by_seed_and_number_and_differ_between_them() {
-        assert_eq!(UseSession::new(5, 3), UseSession::new(5, 3));
-        assert_ne!(UseSession::new(5, 3).text, UseSession::new(5, 4).text);
-        assert_ne!(UseSession::new(5, 3).text, UseSession::new(6, 3).text);
+        assert_eq!(UseSession::new(5, 3, false), UseSession::new(5, 3, false));
+        assert_ne!(
+            UseSession::new(5, 3, false).text,
+            UseSession::new(5, 4, false).text
+        );
+        assert_ne!(
+            UseSession::new(5, 3, false).text,
+            UseSession::new(6, 3, false).text
+        );
     }
 }

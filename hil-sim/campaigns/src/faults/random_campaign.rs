@@ -18,6 +18,8 @@ use crate::fidelity::PlantDraw;
 
 /// Share of the campaigns in whose scene the host would present an object in which it plays a course.
 const WITH_COURSE: f64 = 0.3;
+/// Share of the campaigns without a fault of the heat-flux sensor in which the display has one.
+const WITH_FLUX_SENSOR: f64 = 0.25;
 /// Time at which the course is uploaded, s: before any fault.
 const COURSE_S: f64 = 0.012;
 /// End of the shortest scene, s.
@@ -51,7 +53,7 @@ impl RandomCampaign {
         all.retain(|fault_case| {
             has_processor || !matches!(fault_case.fault, InjectedFault::Processor(_))
         });
-        let fault_case = all[draw.random_range(0..all.len())];
+        let mut fault_case = all[draw.random_range(0..all.len())];
         let mut scenes = FaultScene::ALL.to_vec();
         scenes.retain(|place| !fault_case.never_at.contains(place));
         let place = scenes[draw.random_range(0..scenes.len())];
@@ -60,6 +62,12 @@ impl RandomCampaign {
         let takes_course = !place.is_commanded() && place.has_tripped_before().is_none();
         if takes_course && draw.random_bool(WITH_COURSE) {
             touch.tables += &course_tables(stream_seed(own, "course"), COURSE_S, COURSE_UNTIL_S);
+        }
+        let flux_seed = stream_seed(own, "flux sensor");
+        let has_sensor = Xoshiro256PlusPlus::seed_from_u64(flux_seed).random_bool(WITH_FLUX_SENSOR);
+        // What the device must say of the finger depends on the drawn finger.
+        if fault_case.learning.take().is_some() || has_sensor {
+            touch.fit_flux_sensor(flux_seed);
         }
         Self {
             number,

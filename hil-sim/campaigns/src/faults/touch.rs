@@ -4,6 +4,9 @@ use contact_model::material::MATERIALS;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use thermal_device::command::AssumedFinger;
+use thermal_plant::Params;
+use thermal_plant::parameters::{self, Parameter, all};
+use thermal_plant::sensors::FluxParams;
 
 use super::scene_text;
 use crate::fidelity::layer_keys;
@@ -16,6 +19,9 @@ const THICKNESS_MM: (f64, f64) = (0.1, 30.0);
 const FILM_W_M2K: (f64, f64) = (1.0, 1e4);
 /// Most layers below the touched one.
 const LAYERS_BELOW_MAX: usize = 3;
+
+/// The key of `[device]` by which a heat-flux sensor is fitted.
+const FLUX_SENSOR: &str = "flux_sensor = true\n";
 
 /// Parts of a scene's text about finger and object. The default leaves both as they are: the thesis's finger, an endless object.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,6 +64,41 @@ impl Touch {
             _ => touch.layers(&mut draw, material),
         }
         touch
+    }
+
+    /// A drawn layered finger on a display with a heat-flux sensor that is nominal.
+    #[must_use]
+    pub fn learnt(seed: u64) -> Self {
+        Self {
+            device: FLUX_SENSOR.into(),
+            tables: format!("[finger]\ntissue = \"layered\"\ndraw = {}\n", seed >> 1),
+            ..Self::default()
+        }
+    }
+
+    /// Whether the display has a heat-flux sensor.
+    pub(super) fn has_flux_sensor(&self) -> bool {
+        self.device.contains(FLUX_SENSOR)
+    }
+
+    /// Has a heat-flux sensor on the display, whose errors this seed draws.
+    pub(super) fn fit_flux_sensor(&mut self, seed: u64) {
+        self.device += FLUX_SENSOR;
+        self.draw_flux_errors(seed);
+    }
+
+    /// Draws the errors of the heat-flux sensor.
+    pub(super) fn draw_flux_errors(&mut self, seed: u64) {
+        let mut params = Params {
+            flux: Some(FluxParams::NOMINAL),
+            ..Params::nominal()
+        };
+        parameters::draw(&mut params, seed);
+        for Parameter { key, value, .. } in all(&params) {
+            if key.starts_with("flux.") {
+                self.plant += &format!("{key} = {value:?}\n");
+            }
+        }
     }
 
     /// A slab, of which the device is told by its relaxations or by a line.

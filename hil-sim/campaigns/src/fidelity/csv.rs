@@ -64,12 +64,15 @@ const DRAWS: [Column<DrawResult>; 7] = [
     ("faults", |one| one.faults.join(" ")),
 ];
 
-const POPULATIONS: [Column<PopulationResult>; 6] = [
+const POPULATIONS: [Column<PopulationResult>; 7] = [
     ("population", |one| one.population.name().into()),
     ("case", |one| one.case.clone()),
     ("told", |one| one.way.name().into()),
     ("skin_max_after_50ms_mk", |one| {
         one.max_after_50ms_mk.to_string()
+    }),
+    ("skin_max_after_500ms_mk", |one| {
+        one.max_after_500ms_mk.to_string()
     }),
     ("skin_rms_mk", |one| one.rms_mk.to_string()),
     ("faults", |one| one.faults.join(" ")),

@@ -18,6 +18,8 @@ use crate::{Firmware, Machine, RAM_BASE, RAM_SIZE, Stop, Wiring};
 
 /// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2, PC4.
 pub const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12, 14];
+/// Input of the converters at PC5, the heat-flux sensor.
+const FLUX_INPUT: u8 = 15;
 /// From the first conversion to the first boundary, and between boundaries, picoseconds.
 const FIRST_BOUNDARY_PS: u64 = 230_000_000;
 const HALF_MS_PS: u64 = 500_000_000;
@@ -244,8 +246,11 @@ impl Pins {
 impl Wiring for Pins {
     fn adc(&mut self, channel: u8, now: u64) -> u16 {
         self.first_conversion.get_or_insert(now);
-        // An unconnected input floats; it reads as the middle of the range.
+        if channel == FLUX_INPUT {
+            return self.world.flux_code();
+        }
         let input = ADC_INPUTS.iter().position(|input| *input == channel);
+        // An unconnected input floats; it reads as the middle of the range.
         input.map_or(0x800, |index| self.world.convert(Channel::ALL[index]))
     }
 

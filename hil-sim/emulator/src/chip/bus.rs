@@ -1,7 +1,9 @@
 //! The address map: the device at an address, whether its clock runs, and the effects of a store on other devices.
 use super::{
-    ADC_IRQ, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ, WWDG_IRQ,
+    ADC_IRQ, ADC1, ADC2, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ,
+    WWDG_IRQ,
 };
+use crate::adc::Adc;
 use crate::dac::Dac;
 use crate::dma::Dma;
 use crate::exti::lines;
@@ -23,7 +25,10 @@ pub(super) enum Device {
     Pwr,
     Dma(usize),
     Tim(usize),
-    Adc,
+    /// ADC1 or ADC2.
+    Adc(usize),
+    /// Registers that all converters share.
+    AdcCommon,
     Dac,
     Usart2,
     Iwdg,
@@ -31,6 +36,10 @@ pub(super) enum Device {
     Syscfg,
     Exti,
 }
+
+/// Offsets of the registers that the converters share, in the 1 KiB of all of them.
+const ADC_CSR: u32 = 0x300;
+const ADC_CCR: u32 = 0x304;
 
 /// First address of the 1 KiB of a peripheral, the peripheral, and its clock enable where it has one; the reset bit has the same
 /// place in the reset register of that bus.
@@ -50,7 +59,7 @@ const PERIPHERALS: [Peripheral; 30] = [
     (0x4000_7400, Device::Dac, Some((Enr::Apb1, 29))),
     (0x4001_0000, Device::Tim(TIM1), Some((Enr::Apb2, 0))),
     (0x4001_0400, Device::Tim(TIM8), Some((Enr::Apb2, 1))),
-    (0x4001_2000, Device::Adc, Some((Enr::Apb2, 8))),
+    (0x4001_2000, Device::Adc(ADC1), Some((Enr::Apb2, 8))),
     (0x4001_3800, Device::Syscfg, Some((Enr::Apb2, 14))),
     (0x4001_3c00, Device::Exti, None),
     (0x4001_4400, Device::Tim(TIM10), Some((Enr::Apb2, 17))),
@@ -74,9 +83,13 @@ fn device(address: u32) -> Option<(Device, Option<(Enr, u8)>)> {
     let first = address & 0xffff_fc00;
     let at = PERIPHERALS.binary_search_by_key(&first, |peripheral| peripheral.0);
     let (_, device, enable) = *PERIPHERALS.get(at.ok()?)?;
-    // ADC2 and ADC3 are between ADC1 and the common registers.
-    let modelled = device != Device::Adc || !(0x100..0x300).contains(&(address & 0x3ff));
-    modelled.then_some((device, enable))
+    // A quarter each: ADC1, ADC2, ADC3 without a model, common registers.
+    match (device, address >> 8 & 3) {
+        (Device::Adc(_), 1) => Some((Device::Adc(ADC2), Some((Enr::Apb2, 9)))),
+        (Device::Adc(_), 2) => None,
+        (Device::Adc(_), 3) => Some((Device::AdcCommon, enable)),
+        _ => Some((device, enable)),
+    }
 }
 
 /// Factory words of the system memory (RM0390 chapter 34, DS10693): unique identifier, flash size in KiB,
@@ -111,7 +124,7 @@ impl<W: Wiring> Chip<W> {
         for timer in 0..TIMERS {
             self.reset_device(Device::Tim(timer), now);
         }
-        self.reset_device(Device::Adc, now);
+        self.reset_device(Device::AdcCommon, now);
         self.reset_device(Device::Dac, now);
         self.usart.set_clock(1, HSI_HZ);
         self.usart.reset();
@@ -160,11 +173,16 @@ impl<W: Wiring> Chip<W> {
                 self.refresh_next(now);
                 Ok(value)
             }
-            Device::Adc => {
-                let value = self.adc.read(offset)?;
-                self.nvic.set_line(ADC_IRQ, self.adc.request(), now);
+            Device::Adc(i) => {
+                let value = self.adcs[i].read(offset & 0xff)?;
+                self.nvic.set_line(ADC_IRQ, self.converters_request(), now);
                 Ok(value)
             }
+            Device::AdcCommon => match offset {
+                ADC_CSR => Ok(self.adcs[ADC1].status() | self.adcs[ADC2].status() << 8),
+                ADC_CCR => Ok(self.adcs[ADC1].common_control()),
+                _ => Err(Refusal::Offset),
+            },
             Device::Dac => self.dac.read(offset),
             Device::Usart2 => {
                 let value = self.usart.read(offset)?;
@@ -265,12 +283,18 @@ impl<W: Wiring> Chip<W> {
                 self.connect_triggers(now);
                 self.timer_changed(i, now);
             }
-            Device::Adc => {
-                self.adc.write(offset, value, now)?;
+            Device::Adc(i) => {
+                self.adcs[i].write(offset & 0xff, value, now)?;
                 self.connect_triggers(now);
-                self.nvic.set_line(ADC_IRQ, self.adc.request(), now);
+                self.nvic.set_line(ADC_IRQ, self.converters_request(), now);
                 self.dma_request_possible = true;
             }
+            Device::AdcCommon if offset == ADC_CCR => {
+                for adc in &mut self.adcs {
+                    adc.write_common_control(value)?;
+                }
+            }
+            Device::AdcCommon => return Err(Refusal::Offset),
             Device::Dac => self.dac.write(offset, value)?,
             Device::Usart2 => {
                 self.usart.write(offset, value, now)?;
@@ -342,7 +366,9 @@ impl<W: Wiring> Chip<W> {
                 now,
             );
         }
-        self.adc.set_clock(ratio(clocks.pclk2_hz), clocks.pclk2_hz);
+        for adc in &mut self.adcs {
+            adc.set_clock(ratio(clocks.pclk2_hz), clocks.pclk2_hz);
+        }
         self.usart.set_clock(ratio(clocks.pclk1_hz), clocks.hclk_hz);
         self.iwdg.rescale(now, old.hclk_hz, clocks.hclk_hz);
     }
@@ -363,7 +389,8 @@ impl<W: Wiring> Chip<W> {
             Device::Gpio(port) => self.ports[port] = Port::new(port),
             Device::Dma(i) => self.dma[i] = Dma::new(i + 1),
             Device::Tim(i) => self.tims[i].reset(),
-            Device::Adc => self.adc.reset(),
+            // One bit resets all converters (6.3.10).
+            Device::Adc(_) | Device::AdcCommon => self.adcs.iter_mut().for_each(Adc::reset),
             Device::Dac => self.dac = Dac::default(),
             Device::Usart2 => self.usart.reset(),
             Device::Wwdg => self.wwdg.reset(now),

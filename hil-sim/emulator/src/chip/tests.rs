@@ -1,11 +1,11 @@
 //! The peripherals together, as the bus reaches them, without the CPU.
-use super::Chip;
+use super::{ADC1, Chip};
 use crate::ram::{Memory, NoMemory};
 use crate::stop::Refusal;
 use crate::{Wiring, names};
 use thermal_sim::processor::{ChipState, ResetCause};
 
-/// A circuit that drives all pins of ports B and C alike.
+/// A circuit that drives all pins of ports B and C alike, and each analog input to the code of its number.
 #[derive(Default)]
 pub(super) struct Outside {
     port_b: Option<bool>,
@@ -13,8 +13,8 @@ pub(super) struct Outside {
 }
 
 impl Wiring for Outside {
-    fn adc(&mut self, _channel: u8, _now: u64) -> u16 {
-        0
+    fn adc(&mut self, channel: u8, _now: u64) -> u16 {
+        channel.into()
     }
     fn pin(&self, port: u8, _bit: u8) -> Option<bool> {
         match port {
@@ -35,6 +35,20 @@ impl Memory for Absent {
     }
     fn store(&mut self, _address: u32, _bytes: u8, _value: u32) -> Result<(), NoMemory> {
         Err(NoMemory)
+    }
+}
+
+/// Records what DMA streams store.
+#[derive(Default)]
+struct Stored(Vec<u32>);
+
+impl Memory for Stored {
+    fn load(&mut self, _address: u32, _bytes: u8) -> Result<u32, NoMemory> {
+        Err(NoMemory)
+    }
+    fn store(&mut self, _address: u32, _bytes: u8, value: u32) -> Result<(), NoMemory> {
+        self.0.push(value);
+        Ok(())
     }
 }
 
@@ -64,7 +78,7 @@ impl Bench {
         for (register, clocks) in [
             (0x4002_3830, 0x0060_00ff),
             (0x4002_3840, 0x3002_083f),
-            (0x4002_3844, 0x0006_4103),
+            (0x4002_3844, 0x0006_4303),
         ] {
             let old = self.read(register).expect("an enable register");
             self.write(register, old | clocks)
@@ -97,6 +111,10 @@ const TIM1: u32 = 0x4001_0000;
 const TIM2: u32 = 0x4000_0000;
 const TIM3: u32 = 0x4000_0400;
 const ADC: u32 = 0x4001_2000;
+const ADC2: u32 = 0x4001_2100;
+const ADC_COMMON: u32 = 0x4001_2300;
+const APB2RSTR: u32 = 0x4002_3824;
+const APB2ENR: u32 = 0x4002_3844;
 const USART2: u32 = 0x4000_4400;
 
 /// RM0390 10.2: a line pends at an edge, and a pin that is high already has none.
@@ -269,7 +287,11 @@ fn the_enable_of_a_counter_starts_the_converter_if_it_is_the_trigger() {
         bench.set_up(&[(ADC + 8, 1 << 28 | 6 << 24 | 1), (TIM2 + 4, mode << 4)]);
         bench.now = 100;
         bench.set_up(&[(TIM2, 1)]);
-        assert_eq!(bench.chip.adc.due != u64::MAX, starts, "MMS = {mode}");
+        assert_eq!(
+            bench.chip.adcs[ADC1].due != u64::MAX,
+            starts,
+            "MMS = {mode}"
+        );
     }
 }
 
@@ -282,5 +304,108 @@ fn a_trigger_before_the_converter_is_stable_is_misuse() {
         bench.now = after;
         bench.set_up(&[(TIM2, 1)]);
         assert_eq!(bench.chip.misuse.is_none(), allowed, "{after} cycles");
+    }
+}
+
+/// One conversion of input 15 by ADC2, with the longest sample time, starts at cycle 100 by software.
+fn start_adc2(bench: &mut Bench) {
+    bench.set_up(&[(ADC2 + 0xc, 7 << 15), (ADC2 + 0x34, 15), (ADC2 + 8, 1)]);
+    bench.now = 100;
+    bench.set_up(&[(ADC2 + 8, 1 << 30 | 1)]);
+}
+
+/// RM0390 13.5, 13.8.1, 13.13.1. ADCCLK is HCLK/4.
+#[test]
+fn adc2_converts_once_in_492_clocks_beside_the_stream_of_adc1() {
+    let mut bench = Bench::new();
+    let mut stored = Stored::default();
+    // DMA2 stream 0: half-words from ADC1's data register, circular. ADC1 converts input 4 without end, 15 clocks each.
+    bench.set_up(&[
+        (0x4002_6414, 4),
+        (0x4002_6418, ADC + 0x4c),
+        (0x4002_641c, 0x2000_0000),
+        (0x4002_6410, 0x2d01),
+        (ADC_COMMON + 4, 1 << 16),
+        (ADC + 0x34, 4),
+        (ADC + 8, 0x303),
+    ]);
+    start_adc2(&mut bench);
+    bench.set_up(&[(ADC + 8, 1 << 30 | 0x303)]);
+    let end = 100 + 4 * (480 + 12);
+    for (now, status) in [(end - 1, 0x10), (end, 0x12)] {
+        bench.now = now;
+        bench.chip.service(now, &mut stored);
+        assert_eq!(bench.read(ADC2), Ok(status), "{now}");
+    }
+    assert_eq!(bench.read(ADC_COMMON), Ok(0x1210), "EOC of ADC2 only");
+    assert_eq!(bench.read(ADC2 + 0x4c), Ok(15));
+    assert_eq!(bench.read(ADC2), Ok(0x10), "reading the code clears EOC");
+    assert_eq!(bench.read(ADC), Ok(0x10), "no overrun");
+    assert_eq!(stored.0, [4; 492 / 15]);
+    bench.chip.service(end + 10_000, &mut stored);
+    assert_eq!(bench.read(ADC2), Ok(0x10), "no other conversion");
+}
+
+/// RM0390 13.11 and table 38: position 18.
+#[test]
+fn converters_share_an_interrupt() {
+    const NVIC_ISPR0: u32 = 0xe000_e200;
+    for enabled in [false, true] {
+        let mut bench = Bench::new();
+        bench.set_up(&[(ADC2 + 4, u32::from(enabled) << 5)]);
+        start_adc2(&mut bench);
+        bench.chip.service(2000, &mut Absent);
+        let pending = bench.read(NVIC_ISPR0).expect("a register") >> 18 & 1;
+        assert_eq!(pending != 0, enabled);
+    }
+}
+
+/// RM0390 6.3.10, 6.3.14.
+#[test]
+fn converters_have_one_reset_and_two_clocks() {
+    let mut bench = Bench::new();
+    start_adc2(&mut bench);
+    bench.set_up(&[(ADC + 8, 1), (APB2RSTR, 1 << 8), (APB2RSTR, 0)]);
+    bench.chip.service(2000, &mut Absent);
+    for register in [ADC, ADC + 8, ADC2, ADC2 + 8, ADC2 + 0xc] {
+        assert_eq!(bench.read(register), Ok(0), "{}", names::register(register));
+    }
+    bench.set_up(&[(APB2ENR, 1 << 8)]);
+    let clock_off = Refusal::ClockOff("RCC_APB2ENR", 9);
+    assert_eq!(bench.read(ADC2), Err(clock_off));
+    assert_eq!(bench.write(ADC2 + 8, 1), Err(clock_off));
+    assert_eq!(bench.read(ADC), Ok(0));
+}
+
+/// DS10693, t_STAB. HCLK is 16 MHz.
+#[test]
+fn adc2_too_takes_3_us_to_be_stable() {
+    for (after, allowed) in [(47, false), (48, true)] {
+        let mut bench = Bench::new();
+        bench.set_up(&[(ADC2 + 8, 1)]);
+        bench.now = after;
+        let started = bench.write(ADC2 + 8, 1 << 30 | 1);
+        assert_eq!(started.is_ok(), allowed, "{after} cycles");
+    }
+}
+
+#[test]
+fn what_adc2_has_no_model_for_ends_the_run() {
+    // DMA, DDS, rising edge of a trigger, EXTSEL
+    for bit in [8, 9, 28, 25] {
+        let mut bench = Bench::new();
+        let written = bench.write(ADC2 + 8, 1 << bit);
+        assert!(matches!(written, Err(Refusal::NotModelled(_))), "{bit}");
+    }
+    for channel in [16, 17, 18] {
+        let mut bench = Bench::new();
+        bench.set_up(&[
+            (ADC_COMMON + 4, 1 << 23),
+            (ADC2 + 0x34, channel),
+            (ADC2 + 8, 1),
+        ]);
+        bench.now = 100;
+        let started = bench.write(ADC2 + 8, 1 << 30 | 1);
+        assert!(matches!(started, Err(Refusal::NotModelled(_))), "{channel}");
     }
 }

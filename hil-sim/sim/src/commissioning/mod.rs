@@ -3,6 +3,7 @@
 //!
 //! The device has the parts and the converter of a scene's device, with other noise.
 
+mod enrolment;
 mod frequency_response;
 mod operator;
 mod setup;
@@ -11,8 +12,11 @@ mod surroundings;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
+use thermal_client::client::PlainCommand;
 use thermal_client::commissioning::SurroundingsError;
+use thermal_plant::parameters::{Tolerance, relative};
 use thermal_plant::{ConfigError, Params};
+use thermal_settings::{DisplaySurface, FluxSensor};
 
 use crate::engine::NativeEngine;
 use crate::scene::Scene;
@@ -22,6 +26,7 @@ pub use thermal_client::commissioning::{
     CalibrationPoint, CommissionError, CommissioningEvent, CommissioningRecord,
 };
 
+pub use enrolment::with_person;
 pub use frequency_response::FrequencyResponse;
 pub use operator::{commission, restore};
 pub use setup::CommissioningSetup;
@@ -30,16 +35,42 @@ pub use surroundings::{SimulatedOperator, SimulatedSurroundings, SurroundingsAct
 /// Lines of settings, or why commissioning failed; computed once.
 type SharedSettings = Arc<OnceLock<Result<Vec<String>, CommissionError>>>;
 
-/// The settings of a scene's device as lines; none if it is not commissioned. Computed by the native engine, once per
-/// process for each device.
+/// Error of the conductivity, roughness and slope that the operator measures of a display: a standard deviation of 5 %.
+const SURFACE_MEASUREMENT: Tolerance = relative(0.1).normal();
+
+/// The settings of a scene's device as lines: those of commissioning, none if it is not commissioned, its heat-flux sensor
+/// if it is fitted, and the surface of its display if it was measured. Computed by the native engine, once per process for each device.
 ///
 /// # Errors
 /// The device cannot be commissioned.
 pub fn settings_for_scene(scene: &Scene) -> Result<Vec<String>, CommissionError> {
-    if !scene.commissioned {
-        return Ok(Vec::new());
+    let mut lines = if scene.commissioned {
+        settings_for_device(&scene.params, scene.room_c, scene.seed)?
+    } else {
+        Vec::new()
+    };
+    // Its errors in the plant are those that are left after its gain was calibrated and its zero taken.
+    if let Some(flux) = &scene.params.flux {
+        let sensor = FluxSensor {
+            counts_per_w_m2: flux.counts_per_w_m2,
+            ..FluxSensor::DESIGNED
+        };
+        lines.push(PlainCommand::FluxSensor(Some(sensor)).to_string());
     }
-    settings_for_device(&scene.params, scene.room_c, scene.seed)
+    if scene.measured_surface {
+        let display = &scene.params.display;
+        let values = [
+            ("conductivity", display.conductivity_w_mk),
+            ("roughness", display.roughness_um),
+            ("slope", display.slope_rad),
+        ];
+        let measured = values.map(|(name, value)| {
+            SURFACE_MEASUREMENT.draw(value, scene.seed, &format!("measured.display.{name}"))
+        });
+        let surface = DisplaySurface::from_array_rounded(measured);
+        lines.push(PlainCommand::DisplaySurface(surface).to_string());
+    }
+    Ok(lines)
 }
 
 /// The settings of a device with these parameters and this seed of its converter, in a room, deg C.

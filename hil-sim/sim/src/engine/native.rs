@@ -7,18 +7,18 @@ use std::fmt::Display;
 use thermal_commissioning::StorageOrder;
 use thermal_device::command::WithSourceFinger;
 use thermal_device::drive::{BoardOutputs, ComparatorTest, Drive};
+use thermal_device::events::UnsolicitedReport;
 use thermal_device::safety::{Fault, ThermalDose, TripCause};
 use thermal_device::sense::{DigitalInputs, SCANS_PER_TICK, Samples, Scan};
 use thermal_device::{
     Device, FingerIndex, PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_PERIOD_STEPS_OF_ONE_FINGER,
     TriggerEdge,
 };
+use thermal_learner::Learner;
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::comparator::ComparatorTest as PlantTest;
-use thermal_protocol::{
-    CommandHandler, Error, LineReader, OutgoingLine, Reply, UnsolicitedLine, wrap_as_telemetry_line,
-};
-use thermal_settings::{Settings, StoredSettings, decode_settings_record};
+use thermal_protocol::{CommandHandler, Error, LineReader, OutgoingLine, Reply, UnsolicitedLine};
+use thermal_settings::{Settings, StoredDevice, StoredSettings, decode_settings_record};
 
 use super::{BAUD, DeviceReset, Engine};
 use crate::World;
@@ -80,7 +80,7 @@ pub struct NativeDevice<const FINGERS: usize> {
     /// Edges of the trigger input with the milliseconds whose ticks report them.
     trigger_edges: VecDeque<(u64, TriggerEdge)>,
     /// Settings in the simulated flash.
-    stored: Option<[StoredSettings; FINGERS]>,
+    stored: Option<StoredDevice<FINGERS>>,
     /// Time since the first boundary, ns.
     now_ns: u64,
     /// Boundaries of fingers so far, on a device with five.
@@ -98,6 +98,10 @@ struct Finger {
     /// Whether the bridge has pulled its fault pin since the last tick, as the board's break flag records.
     fault: bool,
     outputs: BoardOutputs,
+    /// Code of the conversion that the last tick with a heat-flux sensor has started; `None` before the first.
+    flux_code: Option<u16>,
+    /// Runs only with a heat-flux sensor.
+    learner: Learner,
 }
 
 impl Finger {
@@ -112,6 +116,8 @@ impl Finger {
             settling_scans,
             fault: false,
             outputs: OFF,
+            flux_code: None,
+            learner: Learner::new(),
         };
         finger.discard_scans(more_at_first);
         finger.start_tick();
@@ -197,14 +203,15 @@ impl NativeFiveFingers {
 impl<const FINGERS: usize> NativeDevice<FINGERS> {
     /// The settings in the flash; `None` if none were saved.
     #[must_use]
-    pub const fn stored_settings(&self) -> Option<&[StoredSettings; FINGERS]> {
-        self.stored.as_ref()
+    pub fn stored_settings(&self) -> Option<&[StoredSettings; FINGERS]> {
+        self.stored.as_ref().map(|stored| &stored.fingers)
     }
 
     /// The device just after power-up with these settings in its flash.
     #[must_use]
     pub fn with_stored_settings(mut self, stored: [StoredSettings; FINGERS]) -> Self {
-        self.device.restore_settings(&stored);
+        let stored = StoredDevice::from(stored);
+        self.device.restore_settings(&stored.fingers);
         self.handler = CommandHandler::from_stored(&stored);
         self.stored = Some(stored);
         self.read_chip();
@@ -250,18 +257,35 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         let finger = &mut self.fingers[index.index()];
         let needs_scatter = self.device.finger_needs_scatter(index);
         let samples = finger.samples(shared, needs_scatter);
+        if self.device.finger_has_flux_sensor(index) {
+            // The board for five fingers has no converter for it.
+            let converted = (FINGERS == 1).then(|| finger.world.flux_code());
+            let code = std::mem::replace(&mut finger.flux_code, converted);
+            self.device.note_flux_code(index, code);
+        }
         let outputs = self.device.step_finger(index, &samples);
+        if let Some(input) = self.device.take_learner_input(index) {
+            let output = finger.learner.advance(&input);
+            self.device.put_learner_output(index, output);
+        }
         match outputs.comparator_test {
             ComparatorTest::None => {}
             test => self.side_is_high = test == ComparatorTest::Cold,
         }
         finger.set_outputs(outputs);
         while let Some(event) = self.device.take_finger_event(index) {
-            self.send_line(&event.map_content(UnsolicitedLine));
+            self.send_report(event);
         }
         if let Some(telemetry) = self.device.finger_telemetry_if_due(index) {
-            self.send_line(&wrap_as_telemetry_line(telemetry));
+            self.send_report(telemetry.into_report());
         }
+    }
+
+    fn send_report(&mut self, report: WithSourceFinger<UnsolicitedReport>) {
+        let device = &mut self.device;
+        let line =
+            UnsolicitedLine::of_report(report, |finger, command| device.execute(finger, command));
+        self.send_line(&line);
     }
 
     /// Raises the trigger input `after_us` µs after the last boundary.
@@ -330,7 +354,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         }
         self.handler = match &self.stored {
             Some(stored) => {
-                self.device.restore_settings(stored);
+                self.device.restore_settings(&stored.fingers);
                 CommandHandler::from_stored(stored)
             }
             None => CommandHandler::new(Settings::default()),
@@ -340,7 +364,8 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         self.hung_ms = None;
         self.side_is_high = false;
         for finger in &mut self.fingers {
-            (finger.fault, finger.outputs) = (false, OFF);
+            (finger.fault, finger.outputs, finger.flux_code) = (false, OFF, None);
+            finger.learner = Learner::new();
         }
         self.resets.push(DeviceReset {
             t_s: self.now_ns as f64 * 1e-9,

@@ -102,10 +102,14 @@ pub fn run<H: FiveFingerEngine>(
         .map(|scene| commissioning::settings_for_scene(&scene.on_five_fingers()))
         .collect::<Result<_, _>>())
     .map_err(RunError::Commission)?;
+    let enrolled = scenes.iter().map(commissioning::with_person);
+    let enrolled: Vec<_> = enrolled
+        .collect::<Result<_, _>>()
+        .map_err(RunError::Commission)?;
     let began = Instant::now();
     let mut set_up_from_ms = SET_UP_FROM_MS;
     let mut fingers: [_; FINGERS] = std::array::from_fn(|finger| {
-        let (scene, settings) = (&scenes[finger], &settings[finger]);
+        let (scene, settings) = (&*enrolled[finger], &settings[finger]);
         let recording = SceneRecording::new(scene, settings, STREAM_MS, set_up_from_ms);
         set_up_from_ms = recording.host.set_up_ms();
         recording

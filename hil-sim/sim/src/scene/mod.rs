@@ -59,6 +59,10 @@ pub struct Scene {
     pub seed: u64,
     /// Whether the device was calibrated and tuned before the scene.
     pub commissioned: bool,
+    /// Whether the operator has measured the surface of the display, and tells the device.
+    pub measured_surface: bool,
+    /// Whether the finger was enrolled on the device on another day.
+    pub enrolled: bool,
     /// The microcontroller before its program starts.
     pub chip: ChipState,
     /// Contact model that the device uses.

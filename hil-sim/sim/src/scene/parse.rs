@@ -48,7 +48,13 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         file::Mode::Contact => ContactModel::ContactResistance,
         file::Mode::SemiInfinite => ContactModel::SemiInfinite,
     };
-    let (faults, injections) = faults(&source, &file.fault, duration_s, file.seed)?;
+    let (faults, injections) = faults(
+        &source,
+        &file.fault,
+        file.device.flux_sensor,
+        duration_s,
+        file.seed,
+    )?;
     let (nominal, params, draws) = params(
         &source,
         file.finger.as_ref(),
@@ -62,6 +68,8 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         room_c,
         seed: file.seed,
         commissioned: file.device.commissioned,
+        measured_surface: file.device.measured_surface,
+        enrolled: enrolled(&source, &file.device)?,
         chip: chip(&source, &file.device)?,
         mode,
         law: file
@@ -133,6 +141,16 @@ fn assumed_finger(file: &File, params: &Params, draws: &Draws) -> AssumedFinger 
         }
         None => AssumedFinger::Mean,
     }
+}
+
+/// Whether the finger was enrolled, which needs a heat-flux sensor.
+fn enrolled(source: &Source<'_>, device: &file::Device) -> Result<bool, SceneError> {
+    let enrolled = *device.enrolled.get_ref();
+    if enrolled && !device.flux_sensor {
+        let problem = "device.enrolled = true without device.flux_sensor = true; a finger is learnt by the sensor only";
+        return Err(source.error(Some(device.enrolled.span()), problem));
+    }
+    Ok(enrolled)
 }
 
 /// The microcontroller before its program starts.

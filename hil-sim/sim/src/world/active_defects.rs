@@ -3,7 +3,7 @@
 use thermal_plant::Defects;
 use thermal_plant::bridge::LegDefect;
 use thermal_plant::comparator::LatchDefect;
-use thermal_plant::sensors::{Channel, Circuit};
+use thermal_plant::sensors::{Channel, Circuit, FluxCircuit};
 use thermal_plant::supply::SwitchDefect;
 
 use crate::scene::{ActiveFault, FaultKind};
@@ -22,8 +22,7 @@ impl ActiveDefects {
     pub fn add(&mut self, fault: &ActiveFault) {
         let Defects {
             sensors,
-            // No fault of a scene breaks the heat-flux sensor, which the device does not read.
-            flux: _,
+            flux,
             bridge,
             comparator,
             supply,
@@ -50,6 +49,13 @@ impl ActiveDefects {
             FaultKind::ForceOpen => sensors.force.open = true,
             FaultKind::ForceStuck => sensors.force.stuck = true,
             FaultKind::ForceOffset => sensors.force.offset_n += value,
+            FaultKind::FluxOpen => flux.circuit = FluxCircuit::Open,
+            FaultKind::FluxShort => flux.circuit = FluxCircuit::Short,
+            FaultKind::FluxReversed => flux.circuit = FluxCircuit::Reversed,
+            FaultKind::FluxStuck => flux.stuck = true,
+            FaultKind::FluxGain => flux.gain *= value,
+            FaultKind::FluxZero => flux.zero_w_m2 += value,
+            FaultKind::FluxNoise => flux.noise *= value,
             FaultKind::BridgeStuckHigh => bridge.a = LegDefect::High,
             FaultKind::BridgeBStuckHigh => bridge.b = LegDefect::High,
             FaultKind::BridgeStuckLow => bridge.a = LegDefect::Low,

@@ -60,6 +60,9 @@ pub struct Arguments {
     out: Option<PathBuf>,
     #[command(flatten)]
     modes: Modes,
+    /// With --normal: displays with a heat-flux sensor, and drawn fingers that the device learns
+    #[arg(long, requires = "normal")]
+    flux_sensor: bool,
     /// Again the campaign of a number, or with --flips the flip; its scene goes to --out
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(..10_000_000),
         conflicts_with_all = ["only", "scene", "moments", "fingers", "campaign", "pairs", "normal"])]

@@ -5,14 +5,15 @@ use thermal_sim::SceneRunner;
 
 use super::{Arguments, Failure, RunsReport, each, output};
 
-/// Runs sessions of some hours; a trip is a failure, and its scene is written to `--out`.
+/// Runs sessions of some hours; a trip is a failure. Its scene, and one with a finger that was not learnt, is written to `--out`.
 pub fn run(arguments: &Arguments, device: &dyn SceneRunner, hours: u64) -> Result<(), Failure> {
     let seed = arguments.seed;
     let numbers: Vec<u64> = (0..UseSession::in_hours(hours)).collect();
     let work = |number: &u64| {
-        let session = UseSession::new(seed, *number);
+        let session = UseSession::new(seed, *number, arguments.flux_sensor);
         let used = session.run(device);
-        if let (Some(folder), Some(_)) = (&arguments.out, &used.failure) {
+        let is_told = used.failure.is_some() || !used.distrusts.is_empty();
+        if let Some(folder) = arguments.out.as_ref().filter(|_| is_told) {
             output::write(folder, &format!("session-{number}.toml"), &session.text)?;
         }
         Ok(used)

@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use serde::Serializer;
 use thermal_device::StateName;
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
 
 /// The words of an answer after `ok`.
@@ -106,4 +107,23 @@ pub fn fault_word<S: Serializer>(fault: &Fault, serializer: S) -> Result<S::Ok, 
 /// Serializes a state as its word.
 pub fn state_word<S: Serializer>(state: &StateName, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(state.name())
+}
+
+/// Serializes what is known of a finger as its word.
+pub fn knowledge_word<S: Serializer>(
+    knowledge: &FingerKnowledge,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(knowledge.name())
+}
+
+/// The same, or nothing.
+pub fn knowledge_word_if_known<S: Serializer>(
+    knowledge: &Option<FingerKnowledge>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match knowledge {
+        Some(knowledge) => knowledge_word(knowledge, serializer),
+        None => serializer.serialize_none(),
+    }
 }

@@ -32,12 +32,13 @@ pub use plain_command::{
     PlainCommand, THERMISTORS, thermistor, thermistor_word, upload, upload_course,
 };
 pub use query::{
-    Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryIdentity, QueryLaw,
-    QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState, TuneResult,
+    Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryContactLaw,
+    QueryDisplaySurface, QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest,
+    QuerySettings, QueryState, TuneResult,
 };
 pub use reply::{
-    BoardReport, CalibrationFit, Cause, IdentifiedTile, Identity, RawReadings, SelfTestReport,
-    SettingsLine, Status,
+    BoardReport, CalibrationFit, Cause, FluxReport, IdentifiedTile, Identity, RawReadings,
+    SelfTestReport, SettingsLine, Status,
 };
 pub use telemetry::{ReceivedTelemetry, Telemetry};
 
@@ -453,7 +454,7 @@ impl<L: Link> Client<L> {
                     fields = index.map_or(fields, |index| fields.with(index));
                 }
                 if fields == TelemetryFields::NONE {
-                    fields = TelemetryFields::ALL;
+                    fields = TelemetryFields::DEFAULT;
                 }
                 let stream = Stream {
                     interval_ms: interval_ms as u32,
@@ -482,7 +483,17 @@ fn may_be_repeated(line: &str) -> bool {
     let words: Vec<_> = split_finger(line).1.split_ascii_whitespace().collect();
     matches!(
         words.as_slice(),
-        ["id" | "state" | "cause" | "board" | "raw" | "self-test" | "law" | "finger" | "margins"]
+        ["id"
+            | "state"
+            | "cause"
+            | "board"
+            | "raw"
+            | "self-test"
+            | "law"
+            | "finger"
+            | "margins"
+            | "flux"
+            | "surface"]
             | ["settings", ..]
             | ["upload", "row", ..]
     )

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::Material;
 use contact_model::slab::Back;
@@ -13,8 +14,8 @@ use thermal_device::events::DeviceEventKind;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_device::stimulus::{CourseEnd, PlayOrder, TemperatureKind};
-use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
-use thermal_settings::CRC_32;
+use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, NOMINAL_CONTACT_LAW_WORD};
+use thermal_settings::{CRC_32, DisplaySurface, FluxSensor};
 
 use super::reply::SettingsLine;
 use super::{Command, Fields};
@@ -42,6 +43,8 @@ pub enum PlainCommand {
     },
     /// Choose the finger that the device assumes for the one that touches.
     AssumedFinger(AssumedFinger),
+    /// Take this for the finger's contact law: `contact nominal` if it is that of Eq. 6-8.
+    ContactLaw(ContactLaw),
     /// Choose the contact model.
     Mode(ContactModel),
     /// Choose the control law.
@@ -89,6 +92,12 @@ pub enum PlainCommand {
     ClearCalibration(ThermistorId),
     /// Replace settings.
     Set(SettingsLine),
+    /// Use this heat-flux sensor, or none.
+    FluxSensor(Option<FluxSensor>),
+    /// Take the zero of the heat-flux sensor.
+    FluxZero,
+    /// The display has this surface.
+    DisplaySurface(DisplaySurface),
     /// Restart, and store the settings or the factory defaults.
     Store(StorageOrder),
     /// Begin an upload: number of rows, direct term in m² K/W.
@@ -129,7 +138,7 @@ impl PlainCommand {
     /// Telemetry at this interval, ms, with all fields; 0 ends it.
     #[must_use]
     pub const fn stream(interval_ms: u32) -> Self {
-        Self::Stream(interval_ms, TelemetryFields::ALL)
+        Self::Stream(interval_ms, TelemetryFields::DEFAULT)
     }
 }
 
@@ -161,6 +170,14 @@ impl fmt::Display for PlainCommand {
                 }
             }
             Self::AssumedFinger(finger) => write!(f, "finger {}", finger.name()),
+            Self::ContactLaw(ContactLaw::NOMINAL) => {
+                write!(f, "contact {NOMINAL_CONTACT_LAW_WORD}")
+            }
+            Self::ContactLaw(law) => write!(
+                f,
+                "contact {:.4} {:.0} {:.1}",
+                law.exponent, law.hardness_pa, law.gap_w_m2k
+            ),
             Self::Mode(mode) => {
                 write!(f, "mode {}", word_in(&CONTACT_MODEL_WORDS, mode))
             }
@@ -200,7 +217,7 @@ impl fmt::Display for PlainCommand {
             }
             Self::Stream(interval_ms, fields) => {
                 write!(f, "stream {interval_ms}")?;
-                if *fields == TelemetryFields::ALL {
+                if *fields == TelemetryFields::DEFAULT {
                     return Ok(());
                 }
                 let names = TelemetryFields::NAMES.iter().enumerate();
@@ -219,6 +236,19 @@ impl fmt::Display for PlainCommand {
                 write!(f, "calibrate {} clear", thermistor_word(*thermistor))
             }
             Self::Set(line) => line.fmt(f),
+            Self::FluxSensor(None) => f.write_str("flux none"),
+            Self::FluxSensor(Some(sensor)) => {
+                f.write_str("flux set")?;
+                let mut values = sensor.to_array().into_iter();
+                values.try_for_each(|value| write!(f, " {value}"))
+            }
+            Self::FluxZero => f.write_str("flux zero"),
+            Self::DisplaySurface(DisplaySurface::NOMINAL) => f.write_str("surface nominal"),
+            Self::DisplaySurface(surface) => {
+                f.write_str("surface set")?;
+                let mut values = surface.to_array().into_iter();
+                values.try_for_each(|value| write!(f, " {value}"))
+            }
             Self::Store(order) => f.write_str(order.name()),
             Self::UploadBegin(rows, direct_m2k_w) => {
                 write!(

@@ -2,15 +2,17 @@
 
 use std::fmt;
 
+use contact_model::contact_law::ContactLaw;
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::safety::ThermistorId;
+use thermal_settings::DisplaySurface;
 
 use super::fields::in_table;
 use super::plain_command::thermistor_word;
 use super::reply::{
-    BoardReport, CalibrationFit, Cause, IdentifiedTile, Identity, RawReadings, SelfTestReport,
-    SettingsLine, Status,
+    BoardReport, CalibrationFit, Cause, FluxReport, IdentifiedTile, Identity, RawReadings,
+    SelfTestReport, SettingsLine, Status,
 };
 use super::{Command, Fields};
 
@@ -50,6 +52,12 @@ queries! {
     /// The finger that the device assumes.
     QueryAssumedFinger = "finger" => AssumedFinger,
         |reply: &Fields<'_>| in_table(&AssumedFinger::PROTOCOL_WORDS, reply.word("finger")?);
+    /// The contact law that the device was told of.
+    QueryContactLaw = "contact" => ContactLaw, |reply: &Fields<'_>| Some(ContactLaw {
+        exponent: reply.number("exponent")?,
+        hardness_pa: reply.number("hardness_pa")?,
+        gap_w_m2k: reply.number("gap_w_m2k")?,
+    });
     /// Result of the last identification of the tile, which is in use from then on.
     TuneResult = "tune result" => IdentifiedTile, IdentifiedTile::read;
     /// The tile in use.
@@ -60,6 +68,17 @@ queries! {
     QuerySelfTest = "self-test" => SelfTestReport, SelfTestReport::read;
     /// The converter's counts and the fault inputs.
     QueryRaw = "raw" => RawReadings, RawReadings::read;
+    /// Heat-flux sensor, its flux, and what is known of the finger by it; `None` without one.
+    QueryFlux = "flux" => Option<FluxReport>, FluxReport::read;
+    /// Surface of the display.
+    QueryDisplaySurface = "surface" => DisplaySurface, |reply: &Fields<'_>| {
+        let values = [
+            reply.number("conductivity_w_mk")?,
+            reply.number("roughness_um")?,
+            reply.number("slope_rad")?,
+        ];
+        Some(DisplaySurface::from_array_rounded(values))
+    };
     /// State of the board.
     QueryBoard = "board" => BoardReport, BoardReport::read;
 }

@@ -6,13 +6,14 @@ use std::str::FromStr;
 use serde::{Serialize, Serializer};
 use thermal_commissioning::{SessionRequest, Setting};
 use thermal_device::StateName;
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_protocol::{CONTACT_MODEL_WORDS, Request};
 use thermal_settings::Settings;
 
 use super::Fields;
-use super::fields::{fault, fault_word, finite, in_table, state, state_word};
+use super::fields::{fault, fault_word, finite, in_table, knowledge_word, state, state_word};
 
 /// Answer to `id`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -356,6 +357,41 @@ impl RawReadings {
             stop: reply.flag("stop")?,
             fault_line: reply.flag("fault_line")?,
         })
+    }
+}
+
+/// Answer to `flux`: the heat-flux sensor, and what the device knows by it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FluxReport {
+    /// Gain, counts of its converter (of 4096) per W/m².
+    pub counts_per_w_m2: f64,
+    /// Code without flux, counts.
+    pub zero_counts: f64,
+    /// Lag, ms.
+    pub lag_ms: f64,
+    /// Thermal resistance, mm² K/W.
+    pub resistance_mm2k_w: f64,
+    /// Flux out of the finger in the last tick, W/m²; `None` if the sensor's code cannot be right.
+    pub w_m2: Option<f64>,
+    /// What is known of the finger.
+    #[serde(serialize_with = "knowledge_word")]
+    pub finger: FingerKnowledge,
+}
+
+impl FluxReport {
+    /// `None` without a sensor.
+    pub(super) fn read(reply: &Fields<'_>) -> Option<Option<Self>> {
+        if reply.word("flux")? == "none" {
+            return Some(None);
+        }
+        Some(Some(Self {
+            counts_per_w_m2: reply.number("counts_per_w_m2")?,
+            zero_counts: reply.number("zero_counts")?,
+            lag_ms: reply.number("lag_ms")?,
+            resistance_mm2k_w: reply.number("resistance_mm2k_w")?,
+            w_m2: reply.number_or_unknown("w_m2")?,
+            finger: in_table(&FingerKnowledge::PROTOCOL_WORDS, reply.word("finger")?)?,
+        }))
     }
 }
 

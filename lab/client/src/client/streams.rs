@@ -32,7 +32,7 @@ impl Default for TelemetryStreams {
         Self {
             all: Stream {
                 interval_ms: 0,
-                fields: TelemetryFields::ALL,
+                fields: TelemetryFields::DEFAULT,
             },
             own: BTreeMap::new(),
             changed_at: BTreeMap::new(),

@@ -3,12 +3,13 @@
 use std::time::Duration;
 
 use serde::Serialize;
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
 use thermal_device::{StateName, TelemetryFields};
 
-use super::fields::{number_or_unknown, state, state_word};
+use super::fields::{in_table, knowledge_word_if_known, number_or_unknown, state, state_word};
 
-/// All fields of a telemetry line; what the device does not know, or was not asked for, is `None`.
+/// The fields of a telemetry line; what the device does not know, or was not asked for, is `None`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Telemetry {
     /// Ticks of 1 ms since the device's reset.
@@ -34,6 +35,18 @@ pub struct Telemetry {
     pub current_a: Option<f64>,
     /// Evaluations of `erfcx` since the device's reset.
     pub evaluations: Option<u32>,
+    /// Heat flux out of the skin by the heat-flux sensor, W/m².
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flux_w_m2: Option<f64>,
+    /// Estimate of the display's surface under the finger, °C, of a device with a heat-flux sensor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface_c: Option<f64>,
+    /// What is known of the finger by its flux.
+    #[serde(
+        serialize_with = "knowledge_word_if_known",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub finger: Option<FingerKnowledge>,
     /// Whether the set-point was limited to its safe range.
     pub limited: bool,
 }
@@ -52,10 +65,10 @@ pub struct ReceivedTelemetry {
 }
 
 impl Telemetry {
-    /// Reads a line without its finger; `None` if it is not telemetry. Words after the known ones are ignored.
+    /// Reads a line with the default fields, without its finger; `None` if it is not telemetry. Words after the known ones are ignored.
     #[must_use]
     pub fn parse(line: &str) -> Option<Self> {
-        Self::parse_fields(line, TelemetryFields::ALL)
+        Self::parse_fields(line, TelemetryFields::DEFAULT)
     }
 
     /// The same of a line with these fields only; those that are left out are `None`. If there are any, the line has no other
@@ -73,7 +86,7 @@ impl Telemetry {
             }
         }
         let remark = words.next()?;
-        if fields != TelemetryFields::ALL && words.next().is_some() {
+        if fields != TelemetryFields::DEFAULT && words.next().is_some() {
             return None;
         }
         let [
@@ -86,6 +99,9 @@ impl Telemetry {
             demand,
             current,
             evaluations,
+            flux,
+            surface,
+            finger,
         ] = values;
         Some(Self {
             tick: tick.parse().ok()?,
@@ -101,6 +117,12 @@ impl Telemetry {
             evaluations: match evaluations {
                 "-" => None,
                 count => Some(count.parse().ok()?),
+            },
+            flux_w_m2: number_or_unknown(flux)?,
+            surface_c: number_or_unknown(surface)?,
+            finger: match finger {
+                "-" => None,
+                word => Some(in_table(&FingerKnowledge::PROTOCOL_WORDS, word)?),
             },
             limited: remark == "limited",
         })

@@ -5,14 +5,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use thermal_client::client::{
-    BoardReport, Client, ClientError, PlainCommand, QueryBoard, QueryCause, QueryIdentity,
-    QueryRaw, QuerySelfTest, QueryState, upload_course,
+    BoardReport, Client, ClientError, FluxReport, PlainCommand, QueryBoard, QueryCause,
+    QueryDisplaySurface, QueryFlux, QueryIdentity, QueryRaw, QuerySelfTest, QueryState, Telemetry,
+    upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
 use thermal_device::events::DeviceEventKind;
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_device::stimulus::TemperatureKind;
 use thermal_device::{StateName, TelemetryFields};
+use thermal_settings::DisplaySurface;
 
 use crate::fake_device::{FakeDevice, answers, knows};
 
@@ -337,6 +340,10 @@ fn events_and_telemetry_of_chosen_fields_are_read() {
         (Some(-1.25), None)
     );
     assert_eq!(telemetry.evaluations, None);
+    assert_eq!(
+        (telemetry.flux_w_m2, telemetry.surface_c, telemetry.finger),
+        (None, None, None)
+    );
     let event = client.take_event().unwrap().event;
     assert_eq!(
         (event.tick, event.microseconds, event.kind),
@@ -422,6 +429,36 @@ fn the_answers_for_diagnosis_are_read() {
         uid: Some("00230041513250132032364E".into()),
     };
     assert_eq!(client.ask(&QueryBoard).unwrap(), board);
+    let flux = |text: String| FakeDevice::client(move |_| answers(&text)).ask(&QueryFlux);
+    assert_eq!(flux("ok flux=none".into()).unwrap(), None);
+    let fitted = |flux: &str, finger: &str| {
+        let values =
+            "counts_per_w_m2=0.119200 zero_counts=2051.250 lag_ms=5.000 resistance_mm2k_w=30.000";
+        format!("ok flux=fitted {values} w_m2={flux} finger={finger}")
+    };
+    for (word, finger) in FingerKnowledge::PROTOCOL_WORDS {
+        let report = FluxReport {
+            counts_per_w_m2: 0.1192,
+            zero_counts: 2051.25,
+            lag_ms: 5.0,
+            resistance_mm2k_w: 30.0,
+            w_m2: Some(-3.2),
+            finger,
+        };
+        assert_eq!(flux(fitted("-3.2", word)).unwrap(), Some(report));
+        assert_eq!(finger.name(), word);
+        let unknown = flux(fitted("-", word)).unwrap().unwrap();
+        assert_eq!(unknown.w_m2, None);
+    }
+    assert!(flux(fitted("-3.2", "warm")).is_err());
+    let mut rough = FakeDevice::client(|_| {
+        answers("ok conductivity_w_mk=30.000 roughness_um=1.2500 slope_rad=0.11000")
+    });
+    let surface = DisplaySurface::from_array_rounded([30.0, 1.25, 0.11]);
+    assert_eq!(rough.ask(&QueryDisplaySurface).unwrap(), surface);
+    let lines = [surface, DisplaySurface::NOMINAL].map(PlainCommand::DisplaySurface);
+    let lines = lines.map(|line| line.to_string());
+    assert_eq!(lines, ["surface set 30 1.25 0.11", "surface nominal"]);
     let cause = client.ask(&QueryCause).unwrap().unwrap();
     assert_eq!((cause.fault, cause.tick), (Fault::DisplayHot, 1234));
     assert_eq!((cause.sink_c, cause.asked_a), (None, -6.0));
@@ -442,4 +479,30 @@ fn every_fault_of_the_device_is_known_in_its_state() {
         assert_eq!(status.state, StateName::Tripped(*fault));
         assert_eq!((status.object_c, status.limited), (Some(24.0), true));
     }
+}
+
+#[test]
+fn fields_of_the_flux_sensor_are_read() {
+    let mut client = knows(&[("stream 10 force flux surface finger", "ok")]);
+    let fields = [5, 9, 10, 11].into_iter();
+    let fields = fields.fold(TelemetryFields::NONE, TelemetryFields::with);
+    client.ask(&PlainCommand::Stream(10, fields)).unwrap();
+    client
+        .link()
+        .sends(1, "T 10 stimulus 0.512 -1234.5 24.0125 wet -");
+    client.link().sends(2, "T 20 stimulus 0.512 - - - -");
+    client.link().sends(3, "T 30 stimulus 0.512 1 24 damp -");
+    client.wait(Duration::from_millis(10)).unwrap();
+    let mut next = || Some(client.next_telemetry(Duration::ZERO).unwrap()?.telemetry);
+    let values = |line: Telemetry| (line.force_n, line.flux_w_m2, line.surface_c, line.finger);
+    let known = FingerKnowledge::PROTOCOL_WORDS
+        .into_iter()
+        .find(|(word, _)| *word == "wet");
+    let (_, known) = known.unwrap();
+    assert_eq!(
+        next().map(values),
+        Some((Some(0.512), Some(-1234.5), Some(24.0125), Some(known)))
+    );
+    assert_eq!(next().map(values), Some((Some(0.512), None, None, None)));
+    assert_eq!(next(), None);
 }

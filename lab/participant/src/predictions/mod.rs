@@ -11,6 +11,7 @@ pub mod fit;
 mod identification;
 pub mod published;
 mod real_and_simulated;
+mod rendered;
 mod report;
 mod text;
 mod worth;
@@ -28,6 +29,7 @@ use worth::worth;
 
 pub use condition::{Condition, DisplayMode};
 pub use real_and_simulated::real_against_simulated;
+pub use rendered::{RenderedTouch, ToldApart, ToldApartReport, told_apart};
 pub use report::{
     Basis, CellResult, Check, Falls, IdenticalResult, Identification, PairResult,
     RealAgainstSimulated, Report, TableResult, Worth,
@@ -45,6 +47,14 @@ pub enum PredictionError {
     /// The search for the most likely observer.
     #[error("the fit failed: {0}")]
     Fit(String),
+    /// An object of which no fall is known.
+    #[error("object {object:?} begins with no known material; known are {}", known.join(", "))]
+    UnknownMaterial {
+        /// Its name.
+        object: String,
+        /// The materials.
+        known: Vec<String>,
+    },
 }
 
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {

@@ -125,7 +125,8 @@ impl<L: Link> Executor<'_, L> {
                 DeviceEventKind::Lift => self.trial.lifted(finger, event.tick),
                 DeviceEventKind::CourseStarted
                 | DeviceEventKind::CourseEnded
-                | DeviceEventKind::Trigger => {}
+                | DeviceEventKind::Trigger
+                | DeviceEventKind::FingerKnowledge => {}
             }
             self.inform(Update::Event(received));
         }

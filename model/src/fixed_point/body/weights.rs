@@ -3,6 +3,7 @@
 use fixed::types::{I0F32, I2F30, I12F20};
 
 use super::{Body, FingerBody};
+use crate::fixed_point::half_space::inverse;
 
 /// Number of weights of the mean finger's tissue: of its relaxations from the slowest to the fastest, without the integrator,
 /// and of its direct term.
@@ -97,10 +98,13 @@ impl TissueWeights {
         body.slow_input_gain = I0F32::from_bits(sum(|one| one.slow_input_gain) as i32);
         let tick_gain = sum(|one| one.tick_gain) >> (TICK_BITS - I12F20::FRAC_NBITS);
         body.tick_gain = I12F20::from_bits(tick_gain as i32);
-        // Positive, because every weight is.
-        let inverse =
-            (1 << (I0F32::FRAC_NBITS + HORIZON_BITS)) / sum(|one| one.horizon_gain).max(1);
-        body.inverse_horizon_gain = I0F32::from_bits(inverse as i32);
+        // Positive, because every weight is, and below 2^30.
+        let horizon_gain = sum(|one| one.horizon_gain).max(1) as u32;
+        let zeros = horizon_gain.leading_zeros();
+        // 2^62 / (2^zeros gain), relative error below 2^-28.
+        let inverse = u64::from(inverse(horizon_gain << zeros)) << zeros;
+        const PLACES: u32 = I0F32::FRAC_NBITS + HORIZON_BITS;
+        body.inverse_horizon_gain = I0F32::from_bits((inverse >> (62 - PLACES)) as i32);
         body
     }
 }

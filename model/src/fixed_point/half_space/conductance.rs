@@ -1,11 +1,11 @@
 //! Contact resistance in series with a half-space.
 
-use fixed::types::{I12F20, U0F32, U16F16};
+use fixed::types::{I4F28, I12F20, U0F32, U16F16};
 
 use super::{HalfSpace, TICK_GAIN};
 use crate::fixed_point::{
-    Body, Celsius, Contact, Fraction, MantissaExponent, Ratio, ScaledBody, product,
-    saturating_product,
+    Body, Celsius, Contact, ContactPair, Fraction, Log2, MantissaExponent, OwnContactLaw, Ratio,
+    ScaledBody, product, saturating_product,
 };
 
 /// A contact resistance in series with a [`HalfSpace`], for one tick: gives the scaled flux for a temperature
@@ -66,9 +66,52 @@ impl ContactConductance {
     }
 }
 
+/// Resistances in which the contacts of one finger on one display differ from those of the thesis's skin on a bare display.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OwnResistances {
+    /// Factor of the contact resistance of the finger's skin with any surface.
+    pub skin_factor: I4F28,
+    /// Resistance of a layer on the display's face, in series with its contact: its temperature difference per kelvin of
+    /// scaled flux.
+    pub display_layer: U16F16,
+    /// The contact law of the finger's skin; `None` for Eq. 6-8.
+    pub law: Option<OwnContactLaw>,
+}
+
+impl OwnResistances {
+    /// Those of the thesis's skin on a bare display.
+    pub const NONE: Self = Self {
+        skin_factor: I4F28::ONE,
+        display_layer: U16F16::ZERO,
+        law: None,
+    };
+
+    /// The contact of this finger at the pressure given by `log2(P / H)`, without its gap and factor.
+    #[must_use]
+    pub fn contact(&self, pair: &ContactPair, log2_relative_pressure: Log2) -> Contact {
+        match &self.law {
+            None => pair.at_pressure(log2_relative_pressure),
+            Some(law) => pair.at_pressure_by(law, log2_relative_pressure),
+        }
+    }
+
+    /// A resistance of [`Self::contact`] with the gap parallel to it.
+    fn with_gap(&self, resistance: U16F16) -> U16F16 {
+        match &self.law {
+            None => resistance,
+            Some(law) => law.with_gap(resistance),
+        }
+    }
+
+    /// The resistance of this finger's contact, where that of [`Self::contact`] is `resistance`; saturates.
+    fn of_contact(&self, resistance: U16F16) -> U16F16 {
+        saturating_product(self.skin_factor, self.with_gap(resistance))
+    }
+}
+
 /// `2^62 / n` for `n` from 2^31 on: below 2^31, relative error below 2^-28. A 32-bit division and one step of
 /// Newton's method, because a 64-bit division costs three hundred cycles.
-pub(super) const fn inverse(n: u32) -> u32 {
+pub const fn inverse(n: u32) -> u32 {
     // 2^48 / n, relative error below 2^-15.
     let estimate = (u32::MAX / (n >> 16 | 1 << 15)) as i64;
     let residual = (1 << 48) - estimate * n as i64;
@@ -76,6 +119,7 @@ pub(super) const fn inverse(n: u32) -> u32 {
 }
 
 /// `ratio / (rate weight)`; saturates.
+#[inline(never)]
 fn resistance(ratio: Ratio, rate: MantissaExponent, weight: Fraction) -> U16F16 {
     let product = u64::from(rate.leading()) * u64::from(weight.to_bits());
     let zeros = product.leading_zeros();
@@ -109,29 +153,64 @@ impl Contact {
     /// display; its target is `T_skin,i - T_display`.
     #[must_use]
     pub fn display_conductance(&self) -> ContactConductance {
-        self.display_conductance_for(TICK_GAIN)
+        ContactConductance::new(self.display_resistance(), TICK_GAIN)
     }
 
     /// Conductance between skin and display, for a finger that is another [`super::super::Body`].
     #[must_use]
-    pub fn display_conductance_of(&self, skin: &Body) -> ContactConductance {
-        self.display_conductance_for(skin.tick_gain())
-    }
-
-    fn display_conductance_for(&self, tick_gain: I12F20) -> ContactConductance {
+    pub fn display_conductance_of(&self, skin: &Body, own: &OwnResistances) -> ContactConductance {
+        let of_contact = own.of_contact(self.display_resistance());
         ContactConductance::new(
-            resistance(self.ratio, self.root_rate_per_tick, self.weight),
-            tick_gain,
+            of_contact.saturating_add(own.display_layer),
+            skin.tick_gain(),
         )
     }
 
     /// Conductance between the bodies of skin and object. Its target is `T_skin,i - T_object,i`, less the free responses
     /// of both.
     #[must_use]
-    pub fn conductance_of(&self, skin: &Body, object: &ScaledBody) -> ContactConductance {
+    pub fn conductance_of(
+        &self,
+        skin: &Body,
+        object: &ScaledBody,
+        own: &OwnResistances,
+    ) -> ContactConductance {
         ContactConductance::new(
-            resistance(Ratio::ONE, self.root_rate_per_tick, self.weight),
+            own.of_contact(self.object_resistance()),
             skin.tick_gain().saturating_add(object.tick_gain()),
         )
+    }
+
+    /// Resistance between skin and display over that between skin and object, as [`Self::ratio`], with a finger's own ones.
+    #[must_use]
+    pub fn ratio_of(&self, own: &OwnResistances) -> Ratio {
+        let object = own.of_contact(self.object_resistance()).to_bits().max(1);
+        if own.law.is_some_and(|law| law.has_gap()) {
+            let display = own
+                .of_contact(self.display_resistance())
+                .saturating_add(own.display_layer);
+            let ratio = (u64::from(display.to_bits()) << Ratio::FRAC_NBITS) / u64::from(object);
+            return Ratio::from_bits(ratio.min(Ratio::MAX.to_bits().into()) as u32);
+        }
+        // Both have the same binary places.
+        let layer =
+            (u64::from(own.display_layer.to_bits()) << Ratio::FRAC_NBITS) / u64::from(object);
+        let layer = Ratio::from_bits(layer.min(Ratio::MAX.to_bits().into()) as u32);
+        self.ratio.saturating_add(layer)
+    }
+
+    /// Resistance between skin and display without a factor that was learnt, and without the layer: its temperature difference
+    /// per kelvin of scaled flux.
+    #[must_use]
+    pub fn expected_display_resistance(&self, own: &OwnResistances) -> U16F16 {
+        own.with_gap(self.display_resistance())
+    }
+
+    fn display_resistance(&self) -> U16F16 {
+        resistance(self.ratio, self.root_rate_per_tick, self.weight)
+    }
+
+    fn object_resistance(&self) -> U16F16 {
+        resistance(Ratio::ONE, self.root_rate_per_tick, self.weight)
     }
 }

@@ -75,6 +75,19 @@ pub const FINGERS: usize = 5;
 /// each millisecond.
 pub const SAMPLE_TIME_CODE: u8 = 1;
 
+/// Takes the place of the converter of the one-finger wiring's heat-flux sensor: five fingers have none. It would need a
+/// multiplexer of its own, and conversions that start by the timer of the scans.
+pub struct NoFluxConverter;
+
+pub use NoFluxConverter as FluxConverter;
+
+impl NoFluxConverter {
+    /// Always `None`.
+    pub fn take_code_and_start_next(&mut self) -> Option<u16> {
+        None
+    }
+}
+
 /// Makes the outputs of all bridges high-impedance by direct writes to the registers, in any state
 /// of the program, also before the bridges are set up. For the handlers of fatal errors, after
 /// which the program must not continue.

@@ -8,16 +8,19 @@
 //! | PA6  | D12    | bridge nFAULT | TIM1 break input, low is a fault; external 4.7k pull-up |
 //! | PC3  | CN7-37 | comparator test | high connects the input to a level; external pull-down |
 //! | PA5  | D13    | LED LD2       | lit while the bridge may drive                          |
+//! | PC5  | CN10-6 | heat flux     | ADC2 channel 15                                         |
 //!
 //! The comparator that monitors the second display thermistor disconnects the supply of the bridge
 //! without the processor. It also pulls nFAULT low, so that the break input reports the trip to the
 //! processor.
 
+mod flux_converter;
 mod power_stage;
 
 use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1};
 use thermal_display::device::FingerIndex;
 
+pub use flux_converter::FluxConverter;
 pub use power_stage::FingerPowerStage;
 
 /// Number of fingers that this wiring controls, each with its own bridge and sensors.

@@ -41,7 +41,7 @@ impl AssumedSkin {
     pub fn step_sensed_skin(
         &mut self,
         display: Option<&ContactConductance>,
-        bodies: &Bodies<'_>,
+        bodies: &Bodies,
         room: Celsius,
         surface: Celsius,
     ) -> Celsius {

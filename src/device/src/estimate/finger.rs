@@ -1,10 +1,10 @@
 //! The finger: its temperature before contact, its force, and by how much the display has cooled its skin.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, ContactConductance, ContactPair, Force, contact_area, log2_relative_pressure,
-    product, saturating_product,
+    Body, Celsius, Contact, ContactConductance, ContactPair, Force, OwnResistances, Ratio,
+    TissueStateFactors, contact_area, log2_relative_pressure, product, saturating_product,
 };
-use fixed::types::{I2F30, I10F22};
+use fixed::types::{I2F30, I10F22, U16F16};
 
 use super::Watt;
 use super::assumed_skin::AssumedSkin;
@@ -39,6 +39,9 @@ const CONDUCTANCE_FORCE_TOLERANCE_SHIFT: u32 = 10;
 /// flux into the display in W/mm².
 const SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2: I2F30 = I2F30::from_bits(39_728_000);
 
+/// A heat flux, W/mm², positive out of the skin.
+pub type FluxPerMm2 = I10F22;
+
 /// Low-pass filtered temperatures of the skin and of the room before a contact. They are not updated from landing until
 /// 2 s after lifting, and not in the first 2 s after a restart of the estimator. The set-points of a contact are
 /// computed from these initial temperatures.
@@ -71,24 +74,45 @@ pub struct ContactConductances {
     /// Conductance between skin and presented object, as scaled heat flux (K) per kelvin; determines how much the
     /// simulated skin cools on the object.
     pub object: ContactConductance,
+    /// Resistance between skin and display over that between skin and object, with the finger's own ones.
+    pub ratio: Ratio,
 }
 
 impl ContactConductances {
-    fn new(pair: &ContactPair, bodies: Option<&Bodies<'_>>, force: Force) -> Self {
-        let contact = pair.at_pressure(log2_relative_pressure(force));
+    fn new(pair: &ContactPair, bodies: Option<&Bodies>, force: Force) -> Self {
+        let pressure = log2_relative_pressure(force);
+        let contact = match bodies {
+            None => pair.at_pressure(pressure),
+            Some(bodies) => bodies.resistances.contact(pair, pressure),
+        };
         let (display, object) = match bodies {
             None => (contact.display_conductance(), contact.object_conductance()),
-            Some(Bodies { finger, object, .. }) => (
-                contact.display_conductance_of(&finger.tissue),
-                contact.conductance_of(&finger.tissue, object),
+            Some(Bodies {
+                finger,
+                object,
+                resistances,
+                ..
+            }) => (
+                contact.display_conductance_of(&finger.tissue, resistances),
+                contact.conductance_of(&finger.tissue, object, resistances),
             ),
         };
+        let ratio = bodies.map_or(contact.ratio, |bodies| {
+            contact.ratio_of(&bodies.resistances)
+        });
         Self {
             force,
             contact,
             display,
             object,
+            ratio,
         }
+    }
+
+    /// Contact resistance of skin and display without the factor that was learnt, K per K of scaled flux; `own` are the finger's.
+    #[must_use]
+    pub fn expected_display_resistance(&self, own: &OwnResistances) -> U16F16 {
+        self.contact.expected_display_resistance(own)
     }
 
     /// Whether the conductances may also be used for `force`, N, because it differs by at most 1/1024 from the force
@@ -117,6 +141,8 @@ pub struct FingerContact {
     /// Contact conductances for a force within 1/1024 of the present mean force; `None` until a tick computes them, and
     /// after another object has been presented.
     conductances: Option<ContactConductances>,
+    /// Flux by which a sensor has measured more than the model of the finger says.
+    flux_beyond_model: FluxPerMm2,
 }
 
 impl FingerContact {
@@ -131,6 +157,7 @@ impl FingerContact {
             initial_force: force,
             elapsed: landed_ticks.into(),
             conductances: None,
+            flux_beyond_model: FluxPerMm2::ZERO,
         }
     }
 
@@ -240,6 +267,11 @@ pub struct FingerEstimator {
     /// The skin that the host assumes for set-points, to which `before_contact` and `skin_state_on_display` then belong,
     /// and the sensed skin beside it; `None` without an assumption.
     assumed_skin: Option<AssumedSkin>,
+    /// Flux of the last tick into the display by the modelled finger.
+    modelled_flux: FluxPerMm2,
+    /// What was learnt of the error of the skin's thermistor, K: all temperatures of the sensed skin are by so much above its
+    /// readings.
+    skin_offset: Celsius,
 }
 
 impl FingerEstimator {
@@ -260,6 +292,7 @@ impl FingerEstimator {
     ) {
         let recovered = self.lifted_ticks >= SKIN_RECOVERY_TICKS;
         let is_undisturbed = touch.is_none() && recovered;
+        let skin = skin.saturating_add(self.skin_offset);
         let skin = match &mut self.assumed_skin {
             None => skin,
             Some(assumed) => assumed.update_by_reading(skin, is_undisturbed),
@@ -314,12 +347,15 @@ impl FingerEstimator {
     }
 
     /// Discards the temperatures before contact, the contact, and the cooling of the skin; the next call of
-    /// [`Self::update_by_readings`] starts from its readings. An assumed temperature of the skin stays. Called in each
+    /// [`Self::update_by_readings`] starts from its readings. Assumed temperature and offset of the skin stay. Called in each
     /// tick whose readings are invalid or in which a fault detector finds a fault, because such a tick does not update
     /// the estimates, and a landing or lifting of the finger would be missed.
     pub fn invalidate(&mut self) {
         let assumed = self.assumed_skin.as_ref().map(|skin| skin.temperature);
-        *self = Self::default();
+        *self = Self {
+            skin_offset: self.skin_offset,
+            ..Self::default()
+        };
         self.assume_skin(assumed);
     }
 
@@ -354,6 +390,50 @@ impl FingerEstimator {
         &self.skin_state_on_display
     }
 
+    /// Temperature of the skin before contact, °C, as its thermistor has it; `None` as [`Self::temperatures_before_contact`].
+    #[must_use]
+    pub fn skin_before_contact_by_thermistor(&self) -> Option<Celsius> {
+        let sensed = match &self.assumed_skin {
+            None => self.before_contact.map(|before| before.skin),
+            Some(assumed) => assumed.sensed,
+        };
+        sensed.map(|skin| skin.saturating_sub(self.skin_offset))
+    }
+
+    /// Takes the sensed skin to be by `offset`, K, warmer than its thermistor, at once and from now on.
+    pub fn set_skin_offset(&mut self, offset: Celsius) {
+        let change = offset.saturating_sub(self.skin_offset);
+        self.skin_offset = offset;
+        let sensed = match &mut self.assumed_skin {
+            None => self.before_contact.as_mut().map(|before| &mut before.skin),
+            Some(assumed) => assumed.sensed.as_mut(),
+        };
+        if let Some(skin) = sensed {
+            *skin = skin.saturating_add(change);
+        }
+    }
+
+    /// Flux of the last tick into the display by the modelled finger; 0 without contact.
+    #[must_use]
+    pub fn modelled_flux(&self) -> FluxPerMm2 {
+        (self.contact.as_ref()).map_or(FluxPerMm2::ZERO, |_| self.modelled_flux)
+    }
+
+    /// Adds this to the flux of the modelled finger until another follows, or this contact ends.
+    pub const fn set_flux_beyond_model(&mut self, flux: FluxPerMm2) {
+        if let Some(contact) = &mut self.contact {
+            contact.flux_beyond_model = flux;
+        }
+    }
+
+    /// Makes the skin's states those that the heat so far would have made in the tissue `to`.
+    pub fn change_tissue(&mut self, factors: &TissueStateFactors, to: &Body) {
+        self.skin_state_on_display.change_tissue(factors, to);
+        if let Some(assumed) = &mut self.assumed_skin {
+            assumed.sensed_state.change_tissue(factors, to);
+        }
+    }
+
     /// Makes the skin's tissue uniform, as if it had recovered, because another tissue is assumed from now on.
     pub fn forget_tissue_history(&mut self) {
         self.skin_state_on_display.forget_tissue_history();
@@ -373,19 +453,20 @@ impl FingerEstimator {
     /// Advances the thermal state of the skin by one tick, in contact with a display whose surface has the temperature
     /// `surface`, °C, or without contact. Returns the heat flow from the finger into the display, W: negative if the
     /// display is warmer than the skin's surface, 0 without contact. It is that of the sensed skin, also while another
-    /// one is assumed. Computes the contact conductances again if the mean force has changed by more than 1/1024. Of
+    /// one is assumed, with [`Self::set_flux_beyond_model`]. Computes the contact conductances again if the mean force has changed by
+    /// more than 1/1024. Of
     /// `pair` only the properties of skin and display matter here, so the caller may give a pair with any object.
     pub fn step_skin_heat_flow(
         &mut self,
         pair: &ContactPair,
-        bodies: &Bodies<'_>,
+        bodies: &Bodies,
         surface: Celsius,
     ) -> Watt {
         let Some(before) = self.before_contact else {
             return Watt::ZERO;
         };
-        let (force, display) = match &mut self.contact {
-            None => (Force::ZERO, None),
+        let (force, beyond, display) = match &mut self.contact {
+            None => (Force::ZERO, FluxPerMm2::ZERO, None),
             Some(contact) => {
                 let force = contact.force.long_mean();
                 let conductances = match &mut contact.conductances {
@@ -395,7 +476,8 @@ impl FingerEstimator {
                         outdated.insert(ContactConductances::new(pair, bodies, force))
                     }
                 };
-                (force, Some(&conductances.display))
+                let beyond = contact.flux_beyond_model;
+                (force, beyond, Some(&conductances.display))
             }
         };
         let mut scaled_flux =
@@ -403,8 +485,9 @@ impl FingerEstimator {
         if let Some(assumed) = &mut self.assumed_skin {
             scaled_flux = assumed.step_sensed_skin(display, bodies, before.room, surface);
         }
-        let flux_w_mm2: I10F22 = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
-        saturating_product(flux_w_mm2, contact_area(force))
+        self.modelled_flux = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
+        let flux = self.modelled_flux.saturating_add(beyond);
+        saturating_product(flux, contact_area(force))
     }
 }
 

@@ -123,6 +123,12 @@ impl ForceMeans {
         self.ticks >= MIN_TICKS_SINCE_JUMP_FOR_NEW_SETPOINT && self.ticks.is_power_of_two()
     }
 
+    /// Whether the force has jumped in one of the last `ticks` ticks, at most 64; a landing counts as a jump.
+    #[must_use]
+    pub const fn have_jumped_within(&self, ticks: u32) -> bool {
+        self.ticks <= ticks
+    }
+
     /// Adds the force of one tick, N, to the running means, or starts them again if the force has jumped. Returns
     /// whether the force has jumped, has drifted, or shows only noise.
     pub fn add_force(&mut self, force: Force) -> ForceChange {

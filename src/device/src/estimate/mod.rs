@@ -8,7 +8,7 @@ mod plate_model;
 mod plate_observer;
 mod skin_state;
 
-pub use finger::{FingerContact, FingerEstimator, PreContactTemperatures};
+pub use finger::{FingerContact, FingerEstimator, FluxPerMm2, PreContactTemperatures};
 pub use force_means::{ForceChange, ForceMeans};
 pub use plate_model::{LegTemperatures, PlateModel, Watt};
 pub use plate_observer::{ObserverParameters, PlateObserver};
@@ -58,7 +58,7 @@ impl Estimator {
         touch: Option<Force>,
         landed_ticks: u32,
         pair: Option<&ContactPair>,
-        bodies: &Bodies<'_>,
+        bodies: &Bodies,
     ) -> PlateEstimateBeforeReading {
         let ValidReadings {
             display,

@@ -1,7 +1,8 @@
 //! Thermal state of the skin: the thesis's half-space, or the tissue of another finger.
 
 use contact_model::fixed_point::{
-    Celsius, ContactConductance, FingerBody, HalfSpace, ScaledBody, TissueState, product,
+    Body, Celsius, ContactConductance, FingerBody, HalfSpace, OwnResistances, ScaledBody,
+    TissueState, TissueStateFactors, product,
 };
 use fixed::types::U16F16;
 
@@ -10,20 +11,23 @@ use super::PreContactTemperatures;
 /// Assumed finger and presented object. Where they are not both half-spaces, the thesis's equations do not hold, and
 /// finger and object are each followed by relaxations of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Bodies<'a> {
+pub struct Bodies {
     /// The assumed finger.
-    pub finger: &'a FingerBody,
+    pub finger: FingerBody,
     /// The presented object.
     pub object: ScaledBody,
+    /// In which resistances the finger's contacts differ; not used while both are half-spaces.
+    pub resistances: OwnResistances,
     /// Whether both are half-spaces.
     pub are_half_spaces: bool,
 }
 
-impl Bodies<'static> {
+impl Bodies {
     /// The thesis's finger, and an object of the same effusivity.
     pub const HALF_SPACES: Self = Self {
-        finger: &FingerBody::THESIS,
+        finger: FingerBody::THESIS,
         object: ScaledBody::half_space(U16F16::ONE),
+        resistances: OwnResistances::NONE,
         are_half_spaces: true,
     };
 }
@@ -51,11 +55,11 @@ impl SkinState {
     pub fn step(
         &mut self,
         into_object: Option<Celsius>,
-        bodies: &Bodies<'_>,
+        bodies: &Bodies,
         skin_above_room: Celsius,
     ) {
         if !bodies.are_half_spaces {
-            self.step_tissue(into_object, bodies.finger, skin_above_room);
+            self.step_tissue(into_object, &bodies.finger, skin_above_room);
         } else if let Some(state) = self.half_space() {
             state.step(into_object.unwrap_or(Celsius::ZERO));
         }
@@ -68,7 +72,7 @@ impl SkinState {
     pub fn step_on_display(
         &mut self,
         display: Option<&ContactConductance>,
-        bodies: &Bodies<'_>,
+        bodies: &Bodies,
         before: &PreContactTemperatures,
         surface: Celsius,
     ) -> Celsius {
@@ -127,6 +131,13 @@ impl SkinState {
         }
     }
 
+    /// Makes the state of a tissue that which the same heat would have made in the tissue `to`. A half-space stays.
+    pub fn change_tissue(&mut self, factors: &TissueStateFactors, to: &Body) {
+        if let Self::Body(state) = self {
+            state.rescale(factors, &to.relaxations());
+        }
+    }
+
     /// A uniform skin of the other kind, with the rhythm of this one's updates.
     #[cold]
     #[inline(never)]
@@ -139,7 +150,7 @@ impl SkinState {
 
     /// The same state with updates of its slow relaxations at other ticks, for the simulated skin beside the real one.
     #[must_use]
-    pub fn staggered(&self, bodies: &Bodies<'_>) -> Self {
+    pub fn staggered(&self, bodies: &Bodies) -> Self {
         match self {
             Self::HalfSpace(state) => Self::HalfSpace(state.staggered()),
             Self::Body(state) => Self::Body(state.staggered(&bodies.finger.tissue.relaxations())),

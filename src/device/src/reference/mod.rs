@@ -10,7 +10,12 @@ mod skin_on_object;
 
 use core::ops::RangeInclusive;
 
-use contact_model::fixed_point::{Celsius, ChordInterpolation, ContactPair, Force};
+use contact_model::fixed_point::{
+    Body, Celsius, ChordInterpolation, ContactPair, Force, Fraction, TissueStateFactors, preset,
+    saturating_product,
+};
+
+use fixed::types::U16F16;
 
 use crate::estimate::{
     Bodies, FingerContact, FingerEstimator, ForceChange, PreContactTemperatures,
@@ -57,7 +62,7 @@ pub struct PresentedObject<'a> {
     pub pair: &'a ContactPair,
     /// Assumed finger and presented object. If they are not both half-spaces, Eq. 6-12 does not hold, and the set-point
     /// follows from the simulated skin on the object with every control law.
-    pub bodies: &'a Bodies<'a>,
+    pub bodies: &'a Bodies,
     /// Temperature of the object before contact, °C; `None` takes the temperature of the room.
     pub object: Option<Celsius>,
     /// Contact model that gives the set-point: with contact resistance (Eq. 6-12) or perfect contact (Eq. 3-1).
@@ -256,6 +261,17 @@ fn waiting_offset_below_preset(skin: Celsius, preset: Celsius) -> Celsius {
     skin.saturating_sub(preset) >> WAITING_OFFSET_DIVISOR_LOG2
 }
 
+/// As [`waiting_offset_below_preset`], for a display with the layer of a heat-flux sensor on its face, and an object of this
+/// weight: 3/64 of the difference times the weight.
+///
+/// The flux's drop across the layer is unknown before the first contact, because that of fingers differs by a factor of two,
+/// and a display that must cool a strong flux's drop away is at the bridge's limit for 80 ms. To heat is quicker, because the module's
+/// own heat helps. An object of a smaller weight draws less flux.
+fn waiting_offset_below_layer(skin: Celsius, preset: Celsius, weight: Fraction) -> Celsius {
+    let weighted: Celsius = saturating_product(skin.saturating_sub(preset), weight);
+    (weighted >> 5u32).saturating_add(weighted >> 6u32)
+}
+
 impl ReferenceGenerator {
     /// Discards the contact with the object and the simulation of the skin; only the number of evaluations of `erfcx`
     /// is kept. Called in a tick with invalid readings or a detected fault, because the finger may have landed or
@@ -277,12 +293,23 @@ impl ReferenceGenerator {
     /// Lets a finger that touches the display begin a new contact with the object in the next tick. The simulated skin
     /// starts with the temperature that the real skin has on the display. Called when the host chooses another
     /// material, object temperature or contact model, and at `start`.
-    pub fn restart_contact(&mut self, finger: &mut FingerEstimator, bodies: &Bodies<'_>) {
+    pub fn restart_contact(&mut self, finger: &mut FingerEstimator, bodies: &Bodies) {
         self.contact = None;
         self.lead = SetpointLead::default();
         self.skin_on_object
             .start_from_skin_on_display(finger.skin_state_on_display(), bodies);
         finger.forget_conductances();
+    }
+
+    /// Goes on with the tissue `to`, and with the resistances of the finger that is presented next.
+    pub fn change_finger(&mut self, factors: &TissueStateFactors, to: &Body) {
+        self.skin_on_object.change_tissue(factors, to);
+        self.forget_resistances();
+    }
+
+    /// Takes over the resistances of the finger that is presented next.
+    pub fn forget_resistances(&mut self) {
+        self.factors = ContactPairFactors::default();
     }
 
     /// Set-point and target of this tick. `None` if the finger's estimator has no temperatures of skin and room, that
@@ -321,7 +348,10 @@ impl ReferenceGenerator {
             ));
         }
         if !self.factors.were_computed_for(object_presented.pair) {
-            self.factors = ContactPairFactors::new(object_presented.pair);
+            self.factors = ContactPairFactors::new(
+                object_presented.pair,
+                &object_presented.bodies.resistances,
+            );
         }
         let skin_above_object = skin.saturating_sub(object);
         if !object_presented.bodies.are_half_spaces {
@@ -332,7 +362,7 @@ impl ReferenceGenerator {
             };
             return Some(self.next_reference_of_bodies(
                 &before,
-                (object_presented.pair, skin, object),
+                (skin, object),
                 finger,
                 follow_skin,
             ));
@@ -406,35 +436,38 @@ impl ReferenceGenerator {
     }
 
     /// [`Self::next_reference`] in the mode with contact resistance for a finger and an object that are not both
-    /// half-spaces, apart from the code of the thesis's. `pair`, `skin` and `object` are the contact's constants and the
-    /// temperatures before contact, °C.
+    /// half-spaces, apart from the code of the thesis's. `skin` and `object` are the temperatures before contact, °C.
     #[inline(never)]
     fn next_reference_of_bodies(
         &mut self,
         before: &BodiesBeforeContact<'_>,
-        (pair, skin, object): (&ContactPair, Celsius, Celsius),
+        (skin, object): (Celsius, Celsius),
         finger: &mut FingerEstimator,
         follow_skin: bool,
     ) -> Reference {
         let (contact, skin_state_on_display) = finger.contact_and_skin_state();
         self.contact = None;
+        let ratio_at_landing = self.factors.ratio_at_landing;
         let Some(contact) = contact else {
             self.lead = SetpointLead::default();
             let mut changes = self.skin_on_object.step_bodies(None, before);
             if !follow_skin {
-                return Reference::at(pair.preset(skin, object));
+                return Reference::at(preset(ratio_at_landing, skin, object));
             }
             changes.cooling = skin_state_on_display.free_response();
-            let setpoint = changes.setpoint(&self.factors, skin, before.skin_above_object);
-            return Reference::limited_to_safe_range(
-                setpoint,
-                setpoint.saturating_sub(waiting_offset_below_preset(skin, setpoint)),
-            );
+            let setpoint = changes.setpoint(ratio_at_landing, skin, before.skin_above_object);
+            let offset = if before.bodies.resistances.display_layer == U16F16::ZERO {
+                waiting_offset_below_preset(skin, setpoint)
+            } else {
+                waiting_offset_below_layer(skin, setpoint, self.factors.weight)
+            };
+            return Reference::limited_to_safe_range(setpoint, setpoint.saturating_sub(offset));
         };
         let conductances = contact.stored_conductances();
         let changes =
             (self.skin_on_object).step_bodies(conductances.map(|both| &both.object), before);
-        let setpoint = changes.setpoint(&self.factors, skin, before.skin_above_object);
+        let ratio = conductances.map_or(ratio_at_landing, |both| both.ratio);
+        let setpoint = changes.setpoint(ratio, skin, before.skin_above_object);
         let correction = match conductances {
             Some(both) if follow_skin => (self.skin_on_object).skin_matching_correction(
                 skin_state_on_display,

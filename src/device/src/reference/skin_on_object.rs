@@ -4,7 +4,8 @@
 //! under a changing force, and in a contact that begins soon after another one.
 
 use contact_model::fixed_point::{
-    BodyState, Celsius, ContactConductance, ContactPair, Fraction, Ratio, Word, saturating_product,
+    Body, BodyState, Celsius, ContactConductance, ContactPair, Force, Fraction, OwnResistances,
+    Ratio, TissueStateFactors, Word, log2_relative_pressure, saturating_product,
 };
 use fixed::types::U16F16;
 
@@ -16,7 +17,7 @@ use crate::estimate::{Bodies, SkinState, flux_beyond_air};
 pub struct ContactPairFactors {
     /// Fraction of the difference between skin and object temperature by which the skin's surface cools in a long
     /// contact: `e_object / (e_object + e_skin)`, with the thermal effusivities `e`.
-    weight: Fraction,
+    pub weight: Fraction,
     /// Reciprocal of `weight`, `(e_object + e_skin) / e_object`. The cooling of the skin's surface times this factor is
     /// the decrease of the temperature difference between skin and object surface, because the object's surface warms
     /// at the same time.
@@ -25,20 +26,35 @@ pub struct ContactPairFactors {
     /// drop across the object's contact times this ratio is the drop that the same heat flow causes across the
     /// display's contact.
     ratio: Ratio,
+    /// The same with the finger's own resistances at the force with which a finger is expected to land, for the time before
+    /// contact: a layer on the display makes it depend on the force.
+    pub ratio_at_landing: Ratio,
 }
+
+/// Force with which a finger is expected to land, N.
+const LANDING_FORCE: Force = Force::lit("1");
 
 impl ContactPairFactors {
     /// Computes the constants of Eq. 6-12 for the contacts of the skin with object and display in `pair`: the weight of
     /// the object, its reciprocal, and the ratio of the contact resistances. The reciprocal takes a 64-bit division, for
     /// which the processor has no instruction, so it is computed only when another object is presented.
     #[must_use]
-    pub fn new(pair: &ContactPair) -> Self {
+    pub fn new(pair: &ContactPair, resistances: &OwnResistances) -> Self {
+        // With a gap the set-point begins near the object's temperature, and has left it after some milliseconds: a display that
+        // waited there would be late for all that follows.
+        let without_law = OwnResistances {
+            law: None,
+            ..*resistances
+        };
         // 1 in 2^-48 over the weight in 2^-32.
         let inverse = (1u64 << 48) / u64::from(pair.weight().to_bits().max(1));
         Self {
             weight: pair.weight(),
             inverse_weight: U16F16::from_bits(inverse.min(u64::from(u32::MAX)) as u32),
             ratio: pair.ratio(),
+            ratio_at_landing: pair
+                .at_pressure(log2_relative_pressure(LANDING_FORCE))
+                .ratio_of(&without_law),
         }
     }
 
@@ -54,7 +70,7 @@ impl ContactPairFactors {
 #[derive(Clone, Copy, Debug)]
 pub struct BodiesBeforeContact<'a> {
     /// Finger and object.
-    pub bodies: &'a Bodies<'a>,
+    pub bodies: &'a Bodies,
     /// The skin's temperature minus the object's, K.
     pub skin_above_object: Celsius,
     /// The skin's temperature minus the room's, K.
@@ -71,19 +87,19 @@ pub struct SurfaceChanges {
 }
 
 impl SurfaceChanges {
-    /// The set-point, °C, as [`SkinOnObject::setpoint`].
+    /// The set-point, °C, as [`SkinOnObject::setpoint`], for a ratio of the resistances of display and object.
     #[must_use]
     #[inline]
     pub fn setpoint(
         &self,
-        factors: &ContactPairFactors,
+        ratio: Ratio,
         skin_before_contact: Celsius,
         skin_above_object: Celsius,
     ) -> Celsius {
         let step_at_object = skin_above_object
             .saturating_sub(self.cooling)
             .saturating_sub(self.warming);
-        let step_at_display: Celsius = saturating_product(step_at_object, factors.ratio);
+        let step_at_display: Celsius = saturating_product(step_at_object, ratio);
         skin_before_contact
             .saturating_sub(self.cooling)
             .saturating_sub(step_at_display)
@@ -111,11 +127,16 @@ impl SkinOnObject {
     pub fn start_from_skin_on_display(
         &mut self,
         skin_state_on_display: &SkinState,
-        bodies: &Bodies<'_>,
+        bodies: &Bodies,
     ) {
         self.skin = skin_state_on_display.staggered(bodies);
         self.object = BodyState::default();
         self.scaled_flux = Celsius::ZERO;
+    }
+
+    /// Makes the simulated skin's state that which the heat so far would have made in the tissue `to`.
+    pub fn change_tissue(&mut self, factors: &TissueStateFactors, to: &Body) {
+        self.skin.change_tissue(factors, to);
     }
 
     /// Advances the simulated skin by one tick of 1 ms, for two half-spaces. `conductance` is that of the contact of skin
@@ -215,7 +236,7 @@ impl SkinOnObject {
         &self,
         skin_state_on_display: &SkinState,
         display: &ContactConductance,
-        bodies: Option<&Bodies<'_>>,
+        bodies: Option<&Bodies>,
     ) -> Celsius {
         let scaled_flux = match (skin_state_on_display, &self.skin, bodies) {
             (SkinState::HalfSpace(from), SkinState::HalfSpace(to), None) => {

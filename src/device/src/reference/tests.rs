@@ -2,7 +2,7 @@
 
 extern crate std;
 
-use contact_model::fixed_point::FingerBody;
+use contact_model::fixed_point::{FingerBody, TissueWeights};
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::Contact;
@@ -132,7 +132,7 @@ fn last_leads(follows: impl Fn(u32) -> bool) -> Vec<Celsius> {
     let pair = ContactPair::new(&SKIN, granite, &REFERENCE_DISPLAY, TICK_S).expect("pair");
     let (skin, object) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
     let bodies = Bodies {
-        finger: &FingerBody::MEAN,
+        finger: FingerBody::MEAN,
         are_half_spaces: false,
         ..Bodies::HALF_SPACES
     };
@@ -162,4 +162,59 @@ fn the_lead_is_the_same_after_another_law() {
     let always = last_leads(|_| true);
     assert!(always.iter().all(|lead| *lead != 0), "{always:?}");
     assert_eq!(always, last_leads(|tick| !(300..1300).contains(&tick)));
+}
+
+/// A finger that rests on a display which follows the target: the skins on display and object are then those of another tissue,
+/// both alike, so that the display need not make up for a difference.
+#[test]
+fn another_tissue_in_a_steady_contact_asks_for_no_correction() {
+    let granite = &MATERIALS[3].1;
+    let pair = ContactPair::new(&SKIN, granite, &REFERENCE_DISPLAY, TICK_S).expect("pair");
+    let (skin, object) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
+    let mut bodies = Bodies {
+        finger: FingerBody::MEAN,
+        are_half_spaces: false,
+        ..Bodies::HALF_SPACES
+    };
+    let (mut finger, mut generator) = (FingerEstimator::default(), ReferenceGenerator::default());
+    finger.update_by_readings(skin, object, None, 0);
+    let mut surface = Celsius::from_num(28);
+    for tick in 0..3000u32 {
+        let scene = PresentedObject {
+            bodies: &bodies,
+            pair: &pair,
+            object: Some(object),
+            mode: ContactModel::ContactResistance,
+        };
+        finger.update_by_readings(skin, object, Some(Force::from_num(2)), 0);
+        finger.step_skin_heat_flow(&pair, &bodies, surface);
+        let reference = generator
+            .next_reference(&scene, &mut finger, surface, true)
+            .expect("a finger with temperatures");
+        surface = reference.setpoint.celsius();
+        if tick < 1000 || tick % 500 != 0 {
+            continue;
+        }
+        let correction = |generator: &ReferenceGenerator,
+                          finger: &FingerEstimator,
+                          bodies: &Bodies| {
+            let contact = finger
+                .contact()
+                .and_then(FingerContact::stored_conductances);
+            let display = &contact.expect("a contact").display;
+            let on_display = finger.skin_state_on_display();
+            (generator.skin_on_object).skin_matching_correction(on_display, display, Some(bodies))
+        };
+        let before = correction(&generator, &finger, &bodies);
+        let weights = [fixed::types::I2F30::from_num(1.0 - f64::from(tick) * 1e-5); 9];
+        let to = TissueWeights::at_least_min(weights).tissue();
+        let from = bodies.finger.tissue.relaxations();
+        let factors = TissueStateFactors::new(&from, &to.relaxations());
+        finger.change_tissue(&factors, &to);
+        generator.change_finger(&factors, &to);
+        bodies.finger.tissue = to;
+        let moved = correction(&generator, &finger, &bodies) - before;
+        println!("{tick}: {:.3} mK", 1e3 * moved.to_num::<f64>());
+        assert!(moved.abs() < 1e-3, "{moved} K in tick {tick}");
+    }
 }

@@ -19,7 +19,7 @@ const CONTACT_END_FORCE: Force = Force::lit("0.01");
 const FORCE_SHORTED_ABOVE_SUM: u16 = 4060 * 16;
 /// Ticks of 1 ms in a row, 2, in which the force must be off zero (3 mN or more) before a contact begins, or below 10
 /// mN before a contact ends. So one noisy tick neither begins nor ends a contact.
-const CONTACT_DEBOUNCE_TICKS: u32 = 2;
+pub const CONTACT_DEBOUNCE_TICKS: u32 = 2;
 /// Upper limit, ticks of 1 ms, of the counted delay from the tick in which the force left zero to the detection of a
 /// contact. The estimate of the finger dates the landing back by the counted delay. A force that takes longer to rise
 /// does not show when the finger landed.

@@ -7,7 +7,7 @@ mod thermistor;
 mod thermistor_average;
 
 pub use calibration_tables::CalibrationTables;
-pub use force_sensor::ContactDetector;
+pub use force_sensor::{CONTACT_DEBOUNCE_TICKS, ContactDetector};
 pub use supply_voltage::SupplyVoltage;
 pub use thermistor::ThermistorFault;
 pub use thermistor_average::{ThermistorAverage, ThermistorAverages};

@@ -1,11 +1,14 @@
 //! The object that the host has chosen to present.
 
-use contact_model::fixed_point::{Celsius, ContactPair, ScaledBody};
+use contact_model::contact_law::ContactLaw;
+use contact_model::fixed_point::{
+    Body, Celsius, ContactPair, Fraction, OwnResistances, ScaledBody,
+};
 use contact_model::material::{MATERIALS, SKIN, Surface};
-use fixed::types::U16F16;
+use fixed::types::{I4F28, U16F16};
 
 use crate::TICK_S;
-use crate::command::{AssumedFinger, ChosenMaterial, ObjectBody};
+use crate::command::{AssumedFinger, ChosenContactLaw, ChosenMaterial, ObjectBody};
 use crate::estimate::Bodies;
 use crate::reference::{ContactModel, PresentedObject};
 
@@ -17,12 +20,14 @@ pub struct ChosenObject {
     pub material: Option<ChosenMaterial>,
     /// The finger that is assumed for the one that touches.
     finger: AssumedFinger,
+    /// The contact law that the host has told.
+    pub contact_law: ContactLaw,
     /// Whether the object is the half-space of its material.
     is_half_space: bool,
     /// The word of the object's body in the protocol.
     pub body_name: &'static str,
     /// The assumed finger and the object as bodies. Before a material is chosen, the object is the skin's half-space.
-    bodies: Bodies<'static>,
+    bodies: Bodies,
     /// Temperature of the object before contact, °C; `None` takes the room's temperature.
     pub temperature: Option<Celsius>,
     /// Contact model that gives the set-point while the object is presented: with contact resistance, or perfect
@@ -34,24 +39,31 @@ pub struct ChosenObject {
     default_pair: Option<ContactPair>,
 }
 
+/// Contact constants of the first material on this display.
+fn default_pair(display: &Surface) -> Option<ContactPair> {
+    let [(_, any), ..] = &MATERIALS;
+    ContactPair::new(&SKIN, any, display, TICK_S).ok()
+}
+
 impl ChosenObject {
     /// Nothing chosen yet: no material, the default finger, the object at the room's temperature, the model with contact
     /// resistance.
     /// Computes the default contact constants for the display's surface in `f64`, so it is for the start only.
     #[must_use]
-    pub fn new(display: &Surface) -> Self {
-        let [(_, any), ..] = &MATERIALS;
+    pub fn new(display: &Surface, display_layer: U16F16) -> Self {
         let mut chosen = Self {
             material: None,
             finger: AssumedFinger::Thesis,
+            contact_law: ContactLaw::NOMINAL,
             is_half_space: true,
             body_name: ObjectBody::HalfSpace.name(),
             bodies: Bodies::HALF_SPACES,
             temperature: None,
             mode: ContactModel::default(),
-            default_pair: ContactPair::new(&SKIN, any, display, TICK_S).ok(),
+            default_pair: default_pair(display),
         };
         chosen.choose_finger(AssumedFinger::default());
+        chosen.set_display_layer(display_layer);
         chosen
     }
 
@@ -94,11 +106,49 @@ impl ChosenObject {
         self.bodies.are_half_spaces = self.is_half_space && self.finger == AssumedFinger::Thesis;
     }
 
+    /// The display has this surface; computes in `f64`. Before a material is chosen.
+    pub fn set_display_surface(&mut self, display: &Surface) {
+        self.default_pair = default_pair(display);
+    }
+
+    /// Uses these contact constants, of another surface of the display with the chosen material or, before a choice, with any.
+    pub const fn replace_contact_pair(&mut self, pair: &ContactPair) {
+        self.default_pair = Some(*pair);
+        if let Some(material) = &mut self.material {
+            material.pair = *pair;
+        }
+    }
+
+    /// The display has a layer of this resistance on its face: its temperature difference per kelvin of scaled flux.
+    pub const fn set_display_layer(&mut self, resistance: U16F16) {
+        self.bodies.resistances.display_layer = resistance;
+    }
+
     /// Assumes this finger from now on.
     pub fn choose_finger(&mut self, finger: AssumedFinger) {
         self.finger = finger;
-        self.bodies.finger = finger.body();
+        self.bodies.finger = *finger.body();
+        self.choose_contact_law(&ChosenContactLaw::NOMINAL);
         self.bodies.are_half_spaces = self.is_half_space && finger == AssumedFinger::Thesis;
+    }
+
+    /// Takes this for the contact law of the finger from now on; what was learnt of its resistance was learnt by another one.
+    pub const fn choose_contact_law(&mut self, law: &ChosenContactLaw) {
+        self.contact_law = law.told;
+        self.bodies.resistances.law = law.own;
+        self.bodies.resistances.skin_factor = OwnResistances::NONE.skin_factor;
+    }
+
+    /// Gives the assumed finger what was learnt of the one that touches: its tissue, the relative change of the flux that the air
+    /// took from it, and the factor on its contact resistance.
+    pub fn learn_finger(&mut self, tissue: &Body, air_change: I4F28, skin_factor: I4F28) {
+        let air = u64::from(self.finger.body().air.to_bits());
+        let factor = air_change.saturating_add(I4F28::ONE).max(I4F28::ZERO);
+        let air = (air * u64::from(factor.to_bits().unsigned_abs())) >> I4F28::FRAC_NBITS;
+        // Each by itself, so that the tissue is copied once.
+        self.bodies.finger.tissue = *tissue;
+        self.bodies.finger.air = Fraction::from_bits(air.min(u32::MAX.into()) as u32);
+        self.bodies.resistances.skin_factor = skin_factor;
     }
 
     /// The finger that is assumed for the one that touches.
@@ -109,7 +159,7 @@ impl ChosenObject {
 
     /// The assumed finger and the object.
     #[must_use]
-    pub const fn bodies(&self) -> &Bodies<'static> {
+    pub const fn bodies(&self) -> &Bodies {
         &self.bodies
     }
 

@@ -1,6 +1,6 @@
 //! Execution of the host's commands by one station.
 
-use super::{ArmedTask, Event, State, Station};
+use super::{ArmedTask, DueWork, Event, State, Station};
 use crate::TICK_HZ;
 use crate::command::{Command, Refused, Reply, Status};
 use crate::identification::Identification;
@@ -44,28 +44,63 @@ impl Station {
             Command::Finger(Some(finger)) => {
                 let before = self.object.assumed_finger();
                 if finger != before {
-                    if finger.is_layered() != before.is_layered() {
+                    // The tissue that was learnt is not that of another finger.
+                    if finger.is_layered() != before.is_layered() || self.learning.is_some() {
                         self.estimator.finger.forget_tissue_history();
                     }
                     self.object.choose_finger(finger);
-                    self.contact_restart_is_due = true;
+                    self.reference.forget_resistances();
+                    self.forget_learnt_finger(finger);
+                    self.due.add(DueWork::CONTACT_RESTART);
                 }
+            }
+            Command::Flux => return Ok(Reply::Flux(self.flux_state())),
+            Command::FluxZero => {
+                self.require_no_object_presented()?;
+                return Ok(Reply::FluxZero(self.flux_zero()?));
+            }
+            Command::FluxSensor(ref sensor) => {
+                self.require_no_object_presented()?;
+                self.replace_flux_sensor(sensor.as_ref());
+            }
+            Command::DisplaySurface(ref pair) => {
+                self.require_no_object_presented()?;
+                self.object.replace_contact_pair(pair);
+                self.reference.forget_resistances();
+                self.forget_learnt_finger(self.object.assumed_finger());
+                self.due.add(DueWork::CONTACT_RESTART);
+            }
+            Command::ContactLaw(None) => return Ok(Reply::ContactLaw(self.object.contact_law)),
+            Command::ContactLaw(Some(ref law)) => {
+                // Eq. 6-12, which the thesis's finger has on half-spaces, holds for Eq. 6-8 only.
+                if !self.object.assumed_finger().is_layered() {
+                    return Err(Refused::NeedsLayeredFinger("contact"));
+                }
+                self.object.choose_contact_law(law);
+                self.reference.forget_resistances();
+                self.forget_learnt_finger(self.object.assumed_finger());
+                self.due.add(DueWork::CONTACT_RESTART);
+            }
+            Command::Person => return Ok(Reply::Person(self.person_state()?)),
+            Command::ChoosePerson(person) => {
+                self.choose_person(person)?;
+                self.due.add(DueWork::CONTACT_RESTART);
             }
             Command::Material(ref material) => {
                 self.object.choose_material(material);
-                self.contact_restart_is_due = true;
+                self.due.add(DueWork::CONTACT_RESTART);
             }
             Command::Body(ref body) => {
                 self.object.choose_body(body);
-                self.contact_restart_is_due = true;
+                self.due.add(DueWork::CONTACT_RESTART);
             }
             Command::Object(temperature) => {
                 self.object.temperature = temperature;
-                self.contact_restart_is_due = true;
+                self.due.add(DueWork::CONTACT_RESTART);
             }
             Command::Mode(mode) => {
                 if mode != self.object.mode {
-                    self.contact_restart_is_due = true;
+                    self.due.add(DueWork::CONTACT_RESTART);
                 }
                 self.object.mode = mode;
             }
@@ -75,7 +110,7 @@ impl Station {
             Command::Play(ref order) => self.execute_play(order)?,
             Command::AssumeSkin(skin) => {
                 self.estimator.finger.assume_skin(skin);
-                self.contact_restart_is_due = true;
+                self.due.add(DueWork::CONTACT_RESTART);
             }
             Command::Start => self.execute_start_presentation()?,
             // Never refused: the bridge is off afterwards.
@@ -198,7 +233,7 @@ impl Station {
             (State::Preset | State::Contact, Some(_)) => return Err(Refused::AlreadyStarted),
             (State::Armed(_) | State::Stimulus(_), Some(_)) => {}
         }
-        self.contact_restart_is_due = true;
+        self.due.add(DueWork::CONTACT_RESTART);
         self.averages = ThermistorAverages::default();
         self.apply_event(Event::Start);
         Ok(())
@@ -228,7 +263,7 @@ impl Station {
             _ => return Err(Refused::TuneNeedsArmed),
         }
         if self.contact.touching() {
-            return Err(Refused::Touched);
+            return Err(Refused::Touched("tune"));
         }
         let sink = self
             .last

@@ -15,9 +15,12 @@
 mod chosen_object;
 mod execute_command;
 mod follow_stimulus;
+mod learn;
 mod state;
 
 use contact_model::fixed_point::to_fixed;
+use fixed::types::U16F16;
+use thermal_learner::Place;
 use thermal_settings::Settings;
 
 pub use state::{ArmedTask, Event, State};
@@ -29,6 +32,7 @@ use crate::estimate::{
 };
 use crate::events::{DeviceEvent, EventReporter};
 use crate::identification::{AbortReason, NormalEquationAccumulator};
+use crate::learning::{FingerLearning, FluxParameters};
 use crate::reference::{Reference, ReferenceGenerator};
 use crate::safety::{
     self, Fault, FaultDetectors, FaultLatch, PreviousDemandAndResidual, SelfTestReport,
@@ -47,10 +51,8 @@ use chosen_object::ChosenObject;
 // In this order, because a load reaches 4 KB from the start of the struct: the courses come last. A tick takes 40 instructions less.
 #[repr(C)]
 pub struct Station {
-    /// Whether the next tick begins a new contact for a finger that already touches, because the host has chosen another
-    /// object, finger or contact model, or `start` has presented the object. Done in the tick: it takes 7 us, for which a
-    /// command would lock out the next finger's tick (`cargo test -p image-tests five_finger_locks`).
-    contact_restart_is_due: bool,
+    /// What the next tick does first.
+    due: DueWork,
     /// Whether the last reference is one of the present state stimulus, if that is the state.
     stimulus_has_reference: bool,
     /// Number of the last tick: ticks of 1 ms since the start of the program; wraps after 49 days.
@@ -71,10 +73,36 @@ pub struct Station {
     sensors: SampleConverter,
     events: EventReporter,
     object: ChosenObject,
+    /// Learning of the finger that touches; `None` without a sensor of the heat flux.
+    learning: Option<FingerLearning>,
     identified: IdentificationResult,
     /// What the last self-test has measured.
     self_test_report: SelfTestReport,
     courses: CourseMemory,
+}
+
+/// Work that a tick does first, because it must not change between two ticks or takes too long for a command: a new contact takes
+/// 7 us, for which a command would lock out the next finger's tick (`cargo test -p image-tests five_finger_locks`). One byte, so that
+/// a tick without such work asks once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct DueWork(u8);
+
+impl DueWork {
+    /// A new contact for a finger that already touches, because the host has chosen another object, finger or contact model, or
+    /// `start` has presented the object.
+    const CONTACT_RESTART: u8 = 1;
+    /// The last tick was the last of the learner's window.
+    const FLUX_WINDOW: u8 = 2;
+    /// Back to the assumed finger, because what was learnt of the one that touches is void.
+    const ASSUMED_FINGER: u8 = 4;
+
+    const fn add(&mut self, work: u8) {
+        self.0 |= work;
+    }
+
+    const fn contains(self, work: u8) -> bool {
+        self.0 & work != 0
+    }
 }
 
 /// Normal equations and outcome of the last identification of the tile. The host can request them, unless the station
@@ -123,6 +151,9 @@ impl Station {
     pub fn new(settings: &Settings) -> Self {
         let parameters = ControlParameters::new(settings);
         let limit = to_fixed(settings.module.current_limit_a);
+        let flux_sensor = settings.flux_sensor.as_ref().map(FluxParameters::new);
+        let flux_sensor = flux_sensor.as_ref();
+        // Built at once, because the start has no stack for a second station.
         Self {
             sensors: SampleConverter::new(settings),
             averages: ThermistorAverages::default(),
@@ -133,9 +164,13 @@ impl Station {
                 plate: PlateObserver::new(&parameters.observer, limit),
                 finger: FingerEstimator::default(),
             },
-            object: ChosenObject::new(&settings.display),
+            object: ChosenObject::new(
+                settings.display.surface(),
+                flux_sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer),
+            ),
+            learning: flux_sensor.map(|sensor| FingerLearning::new(sensor, Place::Air)),
             reference: ReferenceGenerator::default(),
-            contact_restart_is_due: false,
+            due: DueWork::default(),
             controller: Controller::new(&parameters, limit),
             voltage: VoltageFeedforward::new(&settings.module),
             state: State::Off,
@@ -145,7 +180,7 @@ impl Station {
             stimulus_has_reference: false,
             tick: 0,
             telemetry_ticks: 0,
-            telemetry_fields: TelemetryFields::ALL,
+            telemetry_fields: TelemetryFields::DEFAULT,
             events: EventReporter::default(),
             last: LastTickValues {
                 samples: Samples::default(),
@@ -166,13 +201,16 @@ impl Station {
         station
     }
 
-    /// Replaces the thermistor calibration, the gains and the tile's model by those of `settings`, converted from
-    /// `f64`; everything else stays as [`Station::new`] has made it. Called at the start, with the finger's stored
+    /// Replaces the thermistor calibration, the gains, the tile's model, heat-flux sensor and display by those of `settings`,
+    /// converted from `f64`; everything else stays as [`Station::new`] has made it. Called at the start, with the finger's stored
     /// settings.
     pub(crate) fn apply_settings(&mut self, settings: &Settings) {
         self.sensors
             .replace_calibration_tables(&CalibrationTables::new(settings));
         self.set_control_parameters(&ControlParameters::new(settings));
+        self.object.set_display_surface(settings.display.surface());
+        let flux_sensor = settings.flux_sensor.as_ref().map(FluxParameters::new);
+        self.replace_flux_sensor(flux_sensor.as_ref());
     }
 
     fn set_control_parameters(&mut self, parameters: &ControlParameters) {
@@ -191,8 +229,8 @@ impl Station {
     #[inline(never)]
     pub fn step(&mut self, samples: &Samples) -> BoardOutputs {
         self.tick = self.tick.wrapping_add(1);
-        if self.contact_restart_is_due {
-            self.restart_contact();
+        if self.due != DueWork::default() {
+            self.do_due_work();
         }
         self.convert_samples_and_add_calibration_means(samples);
         let valid = self.valid_readings_or_fault(samples);
@@ -218,14 +256,22 @@ impl Station {
         outputs
     }
 
-    /// Begins a new contact for a finger that already touches, with the object, finger and contact model of the host's last
-    /// command.
+    /// Ends the learner's window. Begins a new contact for a finger that already touches, with the object, finger and contact
+    /// model of the host's last command.
     #[cold]
     #[inline(never)]
-    fn restart_contact(&mut self) {
-        self.contact_restart_is_due = false;
-        let bodies = self.object.bodies();
-        (self.reference).restart_contact(&mut self.estimator.finger, bodies);
+    fn do_due_work(&mut self) {
+        let due = core::mem::take(&mut self.due);
+        if due.contains(DueWork::ASSUMED_FINGER) {
+            self.assume_finger_again();
+        }
+        if due.contains(DueWork::FLUX_WINDOW) {
+            self.end_flux_window();
+        }
+        if due.contains(DueWork::CONTACT_RESTART) {
+            let bodies = self.object.bodies();
+            (self.reference).restart_contact(&mut self.estimator.finger, bodies);
+        }
     }
 
     /// Converts the tick's samples to °C, N and A, as the last readings. Unless an object is presented, also adds the thermistors' samples to

@@ -4,38 +4,21 @@ use std::println;
 use std::vec::Vec;
 
 use super::*;
-use crate::parameters::Place;
+use crate::parameters::{Place, relative_weights};
 use crate::regressors::Signals;
 use crate::tests::contacts::sensor;
+use crate::tests::matrix::least_pivot;
 use crate::tests::random::Random;
 use crate::tests::simulation::{Errors, Finger, OBJECTS, Scene, display_resistance_m2k_w, sound};
 
 const UPDATES: usize = 1_000_000;
-
-/// Smallest pivot of the elimination of a symmetric matrix in `f64`: positive if and only if the matrix is.
-fn least_pivot(matrix: &[Parameters; PARAMETERS]) -> f64 {
-    let mut left = matrix.map(|row| row.map(f64::from));
-    let mut least = f64::INFINITY;
-    for k in 0..PARAMETERS {
-        let eliminated = left[k];
-        let pivot = eliminated[k];
-        least = least.min(pivot);
-        for row in &mut left[k + 1..] {
-            let factor = row[k] / pivot;
-            for (element, above) in row.iter_mut().zip(eliminated) {
-                *element -= factor * above;
-            }
-        }
-    }
-    least
-}
 
 #[test]
 fn covariance_stays_positive_over_a_million_updates() {
     let mut random = Random(1);
     let finger = Finger::drawn(&mut random);
     let (sensor, force_n) = (sensor(), 2.0);
-    let scale = Scale::new(finger.place, sensor.lag_deviation);
+    let scale = Scale::new(finger.place, sensor.lag_deviation());
     let mut measurements = Vec::new();
     for object in OBJECTS {
         let errors = Errors::drawn(&mut random);
@@ -47,14 +30,19 @@ fn covariance_stays_positive_over_a_million_updates() {
             errors,
             reported: &sound,
         };
-        let mut signals = Signals::default();
+        let mut signals = Signals::NEW;
         for input in scene.inputs(&mut random, 0) {
             let lagged = signals.advance(&input, &sensor);
             let resistance = display_resistance_m2k_w(force_n) as f32;
-            measurements.push(lagged.measurement(resistance, &sensor, &scale, &PRIOR));
+            measurements.push(lagged.measurement(
+                resistance,
+                &sensor,
+                &scale,
+                &relative_weights(&PRIOR),
+            ));
         }
     }
-    let mut estimate = Estimate::prior();
+    let mut estimate = Estimate::PRIOR;
     let mut least = f64::INFINITY;
     for (update, measurement) in measurements.iter().cycle().take(UPDATES).enumerate() {
         estimate
@@ -88,7 +76,7 @@ fn measurements_that_are_no_numbers_are_refused() {
             } else {
                 measurement.residual_k = value;
             }
-            let mut estimate = Estimate::prior();
+            let mut estimate = Estimate::PRIOR;
             assert_eq!(estimate.update(&measurement, 1e-4, &scale), None, "{value}");
             for (parameter, limits) in
                 (estimate.parameters.iter()).zip(scale.low.iter().zip(&scale.high))

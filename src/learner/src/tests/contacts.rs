@@ -10,7 +10,9 @@ use relaxation_fit::{Back, impedance};
 
 use super::random::Random;
 use super::simulation::*;
-use crate::{Distrust, FluxSensor, Learner, LearnerOutput, Resistance, Trust};
+use crate::{
+    Distrust, FluxSensor, Learner, LearnerOutput, PersonPrior, Place, Resistance, Restart, Trust,
+};
 
 const FINGERS: u64 = 40;
 
@@ -21,10 +23,24 @@ pub fn sensor() -> FluxSensor {
     )
 }
 
+/// A learner with that sensor of a finger at this place.
+pub fn new_learner(place: Place) -> Learner {
+    learner_of(place, None)
+}
+
+/// A learner with that sensor of a finger at this place, of which this is known.
+pub fn learner_of(place: Place, person: Option<PersonPrior>) -> Learner {
+    Learner::begin(Restart {
+        place,
+        sensor: sensor(),
+        person,
+    })
+}
+
 pub fn learnt(scene: &Scene<'_>, random: &mut Random, phase: usize) -> Vec<LearnerOutput> {
-    let mut learner = Learner::new(sensor(), scene.finger.place);
+    let mut learner = new_learner(scene.finger.place);
     let inputs = scene.inputs(random, phase);
-    inputs.iter().map(|input| learner.advance(input)).collect()
+    inputs.iter().map(|input| *learner.advance(input)).collect()
 }
 
 /// The first component of a finger: that of the two which fit its exact impedance best at Laplace variables of 1 to 100 1/s.

@@ -6,8 +6,8 @@ use std::string::String;
 use contact_model::fixed_point::Celsius;
 use documented_figures::run_generator;
 
-use super::contacts::sensor;
-use crate::{Contact, Flux, Learner, LearnerInput, Place, Resistance, Trust};
+use super::contacts::new_learner;
+use crate::{Contact, Flux, LearnerInput, Place, Resistance, Trust};
 
 /// Largest difference, in prior deviations and prior variances: rounding of `f32`.
 const TOLERANCE: f64 = 5e-4;
@@ -22,7 +22,7 @@ fn committed_golden_values_are_those_that_the_generator_writes() {
 fn learner_follows_the_independent_estimator() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/contacts.csv");
     let mut rows = csv::Reader::from_path(path).expect("golden table");
-    let (mut finger, mut learner) = (String::new(), Learner::new(sensor(), Place::Air));
+    let (mut finger, mut learner) = (String::new(), new_learner(Place::Air));
     let (mut worst, mut windows) = (0.0f64, 0);
     for row in rows.records() {
         let row = row.expect("golden row");
@@ -34,7 +34,7 @@ fn learner_follows_the_independent_estimator() {
         };
         if finger != row[0] {
             finger = row[0].into();
-            learner = Learner::new(sensor(), place);
+            learner = new_learner(place);
         }
         let contact = (number(3) > 0.0).then(|| Contact {
             touching_ticks: number(3) as u8,
@@ -47,7 +47,7 @@ fn learner_follows_the_independent_estimator() {
         let input = LearnerInput {
             sequence: windows,
             restart: None,
-            flux_w_m2: Flux::from_bits(number(2) as i32),
+            flux_w_m2: Some(Flux::from_bits(number(2) as i32)),
             contact,
         };
         let output = learner.advance(&input);

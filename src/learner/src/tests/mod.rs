@@ -3,6 +3,7 @@
 mod bound;
 pub mod contacts;
 mod golden;
+pub mod matrix;
 mod properties;
 pub mod random;
 pub mod simulation;

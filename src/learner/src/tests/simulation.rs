@@ -444,7 +444,7 @@ impl Scene<'_> {
                 LearnerInput {
                     sequence: window as u16,
                     restart: None,
-                    flux_w_m2: Flux::from_num(mean(|one| one.0)),
+                    flux_w_m2: Some(Flux::from_num(mean(|one| one.0))),
                     contact,
                 }
             })

@@ -196,7 +196,7 @@ class Reference:
         self.windows += 1
         since = w["since"]
         every = 1 if since < 300 else 2 if since < 1000 else 4
-        if since < 20 or self.windows % every:
+        if since < 10 or self.windows % every:
             return
         r = w["resistance"] / 2**16 * 1e-6
         y = d1 - sum(a * b for a, b in zip(u, WEIGHTS)) - (r + SENSOR) * flux
@@ -205,7 +205,8 @@ class Reference:
         h += [-sum(v * g * x for v, g, x in zip(relative, WEIGHTS, o)), -l1, r * flux, d1 - d2]
         h = [a * s for a, s in zip(h, self.sigma)]
         rho = 1 + self.theta[4] * self.sigma[4]
-        variance = (20e-3**2 * (1 + since / 50) + (rho * r * 7) ** 2 + 1.5e-3**2) / every
+        unsettled = 0.3**2 if since < 20 else 0
+        variance = (20e-3**2 * (1 + since / 50) + unsettled + (rho * r * 7) ** 2 + 1.5e-3**2) / every
         ph = [sum(p * x for p, x in zip(row, h)) for row in self.p]
         s = variance + sum(a * b for a, b in zip(ph, h))
         gain = [a / s for a in ph]

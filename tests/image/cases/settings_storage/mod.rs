@@ -7,17 +7,19 @@ use image_tests::{Bare, START, image};
 use stm32_emulator::Firmware;
 use system_tests::flash::{append, changes_page, erased, numbered, saved};
 use thermal_display::protocol::CommandHandler;
-use thermal_display::settings::{RECORD_MAX_BYTES, StoredSettings, encode_settings_record};
+use thermal_display::settings::{
+    RECORD_MAX_BYTES, StoredDevice, StoredSettings, encode_settings_record,
+};
 use thermal_sim::FlashCells;
 use thermal_sim::processor::{ChipState, ResetCause};
 
 /// The answers to `settings 1` to `settings 8` of a device with these settings.
-pub fn lines(kept: Option<&[StoredSettings; 1]>) -> Vec<String> {
+pub fn lines(kept: Option<&StoredDevice<1>>) -> Vec<String> {
     let mut handler: CommandHandler<1> = kept.map_or_else(
         || CommandHandler::new(Default::default()),
         CommandHandler::from_stored,
     );
-    (1..=8)
+    (1..=9)
         .map(|line| {
             let answer = handler.answer(&format!("settings {line}"), |_, _| {
                 unreachable!("the station executes nothing")
@@ -72,11 +74,12 @@ fn saved_settings_survive_a_power_cycle_and_can_be_forgotten() {
 fn corrupt_settings_trip_the_device_until_others_are_saved() {
     let mut cells = after(1);
     // A record with the version of a future firmware and valid checksums.
-    let record =
-        encode_settings_record(Some(&[StoredSettings::from_settings(&Default::default())]));
+    let record = encode_settings_record(Some(
+        &[StoredSettings::from_settings(&Default::default())].into(),
+    ));
     assert!(record.len() < RECORD_MAX_BYTES);
     let mut content = record[..record.len() - 4].to_vec();
-    content[0] = 2;
+    content[0] = 3;
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&content);
     content.extend(crc.to_le_bytes());
     assert!(append(&mut cells, &content));

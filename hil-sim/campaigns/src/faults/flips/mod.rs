@@ -122,6 +122,7 @@ impl BitFlip {
             expected: ExpectedReaction::Trip(&[]),
             latent: false,
             unchanged: false,
+            learning: None,
             scenes: &[],
             never_at: &[],
             after_s: WATCHED_S,

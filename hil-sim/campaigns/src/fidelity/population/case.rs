@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use thermal_sim::metrics::skin_errors;
 use thermal_sim::scene::{Scene, SceneError};
 use thermal_sim::{SceneRunner, named_enum};
 
 use super::super::case::ROOM_C;
-use super::{BodyObject, Population, PopulationResult};
+use super::{BodyObject, Population, PopulationResult, Since};
 
 named_enum! {
     /// What the device is told of object and finger.
@@ -46,7 +47,18 @@ impl PopulationCase {
     pub fn text(&self, way: Way) -> String {
         let (told, assumed) = match way {
             Way::AsItIs => ("", ""),
-            Way::Version01 => ("told = \"half-space\"\n", "[device]\nfinger = \"thesis\"\n"),
+            Way::Version01 => ("told = \"half-space\"\n", "finger = \"thesis\"\n"),
+        };
+        let sensor = match self.population {
+            // The maker of a display with such a sensor also measures its surface.
+            Population::DesignedSensor | Population::HypotheticalSensor => {
+                "flux_sensor = true\nmeasured_surface = true\n"
+            }
+            Population::KnownSurfaces => "flux_sensor = true\n",
+            Population::EnrolledDesigned | Population::EnrolledHypothetical => {
+                "flux_sensor = true\nmeasured_surface = true\nenrolled = true\n"
+            }
+            _ => "",
         };
         let Self {
             object: BodyObject { material, keys, .. },
@@ -56,7 +68,7 @@ impl PopulationCase {
         } = self;
         format!(
             "duration_s = 11.0\nskin_c = 34.0\nroom_c = {ROOM_C:?}\nseed = {seed}\n[object]\nmaterial = \
-             \"{material}\"\nstart_c = {ROOM_C:?}\n{told}{keys}{assumed}{tables}[[force]]\nt_s = 1.0\nforce_n = {:?}\n",
+             \"{material}\"\nstart_c = {ROOM_C:?}\n{told}{keys}[device]\n{assumed}{sensor}{tables}[[force]]\nt_s = 1.0\nforce_n = {:?}\n",
             Self::FORCE_N
         )
     }
@@ -75,13 +87,18 @@ impl PopulationCase {
     /// # Errors
     /// The device stopped, or refused the scene.
     pub fn run(&self, device: &dyn SceneRunner, way: Way) -> anyhow::Result<PopulationResult> {
-        let (_, figures) = device.run(&self.scene(way)?)?;
+        let scene = self.scene(way)?;
+        let (outcome, figures) = device.run(&scene)?;
+        let late =
+            skin_errors(&scene, &outcome).filter(|(since_s, _)| *since_s >= Since::Ms500.since_s());
+        let late_mk = late.map(|(_, error_k)| 1e3 * error_k.abs());
         let skin = figures.skin_error_mk.unwrap_or_default();
         Ok(PopulationResult {
             population: self.population,
             case: self.name.clone(),
             way,
             max_after_50ms_mk: skin.max_after_50ms.unwrap_or(f64::INFINITY),
+            max_after_500ms_mk: late_mk.reduce(f64::max).unwrap_or(f64::INFINITY),
             rms_mk: skin.rms,
             faults: figures.faults.into_iter().map(|trip| trip.fault).collect(),
         })

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 
 use super::super::plot::{BOUND, COLORS, FONT, MARGIN, plain};
-use super::{Population, PopulationResult, Way};
+use super::{Aim, Population, PopulationResult, Since};
 use std::ops::Range;
 
 /// File name of the chart.
@@ -49,7 +49,11 @@ pub fn draw(results: &[PopulationResult]) -> anyhow::Result<Option<String>> {
                 .light_line_style(TRANSPARENT)
                 .label_style(FONT)
                 .draw()?;
-            for (percent, aim_mk) in population.aims() {
+            let drawn = |aim: &&Aim| aim.since == Since::Ms50;
+            for Aim {
+                percent, aim_mk, ..
+            } in population.aims().iter().filter(drawn)
+            {
                 let line = [
                     (*aim_mk, 0.0),
                     (*aim_mk, *percent),
@@ -57,9 +61,9 @@ pub fn draw(results: &[PopulationResult]) -> anyhow::Result<Option<String>> {
                 ];
                 chart.draw_series(DashedLineSeries::new(line, 6, 4, BOUND.stroke_width(1)))?;
             }
-            for (way, color) in Way::ALL.into_iter().zip([COLORS[2], COLORS[0]]) {
+            for (way, color) in population.ways().iter().zip([COLORS[2], COLORS[0]]) {
                 let own = results.iter();
-                let own = own.filter(|one| (one.population, one.way) == (*population, way));
+                let own = own.filter(|one| (one.population, one.way) == (*population, *way));
                 let mut errors: Vec<_> = own.map(|one| one.max_after_50ms_mk).collect();
                 errors.sort_by(f64::total_cmp);
                 let share = SHARES.end / errors.len() as f64;

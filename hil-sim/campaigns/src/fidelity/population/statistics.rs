@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::{Population, Way};
+use super::{Aim, Population, Since, Way};
 use crate::fidelity::Percentiles;
 use crate::percentile;
 
@@ -19,10 +19,23 @@ pub struct PopulationResult {
     pub way: Way,
     /// Largest skin error from 50 ms on, mK.
     pub max_after_50ms_mk: f64,
+    /// The same from half a second on.
+    pub max_after_500ms_mk: f64,
     /// Its root mean square over the contact, mK.
     pub rms_mk: f64,
     /// Faults that the device reported.
     pub faults: Vec<String>,
+}
+
+impl PopulationResult {
+    /// Largest skin error from a time on, mK.
+    #[must_use]
+    pub const fn largest_mk(&self, since: Since) -> f64 {
+        match since {
+            Since::Ms50 => self.max_after_50ms_mk,
+            Since::Ms500 => self.max_after_500ms_mk,
+        }
+    }
 }
 
 /// Statistics of a population for what the device was told.
@@ -32,6 +45,8 @@ pub struct WayStatistics {
     pub way: Way,
     /// Largest skin error from 50 ms on, mK.
     pub max_after_50ms_mk: Percentiles,
+    /// The same from half a second on.
+    pub max_after_500ms_mk: Percentiles,
     /// Its root mean square, mK.
     pub rms_mk: Percentiles,
     /// Runs in which the device reported a fault.
@@ -50,6 +65,8 @@ pub struct ImageSample {
 /// A percentile of the largest skin error, compared with its aim.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AimedPercentile {
+    /// From when on.
+    pub since: Since,
     /// Percentile, %.
     pub percent: f64,
     /// Aim, mK.
@@ -93,25 +110,32 @@ impl PopulationReport {
                 .collect()
         };
         let told = of(Way::AsItIs);
-        let errors: Vec<_> = told.iter().map(|one| one.max_after_50ms_mk).collect();
-        percentile(&errors, 50.0)?;
-        let ways = Way::ALL.map(|way| statistics(way, of(way)));
+        let errors = |since| -> Vec<_> { told.iter().map(|one| one.largest_mk(since)).collect() };
+        percentile(&errors(Since::Ms50), 50.0)?;
+        let ways = (population.ways().iter()).map(|way| statistics(*way, of(*way)));
         Some(Self {
             population,
             engine,
             cases: told.len(),
             aims: (population.aims().iter())
-                .map(|&(percent, aim_mk)| {
-                    let value_mk = percentile(&errors, percent)?;
-                    Some(AimedPercentile {
-                        percent,
-                        aim_mk,
-                        value_mk,
-                    })
-                })
+                .map(
+                    |&Aim {
+                         since,
+                         percent,
+                         aim_mk,
+                     }| {
+                        let value_mk = percentile(&errors(since), percent)?;
+                        Some(AimedPercentile {
+                            since,
+                            percent,
+                            aim_mk,
+                            value_mk,
+                        })
+                    },
+                )
                 .collect::<Option<_>>()?,
             image,
-            ways: ways.into_iter().flatten().collect(),
+            ways: ways.flatten().collect(),
         })
     }
 }
@@ -124,6 +148,7 @@ fn statistics(way: Way, mut own: Vec<&PopulationResult>) -> Option<WayStatistics
     Some(WayStatistics {
         way,
         max_after_50ms_mk: column(|one| one.max_after_50ms_mk)?,
+        max_after_500ms_mk: column(|one| one.max_after_500ms_mk)?,
         rms_mk: column(|one| one.rms_mk)?,
         faulty: own.iter().filter(|one| !one.faults.is_empty()).count(),
         worst: own.into_iter().take(WORST).cloned().collect(),
@@ -158,19 +183,21 @@ pub fn table(reports: &[PopulationReport]) -> String {
         }
         let _ = writeln!(
             text,
-            "\nmK, skin error{:6}largest after 50 ms, 50/95/99 %, max     rms, 50/95 %    faulty",
+            "\nmK, skin error{:6}largest after 50 ms, 50/95/99 %, max   after 0.5 s, 50/95 %   rms, 50/95 %    faulty",
             ""
         );
         for way in ways {
-            let (max, rms) = (way.max_after_50ms_mk, way.rms_mk);
+            let (max, late, rms) = (way.max_after_50ms_mk, way.max_after_500ms_mk, way.rms_mk);
             let _ = writeln!(
                 text,
-                "{:20}{:>8.1}{:>8.1}{:>8.1}{:>10.1}      {:>8.1}{:>8.1}{:>8}",
+                "{:20}{:>8.1}{:>8.1}{:>8.1}{:>10.1}      {:>8.1}{:>8.1}      {:>8.1}{:>8.1}{:>8}",
                 way.way.name(),
                 max.p50,
                 max.p95,
                 max.p99,
                 max.max,
+                late.p50,
+                late.p95,
                 rms.p50,
                 rms.p95,
                 way.faulty
@@ -179,7 +206,8 @@ pub fn table(reports: &[PopulationReport]) -> String {
         for aim in aims {
             let _ = writeln!(
                 text,
-                "{} %: {:.1} mK, aim {} mK: {}",
+                "after {} s, {} %: {:.1} mK, aim {} mK: {}",
+                aim.since.since_s(),
                 aim.percent,
                 aim.value_mk,
                 aim.aim_mk,

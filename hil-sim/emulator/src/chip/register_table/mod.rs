@@ -197,13 +197,15 @@ fn raise(bench: &mut Bench, register: &Register) {
             bench.write(first, 0xffff).expect("IMR");
             bench.write(first + 0x10, 0xffff).expect("SWIER");
         }
-        "ADC1_SR" => {
+        "ADC1_SR" | "ADC2_SR" => {
             // end of conversion of each item; the second overruns
-            bench.write(first + 8, 1 << 10 | 1 << 1 | 1).expect("CR2");
+            let cr2 = register.address + 8;
+            bench.write(cr2, 1 << 10 | 1 << 1 | 1).expect("CR2");
             bench.now += 100;
+            let adc = &mut bench.chip.adcs[usize::from(register.name == "ADC2_SR")];
             for _ in 0..2 {
-                bench.chip.adc.start(bench.now).expect("stable");
-                bench.chip.adc.finish(0);
+                adc.start(bench.now).expect("stable");
+                adc.finish(0);
             }
         }
         "USART2_SR" => {

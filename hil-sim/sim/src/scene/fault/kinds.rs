@@ -28,6 +28,20 @@ named_enum! {
         ForceStuck = "force-stuck",
         /// The reading of the force sensor is too high by the value.
         ForceOffset = "force-offset",
+        /// A wire of the heat-flux sensor is broken: its converter reads the upper rail.
+        FluxOpen = "flux-open",
+        /// The wires of the heat-flux sensor are shorted: it reads no flux.
+        FluxShort = "flux-short",
+        /// The converter of the heat-flux sensor repeats its last code.
+        FluxStuck = "flux-stuck",
+        /// The wires of the heat-flux sensor are swapped.
+        FluxReversed = "flux-reversed",
+        /// The gain of the heat-flux sensor changes by the factor.
+        FluxGain = "flux-gain",
+        /// The heat-flux sensor reads too much by the value.
+        FluxZero = "flux-zero",
+        /// The noise of the heat-flux sensor grows by the factor.
+        FluxNoise = "flux-noise",
         /// Leg a of the bridge stays at the supply; the enable line still takes both legs off.
         BridgeStuckHigh = "bridge-stuck-high",
         /// Leg b stays at the supply; the enable line still takes both legs off.
@@ -143,6 +157,9 @@ impl FaultKind {
             Self::ThermistorDetached => factor(20.0),
             Self::ModuleWeak => required("1", 0.0, 1.0),
             Self::ForceOffset => required("N", -10.0, 10.0),
+            Self::FluxGain => required("1", 0.0, 10.0),
+            Self::FluxZero => required("W/m²", -5000.0, 5000.0),
+            Self::FluxNoise => factor(50.0),
             Self::MirrorStuck => required("A", 0.0, 10.0),
             Self::SideStuck => required("level", 0.0, 1.0),
             Self::LadderShift => required("K", -30.0, 30.0),
@@ -169,6 +186,21 @@ impl FaultKind {
                 | Self::ThermistorDetached
                 | Self::ThermistorStuck
                 | Self::SensorsSwapped
+        )
+    }
+
+    /// Whether it affects the heat-flux sensor, which the scene must have.
+    #[must_use]
+    pub const fn needs_flux_sensor(self) -> bool {
+        matches!(
+            self,
+            Self::FluxOpen
+                | Self::FluxShort
+                | Self::FluxStuck
+                | Self::FluxReversed
+                | Self::FluxGain
+                | Self::FluxZero
+                | Self::FluxNoise
         )
     }
 

@@ -15,6 +15,7 @@ const SHORTEST_S: f64 = 1e-3;
 pub(in crate::scene) fn faults(
     source: &Source<'_>,
     rows: &[Spanned<file::Fault>],
+    has_flux_sensor: bool,
     duration_s: f64,
     seed: u64,
 ) -> Result<(Vec<ScheduledFault>, Vec<Injection>), SceneError> {
@@ -25,7 +26,14 @@ pub(in crate::scene) fn faults(
                 injections.push(processor::injection(source, row, kind, duration_s, seed)?)
             }
             None => {
-                faults.push(fault(source, row, duration_s)?);
+                let fault = fault(source, row, duration_s)?;
+                if fault.fault.kind.needs_flux_sensor() && !has_flux_sensor {
+                    let kind = row.get_ref().kind.get_ref();
+                    let problem =
+                        format!("fault.kind = {kind:?} needs flux_sensor = true in [device]");
+                    return Err(source.error(Some(row.get_ref().kind.span()), problem));
+                }
+                faults.push(fault);
                 processor::no_keys(source, row)?;
             }
         }

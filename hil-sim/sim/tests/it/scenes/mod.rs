@@ -3,6 +3,8 @@
 mod display_error;
 mod documented;
 mod examples;
+mod flux;
+mod fooled;
 mod keys;
 mod objects_page;
 mod refused;

@@ -11,10 +11,10 @@ use super::*;
 const ROOM_C: f64 = 24.0;
 
 /// Half-spaces, and the mean layered finger.
-const FINGERS: [Bodies<'_>; 2] = [
+const FINGERS: [Bodies; 2] = [
     Bodies::HALF_SPACES,
     Bodies {
-        finger: &FingerBody::MEAN,
+        finger: FingerBody::MEAN,
         are_half_spaces: false,
         ..Bodies::HALF_SPACES
     },
@@ -26,7 +26,7 @@ fn copper() -> ContactPair {
 
 /// What a tick brings.
 struct Inputs<'a> {
-    bodies: &'a Bodies<'a>,
+    bodies: &'a Bodies,
     skin: Celsius,
     surface: Celsius,
     touch: Option<Force>,

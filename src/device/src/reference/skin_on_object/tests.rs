@@ -4,16 +4,18 @@ extern crate std;
 
 use std::vec::Vec;
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::finger::{FingerProperties, MEAN, THESIS};
 use contact_model::fixed_point::{
-    Body, ContactPair, FingerBody, Force, ScaledBody, contact_area, log2_relative_pressure,
-    to_fixed,
+    Body, ContactPair, FingerBody, Force, OwnContactLaw, ScaledBody, contact_area,
+    log2_relative_pressure, to_fixed,
 };
 use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, contact_resistance};
 use contact_model::slab::{Back, Slab};
+use fixed::types::I4F28;
 use proptest::prelude::*;
 
 use super::*;
@@ -48,10 +50,11 @@ fn simulated(
 ) -> Vec<(f64, f64)> {
     let pair = pair(material);
     let contact = pair.at_pressure(log2_relative_pressure(Force::from_num(FORCE_N)));
-    let conductance = contact.conductance_of(&finger.tissue, &object);
+    let conductance = contact.conductance_of(&finger.tissue, &object, &OwnResistances::NONE);
     let bodies = Bodies {
-        finger,
+        finger: *finger,
         object,
+        resistances: OwnResistances::NONE,
         are_half_spaces: false,
     };
     let before = BodiesBeforeContact {
@@ -232,6 +235,24 @@ fn any_body() -> impl Strategy<Value = Body> {
     })
 }
 
+/// None, or one of any that a host may tell.
+fn law() -> impl Strategy<Value = Option<OwnContactLaw>> {
+    let any = (
+        ContactLaw::EXPONENTS,
+        ContactLaw::HARDNESSES_PA,
+        ContactLaw::GAPS_W_M2K,
+    );
+    prop::option::of(any).prop_map(|law| {
+        let (exponent, hardness_pa, gap_w_m2k) = law?;
+        let law = ContactLaw {
+            exponent,
+            hardness_pa,
+            gap_w_m2k,
+        };
+        OwnContactLaw::new(&law, TICK_S)
+    })
+}
+
 fn any_celsius() -> impl Strategy<Value = Celsius> {
     prop_oneof![
         any::<i32>().prop_map(Celsius::from_bits),
@@ -262,7 +283,7 @@ proptest! {
         objects in prop::collection::vec(any_body(), 2),
         material in 0..MATERIALS.len(),
         events in prop::collection::vec(
-            (any_celsius(), any_celsius(), any_celsius(), prop::option::of(any::<u32>()), 0..3usize, (0..2usize, any::<u32>()), any::<bool>(), 1..300u32),
+            (any_celsius(), any_celsius(), any_celsius(), prop::option::of(any::<u32>()), 0..3usize, (0..2usize, any::<u32>()), (any::<i32>(), any::<u32>(), law()), any::<bool>(), 1..300u32),
             1..20,
         ),
     ) {
@@ -270,15 +291,20 @@ proptest! {
             .map(|(tissue, air)| FingerBody { tissue, air: Fraction::from_bits(air) })
             .collect();
         let pair = pair(&MATERIALS[material].1);
-        let factors = ContactPairFactors::new(&pair);
+        let factors = ContactPairFactors::new(&pair, &OwnResistances::NONE);
         let mut estimator = FingerEstimator::default();
         let mut skin = SkinOnObject::default();
-        for (skin_c, room_c, other, force, finger, (object, factor), restart, ticks) in events {
+        for (skin_c, room_c, other, force, finger, (object, factor), (skin_factor, layer, law), restart, ticks) in events {
             let force = force.map(Force::from_bits);
             // The third finger stands for the thesis's path without bodies.
             let bodies = Bodies {
-                finger: fingers.get(finger).unwrap_or(&FingerBody::THESIS),
+                finger: *fingers.get(finger).unwrap_or(&FingerBody::THESIS),
                 object: ScaledBody { body: objects[object], factor: U16F16::from_bits(factor) },
+                resistances: OwnResistances {
+                    skin_factor: I4F28::from_bits(skin_factor),
+                    display_layer: U16F16::from_bits(layer),
+                    law,
+                },
                 are_half_spaces: finger == fingers.len(),
             };
             if restart {
@@ -301,7 +327,8 @@ proptest! {
                     let _ = skin.setpoint(&factors, skin_c, other, on_display);
                 } else {
                     let changes = skin.step_bodies(object, &before);
-                    let _ = changes.setpoint(&factors, skin_c, other);
+                    let ratio = conductance.map_or(factors.ratio_at_landing, |both| both.ratio);
+                    let _ = changes.setpoint(ratio, skin_c, other);
                 }
                 if let Some(both) = conductance {
                     let bodies = (!bodies.are_half_spaces).then_some(&bodies);

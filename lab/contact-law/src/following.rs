@@ -1,0 +1,84 @@
+//! How well a force has followed the ramps.
+
+use crate::ramps::{LEGS, force_n, leg_at};
+use crate::recording::Recording;
+
+/// Forces that each ramp must have reached below and above, N: half of its way in the logarithm, and the two at which a gap and
+/// the spots are told apart.
+const REACHED_N: (f64, f64) = (0.2, 1.0);
+/// Largest root of the mean square of the logarithm of the force over that which was asked: a person who is off by more has done
+/// something else.
+const LOG_RMS_MAX: f64 = 0.4;
+
+/// How well a force has followed the ramps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Following {
+    /// Typical deviation of the force from that which was asked, %.
+    pub deviation_percent: f64,
+    /// Least and largest force of each ramp, N.
+    pub reached_n: [(f64, f64); LEGS],
+}
+
+/// In what a force has not followed the ramps.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum FollowingError {
+    /// A ramp did not reach far enough.
+    #[error(
+        "ramp {ramp} went from {least_n:.3} to {largest_n:.3} N; it must go below {} and above {} N",
+        REACHED_N.0,
+        REACHED_N.1
+    )]
+    Range {
+        /// Number of the ramp, from 1.
+        ramp: usize,
+        /// Least force, N.
+        least_n: f64,
+        /// Largest force, N.
+        largest_n: f64,
+    },
+    /// The force was too far from the target.
+    #[error(
+        "the force was typically off its target by {0:.0} %; allowed are {allowed:.0} %",
+        allowed = 100.0 * LOG_RMS_MAX.exp_m1()
+    )]
+    Deviation(f64),
+}
+
+impl Following {
+    /// The following of a recording of all ramps.
+    ///
+    /// # Errors
+    /// A ramp does not cover the forces, or the force was too far from its target.
+    pub fn of(recording: &Recording) -> Result<Self, FollowingError> {
+        let mut reached_n = [(f64::INFINITY, 0.0_f64); LEGS];
+        let (mut squares, mut count) = (0.0, 0.0);
+        for sample in &recording.samples {
+            let Some((leg, target_n)) = leg_at(sample.since_s).zip(force_n(sample.since_s)) else {
+                continue;
+            };
+            let (least_n, largest_n) = &mut reached_n[leg];
+            *least_n = least_n.min(sample.force_n);
+            *largest_n = largest_n.max(sample.force_n);
+            squares += (sample.force_n / target_n).ln().powi(2);
+            count += 1.0;
+        }
+        for (leg, &(least_n, largest_n)) in reached_n.iter().enumerate() {
+            if least_n > REACHED_N.0 || largest_n < REACHED_N.1 {
+                return Err(FollowingError::Range {
+                    ramp: leg + 1,
+                    least_n,
+                    largest_n,
+                });
+            }
+        }
+        let log_rms = f64::sqrt(squares / count);
+        let deviation_percent = 100.0 * log_rms.exp_m1();
+        if log_rms > LOG_RMS_MAX {
+            return Err(FollowingError::Deviation(deviation_percent));
+        }
+        Ok(Self {
+            deviation_percent,
+            reached_n,
+        })
+    }
+}

@@ -1,0 +1,144 @@
+//! `thermal-lab contact`: the contact law of a person's finger.
+
+use std::fs;
+use std::io::stderr;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::{Context, anyhow};
+use clap::Args;
+use contact_law_fit::{Measurement, Order, Sample, Step, fit, force_n, measure};
+use contact_model::material::REFERENCE_DISPLAY;
+use thermal_client::client::{Client, PlainCommand};
+use thermal_client::link::Link;
+use thermal_lab::contact::{Report, Screen};
+use thermal_sim::World;
+use thermal_sim::commissioning::settings_for_scene;
+use thermal_sim::engine::NativeEngine;
+use thermal_sim::scene::Scene;
+use thermal_sim::simulated_link::SimulatedLink;
+
+use super::{Failure, Target, print_text};
+
+/// Time after power-up before the first line to a simulated device.
+const START: Duration = Duration::from_millis(10);
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Code of the person, 1 to 8 of A to Z and 0 to 9; no name
+    #[arg(value_parser = code)]
+    code: String,
+    /// Files to write: PATH.csv (recording), PATH.toml (result), PATH.svg (picture) [default: contact-CODE]
+    #[arg(long, value_name = "PATH")]
+    out: Option<PathBuf>,
+    /// Take the zero of the heat-flux sensor before, with the display at the room's temperature
+    #[arg(long)]
+    zero: bool,
+    /// Tell the device of the law
+    #[arg(long)]
+    tell: bool,
+    /// Finger of a device with several
+    #[arg(long, value_name = "N")]
+    finger: Option<u8>,
+}
+
+fn code(text: &str) -> Result<String, String> {
+    let is_allowed = |byte: u8| byte.is_ascii_uppercase() || byte.is_ascii_digit();
+    if (1..=8).contains(&text.len()) && text.bytes().all(is_allowed) {
+        Ok(text.into())
+    } else {
+        Err("allowed are 1 to 8 of A to Z and 0 to 9".into())
+    }
+}
+
+pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
+    let mut out = stderr();
+    let mut screen = Screen::new(&mut out);
+    if target.simulated {
+        return simulated(target, arguments, &mut screen);
+    }
+    target.with_client(|client| at_device(client, arguments, &mut |_, step| screen.show(step)))
+}
+
+/// At a simulated device, whose finger follows the ramps exactly.
+fn simulated(
+    target: &Target,
+    arguments: &Arguments,
+    screen: &mut Screen<'_>,
+) -> Result<(), Failure> {
+    let Some(path) = &target.scene else {
+        return Err(Failure::input(anyhow!(
+            "contact --simulated needs --scene FILE, of a device with flux_sensor = true"
+        )));
+    };
+    let scene = Scene::read(path).map_err(Failure::input)?;
+    let settings = settings_for_scene(&scene).map_err(Failure::run)?;
+    let mut engine = NativeEngine::new(World::new(&scene).map_err(Failure::input)?);
+    let mut client = Client::new(SimulatedLink::new(&mut engine));
+    client.wait(START).map_err(Failure::run)?;
+    for line in &settings {
+        client.command(line).map_err(Failure::run)?;
+    }
+    at_device(&mut client, arguments, &mut |client, step| {
+        screen.show(step);
+        let world = client.link().world();
+        world.set_force_and_faults(step.target_n(), std::iter::empty());
+    })
+}
+
+fn at_device<L: Link>(
+    client: &mut Client<L>,
+    arguments: &Arguments,
+    guide: &mut dyn FnMut(&mut Client<L>, &Step),
+) -> Result<(), Failure> {
+    let order = Order {
+        finger: arguments.finger,
+        takes_zero: arguments.zero,
+        display: REFERENCE_DISPLAY,
+    };
+    let measurement = measure(client, &order, guide).map_err(Failure::run)?;
+    let path = match &arguments.out {
+        Some(path) => path.clone(),
+        None => format!("contact-{}", arguments.code).into(),
+    };
+    // What was recorded is kept even if nothing fits it.
+    write(&path, "csv", &csv(&measurement))?;
+    let fit = fit(&measurement.recording).map_err(Failure::run)?;
+    let report = Report::new(&arguments.code, &measurement, &fit);
+    write(
+        &path,
+        "toml",
+        &toml::to_string(&report).map_err(Failure::run)?,
+    )?;
+    let chart = report.chart(&measurement.recording, &fit);
+    write(&path, "svg", &chart.map_err(Failure::run)?)?;
+    print_text(&report.text())?;
+    if arguments.tell {
+        let command = PlainCommand::ContactLaw(fit.law);
+        (client.ask_finger(arguments.finger, &command)).map_err(Failure::run)?;
+    }
+    Ok(())
+}
+
+/// The samples as CSV.
+fn csv(measurement: &Measurement) -> String {
+    let row = |sample: &Sample| {
+        let Sample {
+            since_s,
+            flux_w_m2,
+            surface_c,
+            force_n: pressed_n,
+        } = sample;
+        let target_n = force_n(*since_s).unwrap_or_default();
+        format!("{since_s:.3},{flux_w_m2},{surface_c},{pressed_n},{target_n:.4}\n")
+    };
+    let rows: String = measurement.recording.samples.iter().map(row).collect();
+    format!("since_s,flux_w_m2,surface_c,force_n,target_n\n{rows}")
+}
+
+fn write(path: &Path, extension: &str, text: &str) -> Result<(), Failure> {
+    let path = path.with_added_extension(extension);
+    fs::write(&path, text)
+        .with_context(|| format!("--out {}", path.display()))
+        .map_err(Failure::run)
+}
