@@ -3,6 +3,7 @@
 
 pub mod bring_up;
 pub mod contact;
+pub mod enrolment;
 pub mod link;
 pub mod person;
 pub mod terminal_people;

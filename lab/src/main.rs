@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use cli::{
-    Failure, Target, analyse, bring_up, commission, contact, info, log, monitor, play, ports,
-    predict, replay, run, send,
+    Failure, Target, analyse, bring_up, commission, contact, enrol, info, log, monitor, play,
+    ports, predict, replay, run, send,
 };
 
 /// The operator's side of a thermal display.
@@ -47,6 +47,8 @@ enum Command {
     Commission(commission::Arguments),
     /// Measure the contact law of a person's finger with the heat-flux sensor
     Contact(contact::Arguments),
+    /// Learn a person's finger with the heat-flux sensor, and store it by a code
+    Enrol(enrol::Arguments),
     /// Bring up a board, from the bare board to sign-off
     BringUp(bring_up::Arguments),
 }
@@ -66,6 +68,7 @@ fn main() -> ExitCode {
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Commission(arguments) => commission::run(&target, &arguments),
         Command::Contact(arguments) => contact::run(&target, &arguments),
+        Command::Enrol(arguments) => enrol::run(&target, &arguments),
         Command::BringUp(arguments) => bring_up::run(&target, &arguments),
     };
     Failure::exit_code("thermal-lab", done)

@@ -96,6 +96,10 @@ def test_opening_switches_checksums_telemetry_and_events_on(fake: FakeDevice) ->
         (lambda d: d.set_contact_law(None), "contact nominal"),
         (lambda d: d.set_surface(30, 1.25, 0.11), "surface set 30 1.25 0.11"),
         (lambda d: d.set_nominal_surface(), "surface nominal"),
+        (lambda d: d.choose_person("P07"), "person P07"),
+        (lambda d: d.choose_person(None), "person none"),
+        (lambda d: d.store_person("P07", "00" * 20), "person P07 " + "00" * 20),
+        (lambda d: d.forget_person("P07"), "forget person P07"),
         (lambda d: d.set_settings(["set tile 1 2 3 4 5"]), "set tile 1 2 3 4 5"),
     ],
 )

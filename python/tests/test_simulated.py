@@ -24,6 +24,7 @@ from thermal_display import (
     DeviceTripped,
     Display,
     LineBroken,
+    PersonReport,
     Refused,
     Simulator,
     SimulatorMissing,
@@ -271,6 +272,17 @@ def test_all_questions_are_understood(hil_sim: str) -> None:
         assert np.isfinite(row["force_n"]) and np.isnan(row["display_c"])
         # The board has no sensor.
         assert np.isnan(row["flux_w_m2"]) and row["known"] in ("learning", "sensor-range")
+        data = "00080000000400012020202040C0000000000200"
+        display.store_person("P07", data)
+        assert display.persons() == ["P07"]
+        display.choose_person("P07")
+        assert display.person() == PersonReport(code="P07", contacts=0, data=data)
+        with pytest.raises(Refused, match="needs 2 contacts"):
+            display.enrol_person("P08")
+        display.forget_person("P07")
+        assert display.persons() == []
+        display.choose_person(None)
+        assert display.person() == PersonReport(code=None, contacts=0, data=None)
         person = ContactLaw(0.9, 80000, 120)
         display.set_contact_law(person)
         assert display.contact_law() == person

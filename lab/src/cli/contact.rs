@@ -12,13 +12,14 @@ use contact_model::material::REFERENCE_DISPLAY;
 use thermal_client::client::{Client, PlainCommand};
 use thermal_client::link::Link;
 use thermal_lab::contact::{Report, Screen};
+use thermal_settings::PersonCode;
 use thermal_sim::World;
 use thermal_sim::commissioning::settings_for_scene;
 use thermal_sim::engine::NativeEngine;
 use thermal_sim::scene::Scene;
 use thermal_sim::simulated_link::SimulatedLink;
 
-use super::{Failure, Target, print_text};
+use super::{Failure, Target, enrol, print_text};
 
 /// Time after power-up before the first line to a simulated device.
 const START: Duration = Duration::from_millis(10);
@@ -26,8 +27,8 @@ const START: Duration = Duration::from_millis(10);
 #[derive(Args)]
 pub struct Arguments {
     /// Code of the person, 1 to 8 of A to Z and 0 to 9; no name
-    #[arg(value_parser = code)]
-    code: String,
+    #[arg(value_parser = enrol::code)]
+    code: PersonCode,
     /// Files to write: PATH.csv (recording), PATH.toml (result), PATH.svg (picture) [default: contact-CODE]
     #[arg(long, value_name = "PATH")]
     out: Option<PathBuf>,
@@ -40,15 +41,6 @@ pub struct Arguments {
     /// Finger of a device with several
     #[arg(long, value_name = "N")]
     finger: Option<u8>,
-}
-
-fn code(text: &str) -> Result<String, String> {
-    let is_allowed = |byte: u8| byte.is_ascii_uppercase() || byte.is_ascii_digit();
-    if (1..=8).contains(&text.len()) && text.bytes().all(is_allowed) {
-        Ok(text.into())
-    } else {
-        Err("allowed are 1 to 8 of A to Z and 0 to 9".into())
-    }
 }
 
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
@@ -104,7 +96,7 @@ fn at_device<L: Link>(
     // What was recorded is kept even if nothing fits it.
     write(&path, "csv", &csv(&measurement))?;
     let fit = fit(&measurement.recording).map_err(Failure::run)?;
-    let report = Report::new(&arguments.code, &measurement, &fit);
+    let report = Report::new(&arguments.code.to_string(), &measurement, &fit);
     write(
         &path,
         "toml",

@@ -4,6 +4,7 @@ pub mod analyse;
 pub mod bring_up;
 pub mod commission;
 pub mod contact;
+pub mod enrol;
 pub mod info;
 pub mod log;
 pub mod monitor;

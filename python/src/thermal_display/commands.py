@@ -20,6 +20,7 @@ from .replies import (
     Fields,
     FluxReport,
     IdentifiedTile,
+    PersonReport,
     RawReadings,
     SelfTestReport,
     Status,
@@ -97,6 +98,19 @@ class Commands:
     def contact_law(self) -> ContactLaw:
         """The contact law that is taken for the finger's."""
         return self._connection.ask("contact", ContactLaw.read, self._finger)
+
+    def person(self) -> PersonReport:
+        """The chosen person, and from how many long contacts the finger is learnt. Refused without a heat-flux sensor."""
+        return self._connection.ask("person", PersonReport.read, self._finger)
+
+    def persons(self) -> list[str]:
+        """The codes of all stored persons."""
+
+        def codes(reply: Fields) -> list[str]:
+            text = reply.word("persons")
+            return [] if text == "none" else text.split(",")
+
+        return self._connection.ask("persons", codes)
 
     def surface(self) -> DisplaySurface:
         """The surface of the display."""
@@ -365,6 +379,22 @@ class Commands:
         """Takes the mean code of the last half second as the zero of the heat-flux sensor. No finger may touch the display, which
         must have the temperature of the room."""
         self._tell("flux zero")
+
+    def choose_person(self, code: str | None) -> None:
+        """This stored person touches, or an unknown one. Learning begins anew."""
+        self._tell(f"person {'none' if code is None else code}")
+
+    def store_person(self, code: str, data: str) -> None:
+        """Stores a person; `data` as `enrol_person` returns it. `save` keeps it in flash."""
+        self._connection.tell(f"person {code} {data}")
+
+    def enrol_person(self, code: str) -> PersonReport:
+        """Stores what was learnt of the finger as that of a person. Refused before two contacts of 8 s that are trusted."""
+        return self._connection.ask(f"person enrol {code}", PersonReport.read, self._finger)
+
+    def forget_person(self, code: str) -> None:
+        """Forgets a person; in flash after `save`."""
+        self._connection.tell(f"forget person {code}")
 
     def set_surface(self, conductivity_w_mk: float, roughness_um: float, slope_rad: float) -> None:
         """The display has this surface: conductivity, 0.1 to 500 W/(m K); RMS roughness, 0.01 to 30 µm; mean slope, 0.001 to 1.5 rad.

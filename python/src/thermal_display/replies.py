@@ -291,6 +291,28 @@ class FluxReport:
 
 
 @dataclass(frozen=True)
+class PersonReport:
+    """Answer to `person` and `person enrol`: who touches, and what is known of the finger."""
+
+    code: str | None
+    """1 to 8 of A-Z and 0-9; `None` for an unknown person."""
+    contacts: int
+    """Contacts of 8 s or more, trusted to their end, since learning has begun."""
+    data: str | None
+    """What is stored of the finger, 40 hexadecimal digits; `None` for an unknown person."""
+
+    @classmethod
+    def read(cls, reply: Fields) -> PersonReport:
+        code = reply.word("person")
+        known = code != "none"
+        return cls(
+            code=code if known else None,
+            contacts=reply.integer("contacts"),
+            data=reply.word("data") if known else None,
+        )
+
+
+@dataclass(frozen=True)
 class DisplaySurface:
     """Answer to `surface`: the surface of the display."""
 

@@ -50,7 +50,7 @@ pub struct Learner {
     judge: Judge,
     /// Of the present contact, modulo 256.
     windows_in_contact: Option<u8>,
-    /// Ticks since landing at the end of the last window with contact.
+    /// Ticks of the last contact.
     ticks_since_landing: u32,
     /// Contacts since the restart or the last distrust that were trusted and long enough to be stored.
     stored_contacts: u8,
@@ -121,12 +121,15 @@ impl Learner {
             Some(contact) => {
                 if self.windows_in_contact.is_none() {
                     self.land();
+                    self.ticks_since_landing = 0;
                 }
                 let windows = self
                     .windows_in_contact
                     .map_or(1, |windows| windows.wrapping_add(1));
                 self.windows_in_contact = Some(windows);
-                self.ticks_since_landing = contact.ticks_since_landing;
+                // 0 in the window in which the finger lifts.
+                self.ticks_since_landing =
+                    (self.ticks_since_landing).max(contact.ticks_since_landing);
                 if input.flux_w_m2.is_none() {
                     self.judge.distrust(Distrust::Sensor);
                 }

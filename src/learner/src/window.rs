@@ -53,7 +53,7 @@ pub struct Contact {
     pub air_flux_w_m2: Flux,
     /// Contact resistance between an average skin and the display at the window's mean force, without that of the flux sensor.
     pub resistance_mm2k_w: Resistance,
-    /// Ticks since landing, at the window's end.
+    /// Ticks since landing, at the window's end; 0 if the finger has lifted by then.
     pub ticks_since_landing: u32,
     /// Whether the finger may be learnt from this window: force steady or slowly changing, temperatures valid, the display not
     /// at a limit.

@@ -81,13 +81,19 @@ mod tests {
                 scene: FaultScene::Slew,
                 t_s: 1.25,
             };
+            let mut touch = Touch::default();
+            if let InjectedFault::Hardware(broken) = fault_case.fault
+                && broken.kind.needs_flux_sensor()
+            {
+                touch.fit_flux_sensor(7);
+            }
             let text = crate::faults::fault_run::scene_text(
                 &[(fault_case.fault, 1.25)],
                 point,
                 fault_case.after_s,
                 7,
                 &[],
-                &Touch::default(),
+                &touch,
             );
             let scene = Scene::parse(&text, "slew".as_ref())
                 .unwrap_or_else(|error| panic!("{error}\n{text}"));

@@ -28,9 +28,10 @@ fn breaches(fault_case: &FaultCase, t_s: f64) -> Vec<Breach> {
 #[test]
 fn every_kind_of_fault_has_an_entry_of_its_own() {
     let fault_cases = fault_cases();
-    // Of these, the faults of the select lines are of the device for five fingers only.
-    let kinds: HashSet<_> = five_finger_cases()
-        .iter()
+    // The faults of the select lines are of the device for five fingers only, those of the heat-flux sensor of that for one.
+    let five_finger_cases = five_finger_cases();
+    let kinds: HashSet<_> = (fault_cases.iter())
+        .chain(&five_finger_cases)
         .map(|fault_case| fault_case.fault.kind())
         .collect();
     for kind in FaultKind::ALL.map(FaultKind::name) {

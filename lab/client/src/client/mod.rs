@@ -7,6 +7,7 @@ mod clock;
 mod error;
 mod event;
 mod fields;
+mod person;
 mod plain_command;
 mod query;
 mod reply;
@@ -28,13 +29,14 @@ pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
 pub use event::ReceivedEvent;
 pub use fields::Fields;
+pub use person::{EnrolPerson, PersonReport, person_data, read_person_data};
 pub use plain_command::{
     PlainCommand, THERMISTORS, thermistor, thermistor_word, upload, upload_course,
 };
 pub use query::{
     Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryContactLaw,
-    QueryDisplaySurface, QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest,
-    QuerySettings, QueryState, TuneResult,
+    QueryDisplaySurface, QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryPerson,
+    QueryPersons, QueryRaw, QuerySelfTest, QuerySettings, QueryState, TuneResult,
 };
 pub use reply::{
     BoardReport, CalibrationFit, Cause, FluxReport, IdentifiedTile, Identity, RawReadings,

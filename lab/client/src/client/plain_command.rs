@@ -15,8 +15,9 @@ use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_device::stimulus::{CourseEnd, PlayOrder, TemperatureKind};
 use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, NOMINAL_CONTACT_LAW_WORD};
-use thermal_settings::{CRC_32, DisplaySurface, FluxSensor};
+use thermal_settings::{CRC_32, DisplaySurface, FluxSensor, Person, PersonCode};
 
+use super::person::person_data;
 use super::reply::SettingsLine;
 use super::{Command, Fields};
 
@@ -98,6 +99,12 @@ pub enum PlainCommand {
     FluxZero,
     /// The display has this surface.
     DisplaySurface(DisplaySurface),
+    /// The finger is that of this person, or of an unknown one.
+    ChoosePerson(Option<PersonCode>),
+    /// Store a person.
+    StorePerson(Person),
+    /// Forget a person.
+    ForgetPerson(PersonCode),
     /// Restart, and store the settings or the factory defaults.
     Store(StorageOrder),
     /// Begin an upload: number of rows, direct term in m² K/W.
@@ -249,6 +256,12 @@ impl fmt::Display for PlainCommand {
                 let mut values = surface.to_array().into_iter();
                 values.try_for_each(|value| write!(f, " {value}"))
             }
+            Self::ChoosePerson(None) => f.write_str("person none"),
+            Self::ChoosePerson(Some(code)) => write!(f, "person {code}"),
+            Self::StorePerson(person) => {
+                write!(f, "person {} {}", person.code, person_data(person))
+            }
+            Self::ForgetPerson(code) => write!(f, "forget person {code}"),
             Self::Store(order) => f.write_str(order.name()),
             Self::UploadBegin(rows, direct_m2k_w) => {
                 write!(

@@ -6,9 +6,10 @@ use contact_model::contact_law::ContactLaw;
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::safety::ThermistorId;
-use thermal_settings::DisplaySurface;
+use thermal_settings::{DisplaySurface, PersonCode};
 
 use super::fields::in_table;
+use super::person::{PersonReport, read_codes};
 use super::plain_command::thermistor_word;
 use super::reply::{
     BoardReport, CalibrationFit, Cause, FluxReport, IdentifiedTile, Identity, RawReadings,
@@ -70,6 +71,10 @@ queries! {
     QueryRaw = "raw" => RawReadings, RawReadings::read;
     /// Heat-flux sensor, its flux, and what is known of the finger by it; `None` without one.
     QueryFlux = "flux" => Option<FluxReport>, FluxReport::read;
+    /// The chosen person.
+    QueryPerson = "person" => PersonReport, PersonReport::read;
+    /// Codes of the stored persons.
+    QueryPersons = "persons" => Vec<PersonCode>, read_codes;
     /// Surface of the display.
     QueryDisplaySurface = "surface" => DisplaySurface, |reply: &Fields<'_>| {
         let values = [

@@ -5,8 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use thermal_client::client::{
-    BoardReport, Client, ClientError, FluxReport, PlainCommand, QueryBoard, QueryCause,
-    QueryDisplaySurface, QueryFlux, QueryIdentity, QueryRaw, QuerySelfTest, QueryState, Telemetry,
+    BoardReport, Client, ClientError, EnrolPerson, FluxReport, PersonReport, PlainCommand,
+    QueryBoard, QueryCause, QueryDisplaySurface, QueryFlux, QueryIdentity, QueryPerson,
+    QueryPersons, QueryRaw, QuerySelfTest, QueryState, Telemetry, person_data, read_person_data,
     upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
@@ -15,7 +16,7 @@ use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_device::stimulus::TemperatureKind;
 use thermal_device::{StateName, TelemetryFields};
-use thermal_settings::DisplaySurface;
+use thermal_settings::{DisplaySurface, Person, PersonCode};
 
 use crate::fake_device::{FakeDevice, answers, knows};
 
@@ -479,6 +480,54 @@ fn every_fault_of_the_device_is_known_in_its_state() {
         assert_eq!(status.state, StateName::Tripped(*fault));
         assert_eq!((status.object_c, status.limited), (Some(24.0), true));
     }
+}
+
+#[test]
+fn persons_are_read_and_written() {
+    const DATA: &str = "00080000000400012020202040C0000000000200";
+    let code = PersonCode::new("P07").unwrap();
+    let person = Person {
+        code,
+        finger: read_person_data(DATA).unwrap(),
+    };
+    assert_eq!(person.finger[..4], [0, 8, 0, 0]);
+    assert_eq!(person_data(&person), DATA);
+    for wrong in [&DATA[1..], &DATA[2..], "", &DATA.replace('4', "g")] {
+        assert_eq!(read_person_data(wrong), None, "{wrong}");
+    }
+    let mut client = knows(&[
+        (
+            "person enrol P07",
+            "ok person=P07 contacts=2 data=00080000000400012020202040C0000000000200",
+        ),
+        ("person", "ok person=none contacts=1"),
+        ("persons", "ok persons=P07,X"),
+        ("person P07 00080000000400012020202040C0000000000200", "ok"),
+        ("person none", "ok"),
+        ("forget person P07", "ok"),
+    ]);
+    let enrolled = PersonReport {
+        person: Some(person),
+        contacts: 2,
+    };
+    assert_eq!(client.ask(&EnrolPerson(code)).unwrap(), enrolled);
+    let unknown = PersonReport {
+        person: None,
+        contacts: 1,
+    };
+    assert_eq!(client.ask(&QueryPerson).unwrap(), unknown);
+    let codes = client.ask(&QueryPersons).unwrap();
+    assert_eq!(codes, [code, PersonCode::new("X").unwrap()]);
+    for command in [
+        PlainCommand::StorePerson(person),
+        PlainCommand::ChoosePerson(None),
+        PlainCommand::ForgetPerson(code),
+    ] {
+        client.ask(&command).unwrap();
+    }
+    let wrong =
+        FakeDevice::client(|_| answers("ok person=P07 contacts=2 data=00")).ask(&QueryPerson);
+    assert!(wrong.is_err());
 }
 
 #[test]

@@ -1,0 +1,80 @@
+//! Persons whose fingers a device has learnt.
+
+use std::fmt;
+
+use thermal_settings::{Person, PersonCode};
+
+use super::{Command, Fields};
+
+/// Answer to `person` and `person enrol`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PersonReport {
+    /// The chosen or enrolled person; `None` for an unknown one.
+    pub person: Option<Person>,
+    /// Contacts of 8 s or more, trusted to their end, since learning has begun.
+    pub contacts: u8,
+}
+
+impl PersonReport {
+    pub(super) fn read(reply: &Fields<'_>) -> Option<Self> {
+        let person = match reply.word("person")? {
+            "none" => None,
+            word => Some(Person {
+                code: PersonCode::new(word)?,
+                finger: read_person_data(reply.word("data")?)?,
+            }),
+        };
+        Some(Self {
+            person,
+            contacts: reply.number("contacts")?,
+        })
+    }
+}
+
+/// Stores what was learnt of the finger as that of a person.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EnrolPerson(pub PersonCode);
+
+impl fmt::Display for EnrolPerson {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "person enrol {}", self.0)
+    }
+}
+
+impl Command for EnrolPerson {
+    type Reply = PersonReport;
+
+    fn read_reply(&self, reply: &Fields<'_>) -> Option<PersonReport> {
+        PersonReport::read(reply)
+    }
+}
+
+/// What is stored of a person's finger, as 40 hexadecimal digits.
+#[must_use]
+pub fn person_data(person: &Person) -> String {
+    let digits = person.finger.iter().map(|byte| format!("{byte:02X}"));
+    digits.collect()
+}
+
+/// The reverse of [`person_data`]; `None` for anything else.
+#[must_use]
+pub fn read_person_data(digits: &str) -> Option<[u8; Person::FINGER_BYTES]> {
+    let (pairs, rest) = digits.as_bytes().as_chunks::<2>();
+    if pairs.len() != Person::FINGER_BYTES || !rest.is_empty() {
+        return None;
+    }
+    let mut finger = [0; Person::FINGER_BYTES];
+    for (byte, [high, low]) in finger.iter_mut().zip(pairs) {
+        let digit = |digit: u8| char::from(digit).to_digit(16);
+        *byte = (16 * digit(*high)? + digit(*low)?) as u8;
+    }
+    Some(finger)
+}
+
+/// The codes of an answer to `persons`.
+pub(super) fn read_codes(reply: &Fields<'_>) -> Option<Vec<PersonCode>> {
+    match reply.word("persons")? {
+        "none" => Some(Vec::new()),
+        codes => codes.split(',').map(PersonCode::new).collect(),
+    }
+}

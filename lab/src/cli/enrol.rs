@@ -1,0 +1,193 @@
+//! `thermal-lab enrol`: a person's finger is learnt and stored by a code.
+
+use std::fs;
+use std::io::stderr;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use anyhow::{Context, anyhow};
+use clap::Args;
+use serde::{Deserialize, Serialize};
+use thermal_client::client::{Client, PlainCommand, QueryBoard, person_data, read_person_data};
+use thermal_client::link::Link;
+use thermal_lab::enrolment::{Order, Screen, Step, enrol};
+use thermal_settings::{Person, PersonCode};
+use thermal_sim::World;
+use thermal_sim::commissioning::settings_for_scene;
+use thermal_sim::engine::NativeEngine;
+use thermal_sim::scene::Scene;
+use thermal_sim::simulated_link::SimulatedLink;
+
+use super::{Failure, Target, print_text};
+
+/// Time after power-up before the first line to a simulated device.
+const START: Duration = Duration::from_millis(10);
+/// Force of a simulated finger, N.
+const SIMULATED_N: f64 = 2.0;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Code of the person, 1 to 8 of A to Z and 0 to 9; no name
+    #[arg(value_parser = code)]
+    code: PersonCode,
+    /// Materials to touch, two or more
+    #[arg(long, value_name = "NAME,NAME", value_delimiter = ',', default_values = ["copper", "abs"])]
+    objects: Vec<String>,
+    /// Take the zero of the heat-flux sensor before, with the display at the room's temperature
+    #[arg(long)]
+    zero: bool,
+    /// File to write [default: person-CODE.toml]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Store the person of such a file in the device and choose it, in place of an enrolment
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["objects", "zero", "out"])]
+    restore: Option<PathBuf>,
+    /// Forget the person, in place of an enrolment; the file stays
+    #[arg(long, conflicts_with_all = ["objects", "zero", "out", "restore"])]
+    forget: bool,
+    /// Finger of a device with several
+    #[arg(long, value_name = "N")]
+    finger: Option<u8>,
+}
+
+pub fn code(text: &str) -> Result<PersonCode, String> {
+    PersonCode::new(text).ok_or_else(|| "allowed are 1 to 8 of A to Z and 0 to 9".into())
+}
+
+/// What is kept on the host.
+#[derive(Serialize, Deserialize)]
+struct PersonFile {
+    code: String,
+    /// What was learnt of the finger, as on the line `person CODE DATA`.
+    data: String,
+    /// When, s since 1970.
+    enrolled_unix_s: u64,
+    /// Identifier of the device's microcontroller, if it reports one.
+    #[serde(default)]
+    device: Option<String>,
+    #[serde(default)]
+    objects: Vec<String>,
+}
+
+pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
+    if !arguments.forget && arguments.restore.is_none() && arguments.objects.len() < 2 {
+        let problem = anyhow!(
+            "--objects has {}; two or more are needed",
+            arguments.objects.len()
+        );
+        return Err(Failure::input(problem));
+    }
+    let mut out = stderr();
+    let mut screen = Screen::new(&mut out);
+    if target.simulated {
+        return simulated(target, arguments, &mut screen);
+    }
+    target.with_client(|client| at_device(client, arguments, &mut |_, step| screen.show(step)))
+}
+
+/// At a simulated device, whose finger does what is asked.
+fn simulated(
+    target: &Target,
+    arguments: &Arguments,
+    screen: &mut Screen<'_>,
+) -> Result<(), Failure> {
+    let Some(path) = &target.scene else {
+        return Err(Failure::input(anyhow!(
+            "enrol --simulated needs --scene FILE, of a device with flux_sensor = true"
+        )));
+    };
+    let scene = Scene::read(path).map_err(Failure::input)?;
+    let settings = settings_for_scene(&scene).map_err(Failure::run)?;
+    let mut engine = NativeEngine::new(World::new(&scene).map_err(Failure::input)?);
+    let mut client = Client::new(SimulatedLink::new(&mut engine));
+    client.wait(START).map_err(Failure::run)?;
+    for line in &settings {
+        client.command(line).map_err(Failure::run)?;
+    }
+    at_device(&mut client, arguments, &mut |client, step| {
+        screen.show(step);
+        let force_n = match step {
+            Step::Rest(_) => 0.0,
+            Step::Touch(_) | Step::Press(..) => SIMULATED_N,
+        };
+        let world = client.link().world();
+        world.set_force_and_faults(force_n, std::iter::empty());
+    })
+}
+
+fn at_device<L: Link>(
+    client: &mut Client<L>,
+    arguments: &Arguments,
+    guide: &mut dyn FnMut(&mut Client<L>, &Step),
+) -> Result<(), Failure> {
+    let (code, finger) = (arguments.code, arguments.finger);
+    if arguments.forget {
+        let forget = PlainCommand::ForgetPerson(code);
+        return client.ask(&forget).map_err(Failure::run);
+    }
+    if let Some(file) = &arguments.restore {
+        let person = read(file, code).map_err(Failure::input)?;
+        let commands = [
+            (None, PlainCommand::StorePerson(person)),
+            (finger, PlainCommand::ChoosePerson(Some(code))),
+        ];
+        for (finger, command) in commands {
+            client.ask_finger(finger, &command).map_err(Failure::run)?;
+        }
+        return Ok(());
+    }
+    let order = Order {
+        code,
+        finger,
+        takes_zero: arguments.zero,
+        objects: arguments.objects.clone(),
+    };
+    let report = enrol(client, &order, guide).map_err(Failure::run)?;
+    let person = report.person.filter(|person| person.code == code);
+    let person =
+        person.ok_or_else(|| Failure::run(anyhow!("the device has enrolled somebody else")))?;
+    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
+    let board = client.ask(&QueryBoard).ok();
+    let file = PersonFile {
+        code: code.to_string(),
+        data: person_data(&person),
+        enrolled_unix_s: since_1970.map_or(0, |time| time.as_secs()),
+        device: board.and_then(|board| board.uid),
+        objects: order.objects,
+    };
+    let path = match &arguments.out {
+        Some(path) => path.clone(),
+        None => format!("person-{code}.toml").into(),
+    };
+    let text = toml::to_string(&file).map_err(Failure::run)?;
+    fs::write(&path, text)
+        .with_context(|| format!("--out {}", path.display()))
+        .map_err(Failure::run)?;
+    print_text(&format!(
+        "{code} is enrolled from {} contacts, in {}; `save` keeps it in the device, `person {code}` chooses it\n",
+        report.contacts,
+        path.display()
+    ))
+}
+
+/// The person of a file, which must be this one.
+fn read(path: &Path, code: PersonCode) -> anyhow::Result<Person> {
+    let context = || format!("--restore {}", path.display());
+    let text = fs::read_to_string(path).with_context(context)?;
+    let file: PersonFile = toml::from_str(&text).with_context(context)?;
+    if file.code != code.to_string() {
+        anyhow::bail!(
+            "--restore {}: it is of {:?}, not of {code}",
+            path.display(),
+            file.code
+        );
+    }
+    let finger = read_person_data(&file.data).with_context(|| {
+        format!(
+            "--restore {}: data {:?} is not 40 hexadecimal digits",
+            path.display(),
+            file.data
+        )
+    })?;
+    Ok(Person { code, finger })
+}

@@ -1,0 +1,83 @@
+//! The command `thermal-lab enrol`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+fn enrol(words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_thermal-lab"))
+        .arg("enrol")
+        .args(words)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap()
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+/// A layered finger that is no mean one.
+fn scene(name: &str, sensor: bool) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let scene = format!(
+        "duration_s = 60.0\nskin_c = 34.0\nroom_c = 24.0\n[object]\nmaterial = \"copper\"\nstart_c = 24.0\n[device]\n\
+         flux_sensor = {sensor}\n[finger]\ntissue = \"layered\"\n[plant]\nfinger.resistance_factor = 1.4\n"
+    );
+    fs::write(&path, scene).unwrap();
+    path
+}
+
+#[test]
+fn a_simulated_person_is_enrolled_and_restored() {
+    let scene = scene("enrol.toml", true);
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("person-P7.toml");
+    let (scene, out) = (scene.to_str().unwrap(), out.to_str().unwrap());
+    let simulated = ["P7", "--simulated", "--scene", scene];
+    let done = enrol(&[&simulated[..], &["--zero", "--out", out]].concat());
+    assert!(done.status.success(), "{}", text(&done.stderr));
+    assert!(text(&done.stdout).starts_with("P7 is enrolled from 2 contacts, in "));
+    let shown = text(&done.stderr);
+    for said in [
+        "still air",
+        "Touch copper, with 1 to 3 N",
+        "Touch abs",
+        "2.00 N",
+    ] {
+        assert!(shown.contains(said), "{said}: {shown}");
+    }
+    let written: toml::Table = fs::read_to_string(out).unwrap().parse().unwrap();
+    assert_eq!(written["code"].as_str(), Some("P7"));
+    let data = written["data"].as_str().unwrap();
+    assert!(
+        data.len() == 40 && data.bytes().all(|byte| byte.is_ascii_hexdigit()),
+        "{data}"
+    );
+
+    let restored = enrol(&[&simulated[..], &["--restore", out]].concat());
+    assert!(restored.status.success(), "{}", text(&restored.stderr));
+    let other = enrol(&["P8", "--simulated", "--scene", scene, "--restore", out]);
+    assert_eq!(other.status.code(), Some(2));
+    assert!(text(&other.stderr).contains("it is of \"P7\", not of P8"));
+    let unknown = enrol(&[&simulated[..], &["--forget"]].concat());
+    assert_eq!(unknown.status.code(), Some(1), "{}", text(&unknown.stderr));
+}
+
+#[test]
+fn names_single_objects_and_devices_without_a_sensor_are_refused() {
+    let scene = scene("enrol-without.toml", false);
+    let scene = ["--simulated", "--scene", scene.to_str().unwrap()];
+    for (words, status, why) in [
+        (&["Anna"][..], 2, "1 to 8 of A to Z and 0 to 9"),
+        (&["P7", "--objects", "copper"], 2, "two or more are needed"),
+        (&["P7"], 1, "the device has no heat-flux sensor"),
+    ] {
+        let refused = enrol(&[words, &scene[..]].concat());
+        assert_eq!(refused.status.code(), Some(status), "{words:?}");
+        assert!(
+            text(&refused.stderr).contains(why),
+            "{}",
+            text(&refused.stderr)
+        );
+    }
+}
