@@ -134,7 +134,7 @@ class FakeDevice:
             return "ok cause=-"
         if word.startswith("synchronize"):
             return f"err unknown command '{command}'; known: id"
-        if word in ("save", "forget"):
+        if command in ("save", "forget"):
             self.restart()
         if word == "abort":
             self.state = "ready"
