@@ -71,7 +71,7 @@ pub(super) fn host_line(line: &str, t_s: f64) -> String {
 mod tests {
     use super::*;
     use crate::faults::fault_cases;
-    use crate::faults::{FaultScene, InjectionPoint, Touch};
+    use crate::faults::{FaultScene, InjectionPoint};
     use thermal_sim::scene::Scene;
 
     #[test]
@@ -87,7 +87,7 @@ mod tests {
                 fault_case.after_s,
                 7,
                 &[],
-                &Touch::default(),
+                &fault_case.touch(7),
             );
             let scene = Scene::parse(&text, "slew".as_ref())
                 .unwrap_or_else(|error| panic!("{error}\n{text}"));
