@@ -32,7 +32,7 @@ struct Case {
 const SAID_AFTER_S: f64 = 0.12;
 /// Time from which set-points are those of the assumed finger, s, and how nearly, K.
 const ASSUMED_AFTER_S: f64 = 0.2;
-const ASSUMED_K: f64 = 0.25;
+const ASSUMED_K: f64 = 0.16;
 
 /// Landing at 1 s.
 const LANDING_S: f64 = 1.0;
