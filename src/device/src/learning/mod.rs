@@ -74,12 +74,13 @@ impl FingerKnowledge {
         ("late", Self::Late),
     ];
 
-    /// Whether the flux counts beside that of the modelled finger. It does not for a finger that is given up, which is rendered as
-    /// without the sensor, but for a wet one, whose contact resistance stays as learnt.
-    const fn has_flux_that_counts(self) -> bool {
+    /// Whether what the sensor reads can be right. Also for a finger that is not trusted: the finger is in doubt then, not the flux.
+    const fn is_of_sound_sensor(self) -> bool {
         match self {
             Self::NoSensor | Self::NoCode | Self::SensorFault | Self::Late => false,
-            Self::Learnt(Trust::Mean(why)) => matches!(why, Distrust::Wet),
+            Self::Learnt(Trust::Mean(why)) => {
+                !matches!(why, Distrust::Sensor | Distrust::Arithmetic)
+            }
             Self::Learnt(Trust::Learning | Trust::Trusted) => true,
         }
     }
@@ -212,7 +213,7 @@ impl FingerLearning {
             (None, Some(trust)) => FingerKnowledge::Learnt(trust),
             (None, None) => self.knowledge,
         };
-        let flux = flux_w_m2.filter(|_| self.knowledge.has_flux_that_counts());
+        let flux = flux_w_m2.filter(|_| self.knowledge.is_of_sound_sensor());
         self.beyond_model
             .end_window(flux, modelled_flux, &self.parameters, state);
         if let Some(trust) = answer {
