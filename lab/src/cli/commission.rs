@@ -6,9 +6,9 @@ use anyhow::{Context, anyhow};
 use clap::Args;
 use thermal_client::client::{Client, PlainCommand};
 use thermal_client::commissioning::{CommissioningEvent, CommissioningRecord};
+use thermal_lab::bench_operator::{BenchOperator, WATCHED_STREAM_MS, lines};
 use thermal_lab::commissioning::{clear_calibration, commission};
 use thermal_lab::link::{ServedLink, ServedOperator};
-use thermal_lab::person::{Person, WATCHED_STREAM_MS, lines};
 use thermal_sim::engine::NativeEngine;
 
 use super::{Failure, Target, print};
@@ -48,7 +48,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
 /// On a device at a bench.
 fn by_a_person(target: &Target, arguments: &Arguments) -> Result<CommissioningRecord, Failure> {
     let mut screen = stderr();
-    let mut person = Person::new(
+    let mut person = BenchOperator::new(
         arguments.finger,
         lines(BufReader::new(stdin())),
         &mut screen,

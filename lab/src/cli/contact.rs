@@ -7,8 +7,7 @@ use std::time::Duration;
 
 use anyhow::{Context, anyhow};
 use clap::Args;
-use contact_law_fit::{Measurement, Order, Sample, Step, fit, force_n, measure};
-use contact_model::material::REFERENCE_DISPLAY;
+use contact_law_fit::{Measurement, MeasurementOptions, Sample, Step, fit, force_n, measure};
 use thermal_client::client::{Client, PlainCommand};
 use thermal_client::link::Link;
 use thermal_lab::contact::{Report, Screen};
@@ -83,12 +82,11 @@ fn at_device<L: Link>(
     arguments: &Arguments,
     guide: &mut dyn FnMut(&mut Client<L>, &Step),
 ) -> Result<(), Failure> {
-    let order = Order {
+    let options = MeasurementOptions {
         finger: arguments.finger,
         takes_zero: arguments.zero,
-        display: REFERENCE_DISPLAY,
     };
-    let measurement = measure(client, &order, guide).map_err(Failure::run)?;
+    let measurement = measure(client, &options, guide).map_err(Failure::run)?;
     let path = match &arguments.out {
         Some(path) => path.clone(),
         None => format!("contact-{}", arguments.code).into(),

@@ -10,7 +10,7 @@ use clap::Args;
 use serde::{Deserialize, Serialize};
 use thermal_client::client::{Client, PlainCommand, QueryBoard, person_data, read_person_data};
 use thermal_client::link::Link;
-use thermal_lab::enrolment::{Order, Screen, Step, enrol};
+use thermal_lab::enrolment::{EnrolmentOptions, Screen, Step, enrol};
 use thermal_settings::{Person, PersonCode};
 use thermal_sim::World;
 use thermal_sim::commissioning::settings_for_scene;
@@ -136,13 +136,13 @@ fn at_device<L: Link>(
         }
         return Ok(());
     }
-    let order = Order {
+    let options = EnrolmentOptions {
         code,
         finger,
         takes_zero: arguments.zero,
         objects: arguments.objects.clone(),
     };
-    let report = enrol(client, &order, guide).map_err(Failure::run)?;
+    let report = enrol(client, &options, guide).map_err(Failure::run)?;
     let person = report.person.filter(|person| person.code == code);
     let person =
         person.ok_or_else(|| Failure::run(anyhow!("the device has enrolled somebody else")))?;
@@ -153,7 +153,7 @@ fn at_device<L: Link>(
         data: person_data(&person),
         enrolled_unix_s: since_1970.map_or(0, |time| time.as_secs()),
         device: board.and_then(|board| board.uid),
-        objects: order.objects,
+        objects: options.objects,
     };
     let path = match &arguments.out {
         Some(path) => path.clone(),

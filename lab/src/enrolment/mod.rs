@@ -44,7 +44,7 @@ pub enum Step {
 
 /// Who is enrolled, and how.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Order {
+pub struct EnrolmentOptions {
     /// Stands for the person.
     pub code: PersonCode,
     /// The finger of a device with several.
@@ -114,16 +114,16 @@ impl From<LinkError> for EnrolmentError {
 /// The device has no sensor, refuses a line, trips, or does not trust the finger; the finger does not land or lifts too soon.
 pub fn enrol<L: Link>(
     client: &mut Client<L>,
-    order: &Order,
+    options: &EnrolmentOptions,
     guide: &mut dyn FnMut(&mut Client<L>, &Step),
 ) -> Result<PersonReport, EnrolmentError> {
-    let finger = order.finger;
+    let finger = options.finger;
     let done = Session {
         client,
         finger,
         guide,
     }
-    .enrol(order);
+    .enrol(options);
     // Also after a failure: the bridge may be driven.
     let off = client.ask_finger(finger, &PlainCommand::Abort);
     let quiet = client.ask_finger(finger, &PlainCommand::stream(0));
@@ -143,7 +143,7 @@ impl<L: Link> Session<'_, L> {
         Ok(self.client.ask_finger(self.finger, command)?)
     }
 
-    fn enrol(&mut self, order: &Order) -> Result<PersonReport, EnrolmentError> {
+    fn enrol(&mut self, options: &EnrolmentOptions) -> Result<PersonReport, EnrolmentError> {
         let sensor = self.client.ask_finger(self.finger, &QueryFlux);
         let sensor = match sensor {
             // Firmware from before there was a sensor.
@@ -156,11 +156,11 @@ impl<L: Link> Session<'_, L> {
         let fields = fields.fold(TelemetryFields::NONE, |set, (index, _)| set.with(index));
         self.send(&PlainCommand::Stream(STREAM_MS, fields))?;
         self.rest()?;
-        if order.takes_zero {
+        if options.takes_zero {
             self.send(&PlainCommand::FluxZero)?;
         }
         self.send(&PlainCommand::ChoosePerson(None))?;
-        for (number, object) in order.objects.iter().enumerate() {
+        for (number, object) in options.objects.iter().enumerate() {
             self.send(&PlainCommand::Material(object.clone()))?;
             if number == 0 {
                 arm(self.client, self.finger)?;
@@ -169,7 +169,7 @@ impl<L: Link> Session<'_, L> {
             self.touch(object)?;
             self.rest()?;
         }
-        Ok((self.client).ask_finger(self.finger, &EnrolPerson(order.code))?)
+        Ok((self.client).ask_finger(self.finger, &EnrolPerson(options.code))?)
     }
 
     /// The next line of telemetry, after the guide has been called.

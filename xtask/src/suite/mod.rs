@@ -90,7 +90,7 @@ fn package(python: Option<&str>) -> Check {
 /// What the windows show, without a display and without optimisations, which take minutes for the toolkit. The windows themselves
 /// are checked by a job of `cargo xtask soak`.
 fn windows() -> Check {
-    let tests = cargo("test --package thermal-window --features views --quiet");
+    let tests = cargo("test --package thermal-window --features views --lib --test views --quiet");
     Check {
         title: "windows, without a display",
         commands: Ok(vec![tests.env("CARGO_PROFILE_DEV_DEBUG", "0")]),

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use contact_model::pressure::{THESIS_PRESSURES, pressure_pa};
-use contact_model::reference::mean_conductance;
+use contact_model::reference::conductance_at_hardness;
 use thermal_plant::parameters::PlaceBeforeContact;
 use thermal_plant::slab::BackBoundary;
 use thermal_sim::scene::AssumedFinger;
@@ -191,7 +191,7 @@ fn told_contact_laws_are_those_of_the_plant() {
             ..
         } = &scene.params;
         for (force_n, pressure_pa) in THESIS_PRESSURES {
-            let mean = mean_conductance::<f64>(&finger.surface, display);
+            let mean = conductance_at_hardness::<f64>(&finger.surface, display);
             let plant = contact.at_force(force_n, &finger.surface, display);
             let product =
                 plant.expect("a force").resistance_m2k_w * law.conductance_w_m2k(mean, pressure_pa);

@@ -1,4 +1,4 @@
-//! The person at the bench: is told what to do, and asked for what the reference thermometer shows.
+//! The operator at the bench: is told what to do, and asked for what the reference thermometer shows.
 
 use std::io::{self, BufRead, Write};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, TryRecvError};
@@ -37,8 +37,8 @@ const ABORT: &str = "abort";
 /// Lines that the person enters.
 pub type Lines = Receiver<io::Result<String>>;
 
-/// A person at the bench.
-pub struct Person<'a> {
+/// The operator at the bench.
+pub struct BenchOperator<'a> {
     finger: Option<u8>,
     lines: Lines,
     screen: &'a mut dyn Write,
@@ -60,7 +60,7 @@ pub fn lines(reader: impl BufRead + Send + 'static) -> Lines {
     lines
 }
 
-impl<'a> Person<'a> {
+impl<'a> BenchOperator<'a> {
     /// A person at a device, or at one of its fingers, who enters `lines` and reads the screen.
     pub fn new(finger: Option<u8>, lines: Lines, screen: &'a mut dyn Write) -> Self {
         Self {
@@ -165,7 +165,7 @@ fn ended(error: LinkError) -> SurroundingsError {
     }
 }
 
-impl<L: Link> Surroundings<L> for Person<'_> {
+impl<L: Link> Surroundings<L> for BenchOperator<'_> {
     fn reference_c(
         &mut self,
         client: &mut Client<L>,

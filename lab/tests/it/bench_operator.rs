@@ -9,13 +9,13 @@ use std::sync::mpsc::{self, Sender};
 
 use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
+use thermal_lab::bench_operator::BenchOperator;
 use thermal_lab::client::{Client, QueryState, SettingsLine};
 use thermal_lab::commissioning::{
     CommissionError, CommissioningEvent, CommissioningRecord, Surroundings, SurroundingsError,
     commission,
 };
 use thermal_lab::link::{Interruptible, LinkError, SimulatedLink};
-use thermal_lab::person::Person;
 use thermal_plant::Params;
 use thermal_sim::commissioning::{CommissioningSetup, SimulatedSurroundings};
 use thermal_sim::engine::NativeEngine;
@@ -55,7 +55,7 @@ impl io::Write for Screen {
 
 /// The person, and the thermometer and baths that are simulated for them.
 struct AtTheBench<'a> {
-    person: Person<'a>,
+    person: BenchOperator<'a>,
     surroundings: SimulatedSurroundings,
     shown: Rc<RefCell<String>>,
 }
@@ -118,7 +118,7 @@ fn commissioned(
         questions: 0,
     };
     let mut bench = AtTheBench {
-        person: Person::new(None, lines, &mut screen),
+        person: BenchOperator::new(None, lines, &mut screen),
         surroundings: SimulatedSurroundings::new(setup),
         shown,
     };
@@ -266,7 +266,7 @@ fn without_anybody_at_the_keys_the_procedure_ends_and_the_bridge_is_off() {
     let (keys, lines) = mpsc::channel();
     drop(keys);
     let mut screen = Vec::new();
-    let mut person = Person::new(None, lines, &mut screen);
+    let mut person = BenchOperator::new(None, lines, &mut screen);
     let error = commission(&mut client, None, &mut person).unwrap_err();
     assert!(
         error.to_string().contains("standard input has ended"),
@@ -293,7 +293,7 @@ fn an_interruption_at_any_moment_ends_the_procedure_with_the_bridge_off() {
             questions: 0,
             allowed: readings,
         };
-        let mut person = Person::new(None, lines, &mut screen);
+        let mut person = BenchOperator::new(None, lines, &mut screen);
         let error = commission(&mut client, None, &mut person).unwrap_err();
         let interrupted = matches!(
             error,
