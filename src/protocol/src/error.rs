@@ -511,7 +511,7 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
             return write!(f, "{command} needs a heat-flux sensor; flux set first");
         }
         Refused::FluxSensorFault => {
-            "the code of the heat-flux sensor is at a rail or does not change; look at its wires"
+            "the heat-flux sensor has no code, or one at a rail or that does not change; look at its wires"
         }
         Refused::DisplayNotAtRoom { display, room } => {
             f.write_str("flux zero needs the display within 0.3 C of the room; they have ")?;

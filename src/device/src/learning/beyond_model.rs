@@ -72,6 +72,7 @@ mod tests {
         resistance: None,
         ticks_since_landing: FROM_TICKS,
         is_steady: true,
+        is_display_at_room: true,
     };
 
     fn parameters(lag_ms: f64) -> FluxParameters {

@@ -39,22 +39,22 @@ const SELDOM_WINDOWS: u16 = 8;
 /// What the host is told about the finger that is learnt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FingerKnowledge {
-    /// No sensor of the heat flux is fitted: the assumed finger.
-    NoSensor,
-    /// The converter has not converted the sensor's voltage: the assumed finger until the next contact without such a tick.
+    /// A conversion had not ended in this window: a step towards the assumed finger. In contact the learner then distrusts the sensor
+    /// until the next landing.
     NoCode,
-    /// The sensor reads beyond its range, or the same for too long: the assumed finger until the next contact without such codes.
+    /// The sensor's code has been at a rail for 50 ms, or the same for 100 ms: towards the assumed finger while it lasts. In contact the
+    /// learner then distrusts the sensor until the next landing.
     SensorFault,
     /// The learner has not answered in time: the assumed finger until this contact has ended.
     Late,
-    /// What the learner says.
+    /// What the learner itself says: learning, trusted, or distrusted for a reason.
     Learnt(Trust),
 }
 
 impl FingerKnowledge {
-    /// All with their words in the protocol. Those with a reason are on the way to the assumed finger, or there.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 12] = [
-        ("assumed", Self::NoSensor),
+    /// All, with their words in the protocol. With all but the first two the device has gone back to the assumed finger, or is on the way
+    /// there.
+    pub const PROTOCOL_WORDS: [(&'static str, Self); 11] = [
         ("learning", Self::Learnt(Trust::Learning)),
         ("trusted", Self::Learnt(Trust::Trusted)),
         ("no-code", Self::NoCode),
@@ -77,7 +77,7 @@ impl FingerKnowledge {
     /// Whether what the sensor reads can be right. Also for a finger that is not trusted: the finger is in doubt then, not the flux.
     const fn is_of_sound_sensor(self) -> bool {
         match self {
-            Self::NoSensor | Self::NoCode | Self::SensorFault | Self::Late => false,
+            Self::NoCode | Self::SensorFault | Self::Late => false,
             Self::Learnt(Trust::Mean(why)) => {
                 !matches!(why, Distrust::Sensor | Distrust::Arithmetic)
             }
@@ -89,7 +89,6 @@ impl FingerKnowledge {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::NoSensor => "assumed",
             Self::NoCode => "no-code",
             Self::SensorFault => "sensor-range",
             Self::Late => "late",
@@ -125,8 +124,11 @@ pub struct FingerLearning {
     counting_windows: u32,
     /// Number of the last window.
     sequence: u16,
-    /// The place of another finger that may follow, for the next input.
+    /// The place of another finger that may follow, until the learner has taken it with an input.
     restart: Option<Place>,
+    /// Whether this finger has not been seen lifted: its contact has warmed or cooled it before the learner looked, so that nothing is
+    /// learnt from it.
+    has_unknown_history: bool,
     /// Whether the learner must answer that input before the present window ends, and its answer.
     is_asked: bool,
     answer: Option<Trust>,
@@ -155,6 +157,7 @@ impl FingerLearning {
             counting_windows: 0,
             sequence: 0,
             restart: Some(place),
+            has_unknown_history: true,
             input: None,
             is_asked: false,
             answer: None,
@@ -171,15 +174,22 @@ impl FingerLearning {
     /// unknown one.
     pub fn restart(&mut self, place: Place, person: Option<Person>) {
         self.restart = Some(place);
+        self.has_unknown_history = true;
+        self.input = None;
         self.is_asked = false;
         self.answer = None;
         self.learnt = None;
-        self.applied = None;
         self.knowledge = FingerKnowledge::Learnt(Trust::Learning);
         self.person = PersonState::new(person);
     }
 
-    /// Notes the sensor's code, or that its conversion has not ended, and returns the one that counts.
+    /// Notes that the assumed finger is applied.
+    pub const fn note_assumed_finger(&mut self) {
+        self.applied = None;
+    }
+
+    /// Takes the sensor's code of this tick. Without one, because the conversion has not ended, the last code stands in, and the window
+    /// is faulty. Returns the code that stands for the tick.
     #[inline(always)]
     pub const fn note_code(&mut self, code: Option<u16>) -> u16 {
         match code {
@@ -195,12 +205,16 @@ impl FingerLearning {
         self.sums.add(tick)
     }
 
-    /// Ends a complete window: offers the next input, and returns the finger to be applied now, if it differs enough from the
-    /// one that was applied last. That is the answer to the input before; if it is missing, one that is nearer to the assumed finger, until
-    /// a window without contact. So it is while the sensor's code cannot be right.
+    /// Ends a complete window: makes the learner's next input, and returns the finger to apply in this tick; `None` if it hardly differs
+    /// from the one in use. It is the learner's answer to the input before. While the codes cannot be right, and from a missing answer to
+    /// the next window without contact, it is a step towards the assumed finger.
     pub fn end_window(&mut self, state: &StateAtEnd) -> Option<&LearnerOutput> {
-        let contact = self.sums.contact(state);
-        let flux_w_m2 = self.flux_of_window();
+        self.has_unknown_history &= self.sums.has_contact();
+        let contact = self.sums.contact(&StateAtEnd {
+            is_steady: state.is_steady && !self.has_unknown_history,
+            ..*state
+        });
+        let flux_w_m2 = self.flux_of_window(state.is_display_at_room);
         let modelled_flux = self.sums.mean_modelled_flux();
         self.sums = self.sums.next();
         let (answer, fault) = (self.answer.take(), self.faults.present());
@@ -224,7 +238,7 @@ impl FingerLearning {
         self.is_asked = true;
         self.input = Some(LearnerInput {
             sequence: self.sequence,
-            restart: (self.restart.take()).map(|place| Restart {
+            restart: self.restart.map(|place| Restart {
                 place,
                 sensor: self.parameters.sensor,
                 person: self.person.prior(),
@@ -238,6 +252,7 @@ impl FingerLearning {
             return applied.approach_mean().then_some(applied);
         }
         let is_due = state.ticks_since_landing < APPLIED_SELDOM_FROM_TICKS
+            || matches!(answer, Some(Trust::Mean(_)))
             || self.sequence.is_multiple_of(SELDOM_WINDOWS);
         let learnt = self.learnt.as_ref();
         let learnt = learnt.filter(|_| is_due && core::mem::take(&mut self.is_new))?;
@@ -247,8 +262,8 @@ impl FingerLearning {
         Some(self.applied.insert(*learnt))
     }
 
-    /// Mean flux of the window, 0 without contact; `None` if the codes cannot be right. Notes the codes if the finger has lifted.
-    fn flux_of_window(&mut self) -> Option<Flux> {
+    /// Mean flux of the window, 0 without contact; `None` if the codes cannot be right. Notes the codes if no flux is expected.
+    fn flux_of_window(&mut self, is_display_at_room: bool) -> Option<Flux> {
         self.counting_windows = if self.sums.has_contact() {
             self.parameters.windows_after_lifting + 1
         } else {
@@ -262,7 +277,8 @@ impl FingerLearning {
         let codes = (self.faults).judge(sums.codes(), self.code, sums.is_code_missing);
         let is_valid = self.faults.present().is_none();
         let counts = self.counting_windows != 0;
-        self.resting.add((is_valid && !counts).then_some(codes));
+        let is_resting = is_valid && !counts && is_display_at_room;
+        self.resting.add(is_resting.then_some(codes));
         is_valid.then(|| {
             if counts {
                 self.parameters.mean_flux(codes)
@@ -280,7 +296,9 @@ impl FingerLearning {
 
     /// The input of the last window, once.
     pub fn take_input(&mut self) -> Option<LearnerInput> {
-        self.input.take()
+        let input = self.input.take()?;
+        self.restart = None;
+        Some(input)
     }
 
     /// Keeps the learner's answer for the end of the present window. One to an earlier input than the last is void, and one from
@@ -309,7 +327,7 @@ impl FingerLearning {
         self.beyond_model.flux()
     }
 
-    /// Mean code of the last half second without contact.
+    /// Mean code of half a second without contact, with the display at the temperature of the room.
     #[must_use]
     pub const fn resting_code(&self) -> Option<RestingCode> {
         self.resting.last()

@@ -127,9 +127,15 @@ impl ChosenObject {
     /// Assumes this finger from now on.
     pub fn choose_finger(&mut self, finger: AssumedFinger) {
         self.finger = finger;
-        self.bodies.finger = *finger.body();
+        self.restore_assumed_finger();
         self.choose_contact_law(&ChosenContactLaw::NOMINAL);
         self.bodies.are_half_spaces = self.is_half_space && finger == AssumedFinger::Thesis;
+    }
+
+    /// Discards what was learnt of the finger that touches. A contact law that was told stays.
+    pub const fn restore_assumed_finger(&mut self) {
+        self.bodies.finger = *self.finger.body();
+        self.bodies.resistances.skin_factor = OwnResistances::NONE.skin_factor;
     }
 
     /// Takes this for the contact law of the finger from now on; what was learnt of its resistance was learnt by another one.

@@ -51,6 +51,9 @@ impl Station {
                     self.object.choose_finger(finger);
                     self.reference.forget_resistances();
                     self.forget_learnt_finger(finger);
+                    if let Some(learning) = &mut self.learning {
+                        learning.note_assumed_finger();
+                    }
                     self.due.add(DueWork::CONTACT_RESTART);
                 }
             }

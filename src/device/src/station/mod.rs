@@ -263,7 +263,7 @@ impl Station {
     fn do_due_work(&mut self) {
         let due = core::mem::take(&mut self.due);
         if due.contains(DueWork::ASSUMED_FINGER) {
-            self.assume_finger_again();
+            self.restore_assumed_finger();
         }
         if due.contains(DueWork::FLUX_WINDOW) {
             self.end_flux_window();
