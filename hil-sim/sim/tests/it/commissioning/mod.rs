@@ -3,6 +3,7 @@
 mod aborts;
 mod accuracy;
 mod margins;
+mod phantom;
 mod restore;
 mod tile;
 
