@@ -414,6 +414,19 @@ fn the_answers_for_diagnosis_are_read() {
     )]);
     let test = newer.ask(&QuerySelfTest).unwrap();
     assert_eq!(test.side, Some(SideLine::StuckLow));
+    assert_eq!(test.flux_sensor, None, "a device without the sensor");
+    for (word, expected) in [
+        ("ok", FluxSensorTest::Passed),
+        ("zero", FluxSensorTest::Zero),
+        ("touched", FluxSensorTest::NotAtRest),
+    ] {
+        let answer = format!(
+            "ok hot_cut_ms=1 hot_supply_v=4.1 hot_release_ms=1 cold_cut_ms=1 cold_supply_v=4.1 cold_release_ms=1 side=ok supply_v=12.0 cool_a=1.00 warm_a=1.00 display_k=0.54 check_k=0.54 result=passed flux={word}"
+        );
+        let mut client = knows(&[("self-test", &answer)]);
+        let test = client.ask(&QuerySelfTest).unwrap();
+        assert_eq!(test.flux_sensor, Some(expected));
+    }
     let raw = client.ask(&QueryRaw).unwrap();
     assert_eq!((raw.display, raw.supply), (2048.25, 2730.0));
     assert!(raw.fault_line && !raw.stop);

@@ -2,6 +2,7 @@
 
 mod aborts;
 mod accuracy;
+mod flux_self_test;
 mod margins;
 mod phantom;
 mod restore;
