@@ -263,11 +263,10 @@ impl<L: Link> Surroundings<L> for BenchOperator<'_> {
     ) -> Result<(), SurroundingsError> {
         let what = match place {
             PhantomPlace::Beside => {
-                "Put the phantom, a gel of 1 % agar that has the room's temperature, beside the display, with the skin thermistor on \
-                 it; nothing touches the display"
+                "Have the phantom beside the display, a gel of 1 % agar that has the room's temperature; nothing touches the display"
             }
             PhantomPlace::OnDisplay => {
-                "Put the phantom on the display, the skin thermistor at its edge, and 200 g on it; do not touch it from then on"
+                "Put the phantom on the display and 200 g on it; do not touch it from then on"
             }
             PhantomPlace::Away => "Take the phantom away and dry the display",
         };

@@ -282,7 +282,7 @@ fn a_heat_flux_sensor_is_calibrated_by_a_person_with_a_phantom() {
     assert!(done.settings.iter().any(is_set), "{:?}", done.settings);
     for text in [
         "calibrate the heat-flux sensor with a phantom",
-        "beside the display, with the skin thermistor on it; nothing touches the display, then press Enter",
+        "that has the room's temperature; nothing touches the display, then press Enter",
         "and 200 g on it; do not touch it from then on, then press Enter",
         "Take the phantom away and dry the display, then press Enter",
         "within 0.5",

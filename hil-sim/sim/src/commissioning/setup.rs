@@ -102,7 +102,7 @@ impl CommissioningSetup {
         self.world(self.params.clone(), SKIN_C, self.room_c, "at work")
     }
 
-    /// The place of use with a phantom beside the display, and the skin thermistor on it.
+    /// The place of use with a phantom in place of the finger, beside the display.
     ///
     /// # Errors
     /// The plant does not accept a value.

@@ -15,12 +15,6 @@ impl RestingCode {
     pub fn mean_counts(self) -> f64 {
         f64::from(self.0) / f64::from(WINDOWS * WINDOW_TICKS)
     }
-
-    /// Mean sum of the codes of a window, rounded down.
-    #[must_use]
-    pub const fn mean_of_window(self) -> u32 {
-        self.0 / WINDOWS
-    }
 }
 
 /// Adds up the codes of windows without contact.

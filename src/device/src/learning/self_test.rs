@@ -51,19 +51,19 @@ impl FluxSensorTest {
 }
 
 impl FingerLearning {
-    /// Tests the sensor on a display that is so much warmer than the room, K, as it has read in the last half second.
+    /// Tests the codes of the last window, on a display that is so much warmer than the room, K.
     #[cold]
     #[inline(never)]
+    #[must_use]
     pub fn test_sensor(&self, above_room: Celsius) -> FluxSensorTest {
-        match (self.faults.present(), self.resting.last()) {
-            (Some(CodeFault::Missing), _) => FluxSensorTest::NoCode,
-            (Some(CodeFault::Range), _) => FluxSensorTest::Range,
-            (None, None) => FluxSensorTest::NotAtRest,
-            (None, Some(resting)) => {
-                let flux = self.parameters.mean_flux(resting.mean_of_window());
+        match self.faults.present() {
+            Some(CodeFault::Missing) => FluxSensorTest::NoCode,
+            Some(CodeFault::Range) => FluxSensorTest::Range,
+            None if self.counting_windows > 0 => FluxSensorTest::NotAtRest,
+            None => {
+                let flux = self.parameters.mean_flux(self.faults.last_sum());
                 let of_air: Flux = saturating_product(above_room.saturating_abs(), AIR_FILM_MAX);
-                let allowed = of_air.saturating_add(ZERO_ERROR_MAX);
-                if flux.saturating_abs() > allowed {
+                if flux.saturating_abs() > of_air.saturating_add(ZERO_ERROR_MAX) {
                     FluxSensorTest::Zero
                 } else {
                     FluxSensorTest::Passed

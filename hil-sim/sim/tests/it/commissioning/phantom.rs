@@ -213,7 +213,7 @@ fn what_cannot_be_right_is_refused_and_changes_nothing() {
         above_room_k: 0.6,
         ..gel()
     };
-    refused(warm, SOUND, "the phantom has 24.6");
+    refused(warm, SOUND, "the phantom had 24.");
     // A finger's skin, or a foil between.
     let rough = SimulatedPhantom {
         resistance_factor: 1.5,
@@ -224,7 +224,7 @@ fn what_cannot_be_right_is_refused_and_changes_nothing() {
     refused(
         gel(),
         circuit(FluxCircuit::Open),
-        "the code of the heat-flux sensor is at a rail",
+        "the heat-flux sensor has no code, or one at a rail",
     );
     refused(gel(), circuit(FluxCircuit::Short), "heat-flux sensor: ");
     refused(gel(), circuit(FluxCircuit::Reversed), "of the designed one");

@@ -33,6 +33,8 @@ pub struct Sample {
 /// What was fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
+    /// Temperature of the phantom before, °C.
+    pub phantom_c: f64,
     /// Gain over the one that is set, and its standard deviation by the residuals.
     pub gain: (f64, f64),
     /// Resistance between phantom and display, the sensor's layer included, m² K/W.
@@ -53,10 +55,12 @@ impl Fit {
             (row, samples[n].surface_c)
         });
         let solution = Solution::of(&rows.collect::<Vec<_>>())?;
-        let [_, by_flux, by_contact, _] = solution.values;
+        // What the zero makes of the contact is a millikelvin.
+        let [phantom_c, by_flux, by_contact, _] = solution.values;
         let [_, by_flux_error, ..] = solution.deviations;
         let gain = 1.0 / (effusivity * by_flux);
         Some(Self {
+            phantom_c,
             gain: (gain, (gain * by_flux_error / by_flux).abs()),
             resistance_m2k_w: by_contact * gain,
             residual_k: solution.residual,
@@ -184,6 +188,7 @@ mod tests {
             let fitted: Vec<_> = (50..1200).collect();
             let fit = Fit::new(&samples, &fitted, effusivity).expect("a solution");
             assert!((fit.gain.0 / gain - 1.0).abs() < 2e-4, "{fit:?}");
+            assert!((fit.phantom_c - phantom_c).abs() < 3e-3, "{fit:?}");
             assert!(
                 (fit.resistance_m2k_w / resistance - 1.0).abs() < 3e-3,
                 "{fit:?}"

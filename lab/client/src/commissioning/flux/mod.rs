@@ -22,23 +22,22 @@ const GEL_ERROR: f64 = 5e-3;
 const TEMPERATURE_ERROR: f64 = 2e-3;
 /// Interval of the telemetry, ms, and its fields.
 const STREAM_MS: u32 = (1e3 * STEP_S) as u32;
-const FIELDS: [&str; 5] = ["skin", "room", "force", "flux", "surface"];
+const FIELDS: [&str; 4] = ["room", "force", "flux", "surface"];
 /// Time within which a device trips by what a person has moved.
 const MOVED: Duration = Duration::from_millis(100);
 /// Longest wait for a line of telemetry.
 const LINE_TIMEOUT: Duration = Duration::from_millis(500);
-/// Range of the phantom's temperature, °C: the display must reach both ends of the course.
-const PHANTOM_C: (f64, f64) = (20.0, 33.0);
-/// Largest difference of phantom and room, K, so that the phantom is as warm as in its middle, and the zero can be taken at its
-/// temperature.
-const PHANTOM_FROM_ROOM_K: f64 = 0.25;
-/// Time for which the display must have the phantom's temperature before, within this, s and K, and longest wait for that, s.
+/// Range of the room's temperature, °C: the display must reach both ends of the course.
+const ROOM_C: (f64, f64) = (20.0, 33.0);
+/// Largest difference of phantom and room, K: one that has not lain there for long enough is not as warm inside as at its surface.
+const PHANTOM_FROM_ROOM_K: f64 = 0.5;
+/// Time for which the display must have the room's temperature before, within this, s and K, and longest wait for that, s.
 const ALONE_S: f64 = 2.0;
 const ALONE_K: f64 = 0.1;
 const ALONE_MAX_S: f64 = 60.0;
 /// Time until display and phantom are at rest in contact, s.
 const TOGETHER_S: f64 = 10.0;
-/// The course after that: temperatures above the phantom's, K, and how long each, s. As far up as down, so that what changes with
+/// The course after that: temperatures above the room's, K, and how long each, s. As far up as down, so that what changes with
 /// temperature, in the phantom and in the sensor, cancels.
 const COURSE: [(f64, f64); 4] = [(4.5, 8.0), (-4.5, 12.0), (4.5, 12.0), (0.0, 6.0)];
 /// Rate of the display, K/s.
@@ -62,9 +61,9 @@ const RESIDUAL_MAX_K: f64 = 0.03;
 /// Where the phantom is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhantomPlace {
-    /// In the room, with the skin's thermistor on it; nothing is on the display.
+    /// In the room, whose temperature it has; nothing is on the display.
     Beside,
-    /// On the display, with the skin's thermistor at its edge and the weight on it.
+    /// On the display, with the weight on it.
     OnDisplay,
     /// Put away.
     Away,
@@ -130,13 +129,19 @@ pub enum FluxCalibrationError {
     /// The temperature of phantom or room is not known.
     #[error("the {0} thermistor has no reading")]
     Unknown(&'static str),
+    /// The room is too warm or too cold.
+    #[error(
+        "the room has {0:.2} C; allowed are {least} to {most} C",
+        least = ROOM_C.0,
+        most = ROOM_C.1
+    )]
+    Room(f64),
     /// The phantom is too warm or too cold.
     #[error(
-        "the phantom has {phantom_c:.2} C and the room {room_c:.2} C; allowed are {least} to {most} C, within {PHANTOM_FROM_ROOM_K} K of the room. Is the skin's thermistor on it?",
-        least = PHANTOM_C.0, most = PHANTOM_C.1
+        "the phantom had {phantom_c:.2} C and the room {room_c:.2} C; allowed is a difference of {PHANTOM_FROM_ROOM_K} C. Let it lie beside the display for an hour"
     )]
     PhantomTemperature {
-        /// What the skin's thermistor reads on it, °C.
+        /// The phantom before, °C.
         phantom_c: f64,
         /// The room, °C.
         room_c: f64,
@@ -253,18 +258,16 @@ impl<L: Link> Session<'_, L> {
         let fields = fields.fold(TelemetryFields::NONE, |set, (index, _)| set.with(index));
         self.send(&PlainCommand::Stream(STREAM_MS, fields))?;
         let alone = self.receive(1.0)?;
-        let phantom_c = mean(&alone, "skin", |line| line.telemetry.skin_c)?;
         let room_c = mean(&alone, "room", |line| line.telemetry.room_c)?;
-        let is_near = (phantom_c - room_c).abs() <= PHANTOM_FROM_ROOM_K;
-        if !is_near || !(PHANTOM_C.0..=PHANTOM_C.1).contains(&phantom_c) {
-            return Err(FluxCalibrationError::PhantomTemperature { phantom_c, room_c }.into());
+        if !(ROOM_C.0..=ROOM_C.1).contains(&room_c) {
+            return Err(FluxCalibrationError::Room(room_c).into());
         }
         let force_n = mean(&alone, "force", |line| line.telemetry.force_n)?;
         if force_n > FREE_N {
             return Err(FluxCalibrationError::NotFree(force_n).into());
         }
         arm(self.client, self.finger)?;
-        let at_c = |above_k: f64| (100.0 * (phantom_c + above_k)).round() / 100.0;
+        let at_c = |above_k: f64| (100.0 * (room_c + above_k)).round() / 100.0;
         self.send(&PlainCommand::Hold(at_c(0.0), Some(RATE_K_S)))?;
         self.settle(at_c(0.0))?;
         self.send(&PlainCommand::FluxZero)?;
@@ -277,7 +280,7 @@ impl<L: Link> Session<'_, L> {
             lines.extend(self.receive(for_s)?);
         }
         self.send(&PlainCommand::Abort)?;
-        self.fit(&lines, from, phantom_c)
+        self.fit(&lines, from, room_c)
     }
 
     /// Waits until the display has rested at this temperature, °C.
@@ -317,7 +320,7 @@ impl<L: Link> Session<'_, L> {
         &mut self,
         lines: &[ReceivedTelemetry],
         from: usize,
-        phantom_c: f64,
+        room_c: f64,
     ) -> Result<(FluxSensor, FluxCalibration), CommissionError> {
         let force_n = |line: &ReceivedTelemetry| line.telemetry.force_n.unwrap_or(0.0);
         let landed = lines
@@ -353,9 +356,10 @@ impl<L: Link> Session<'_, L> {
         });
         let samples = samples.collect::<Result<Vec<_>, _>>()?;
         let set = sensor_of(self.client, self.finger)?.ok_or(FluxCalibrationError::NoSensor)?;
-        let effusivity = GEL.0 + GEL.1 * (phantom_c - 25.0);
+        let effusivity = GEL.0 + GEL.1 * (room_c - 25.0);
         let fitted = resting(&samples, fitted_from - landed);
         let fit = Fit::new(&samples, &fitted, effusivity).ok_or(FluxCalibrationError::NoFlux)?;
+        let phantom_c = fit.phantom_c;
         let (gain, scatter) = fit.gain;
         let mut found = set;
         found.counts_per_w_m2 *= gain;
@@ -366,6 +370,9 @@ impl<L: Link> Session<'_, L> {
         let contact_m2k_w = fit.resistance_m2k_w - 1e-6 * set.resistance_mm2k_w;
         if !(CONTACT_M2K_W.0..=CONTACT_M2K_W.1).contains(&contact_m2k_w) {
             return Err(FluxCalibrationError::Contact(1e6 * contact_m2k_w).into());
+        }
+        if (phantom_c - room_c).abs() > PHANTOM_FROM_ROOM_K {
+            return Err(FluxCalibrationError::PhantomTemperature { phantom_c, room_c }.into());
         }
         if fit.residual_k > RESIDUAL_MAX_K {
             return Err(FluxCalibrationError::Residual(1e3 * fit.residual_k).into());
