@@ -271,6 +271,10 @@ fn pulse_test_answer_words(report: &SelfTestReport) -> LineBuffer {
     }
     line.push_str_if_fits(" result=");
     line.push_str_if_fits(report.result.name());
+    if let Some(test) = report.flux_sensor {
+        line.push_str_if_fits(" flux=");
+        line.push_str_if_fits(test.name());
+    }
     line
 }
 
