@@ -28,8 +28,7 @@ const FIELDS: [&str; 6] = ["skin", "room", "force", "flux", "surface", "finger"]
 const LINE_TIMEOUT: Duration = Duration::from_millis(500);
 /// Longest time in which the finger must be lifted, and the display reach its temperature.
 const WAIT_MAX: Duration = Duration::from_secs(120);
-/// Force below which a finger counts as lifted, N, and for how many lines.
-const LIFTED_N: f64 = 0.01;
+/// For how many lines the finger must be lifted.
 const LIFTED_LINES: u32 = 100;
 /// Distance of the display's surface from the held temperature within which it is there, K, and for how many lines.
 const SETTLED_K: f64 = 0.1;
@@ -290,7 +289,8 @@ impl<L: Link> Session<'_, L> {
                 if line.telemetry.finger == Some(FingerKnowledge::SensorFault) {
                     return Err(MeasurementError::SensorFault(None));
                 }
-                lifted = if is_lifted(line) { lifted + 1 } else { 0 };
+                let is_lifted = line.telemetry.is_lifted() == Some(true);
+                lifted = if is_lifted { lifted + 1 } else { 0 };
                 Ok(lifted >= LIFTED_LINES)
             },
         )
@@ -308,7 +308,8 @@ impl<L: Link> Session<'_, L> {
             |_, line| {
                 surface_c.set(line.telemetry.surface_c);
                 let is_there = (surface_c.get()).is_some_and(|c| (c - HELD_C).abs() < SETTLED_K);
-                settled = if is_there && is_lifted(line) {
+                let is_lifted = line.telemetry.is_lifted() == Some(true);
+                settled = if is_there && is_lifted {
                     settled + 1
                 } else {
                     0
@@ -393,10 +394,6 @@ impl<L: Link> Session<'_, L> {
         }
         None
     }
-}
-
-fn is_lifted(line: &ReceivedTelemetry) -> bool {
-    (line.telemetry.force_n).is_some_and(|force_n| force_n < LIFTED_N)
 }
 
 /// The sample of a line.

@@ -28,6 +28,7 @@ use crate::events::NO_EVENTS_WORD;
 use crate::line_checksum::TwoHexDigits;
 use crate::object::{BACK_WORDS, OBJECT_ARGUMENTS};
 use crate::person::ENROL_CONTACTS;
+use crate::reply::write_contact_law;
 use crate::request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, SWITCH_WORDS};
 use crate::upload::UploadError;
 use crate::{ChecksumError, LINE_MAX_BYTES, LineError, Request};
@@ -496,6 +497,10 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
                 f,
                 "{command} needs another finger than the thesis's; finger mean first"
             );
+        }
+        Refused::OtherContactLaw(law) => {
+            f.write_str("person needs contact nominal first; told is ")?;
+            return write_contact_law(f, law);
         }
         Refused::AlreadyStarted => "already started; arm takes the object away",
         Refused::NeedsDrivenDisplay(command) => {

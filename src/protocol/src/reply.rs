@@ -87,7 +87,10 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
         }
         command::Reply::Raw(samples) => raw_answer_line(samples).fmt(f),
         command::Reply::Finger(name) => write!(f, "ok finger={name}"),
-        command::Reply::ContactLaw(law) => write_contact_law(f, law),
+        command::Reply::ContactLaw(law) => {
+            f.write_str("ok ")?;
+            write_contact_law(f, law)
+        }
         // No line from the host requests a material's properties.
         command::Reply::Material(_) => f.write_str("ok"),
         // Averages, normal equations and flux are evaluated by commissioning sessions, persons by the handler.
@@ -100,12 +103,12 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
     }
 }
 
-fn write_contact_law(f: &mut fmt::Formatter<'_>, law: &ContactLaw) -> fmt::Result {
+pub fn write_contact_law(f: &mut fmt::Formatter<'_>, law: &ContactLaw) -> fmt::Result {
     let exponent = Rounded(law.exponent, 4);
     let (hardness, gap) = (Rounded(law.hardness_pa, 0), Rounded(law.gap_w_m2k, 1));
     write!(
         f,
-        "ok exponent={exponent} hardness_pa={hardness} gap_w_m2k={gap}"
+        "exponent={exponent} hardness_pa={hardness} gap_w_m2k={gap}"
     )
 }
 

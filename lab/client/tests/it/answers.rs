@@ -7,8 +7,7 @@ use std::time::Duration;
 use thermal_client::client::{
     BoardReport, Client, ClientError, EnrolPerson, FluxReport, PersonReport, PlainCommand,
     QueryBoard, QueryCause, QueryDisplaySurface, QueryFlux, QueryIdentity, QueryPerson,
-    QueryPersons, QueryRaw, QuerySelfTest, QueryState, Telemetry, person_data, read_person_data,
-    upload_course,
+    QueryPersons, QueryRaw, QuerySelfTest, QueryState, Telemetry, person_data, upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
 use thermal_device::events::DeviceEventKind;
@@ -301,6 +300,12 @@ fn only_questions_and_numbered_lines_are_sent_again_after_a_damaged_line() {
         "@2 cause",
         "settings 3",
         "upload row 5 1.000 30.000000",
+        "contact",
+        "flux",
+        "surface",
+        "person",
+        "@1 person",
+        "persons",
     ] {
         assert_eq!(sent_as_often(line), (2, true), "{line}");
     }
@@ -311,6 +316,10 @@ fn only_questions_and_numbered_lines_are_sent_again_after_a_damaged_line() {
         "law pi",
         "calibrate display 30",
         "tune result",
+        "contact nominal",
+        "flux zero",
+        "person enrol P07",
+        "person none",
     ] {
         assert_eq!(sent_as_often(line), (1, false), "{line}");
     }
@@ -495,12 +504,12 @@ fn persons_are_read_and_written() {
     let code = PersonCode::new("P07").unwrap();
     let person = Person {
         code,
-        finger: read_person_data(DATA).unwrap(),
+        finger: Person::read_finger(DATA).unwrap(),
     };
     assert_eq!(person.finger[..4], [0, 8, 0, 0]);
     assert_eq!(person_data(&person), DATA);
     for wrong in [&DATA[1..], &DATA[2..], "", &DATA.replace('4', "g")] {
-        assert_eq!(read_person_data(wrong), None, "{wrong}");
+        assert_eq!(Person::read_finger(wrong), None, "{wrong}");
     }
     let mut client = knows(&[
         (

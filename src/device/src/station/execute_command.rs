@@ -85,7 +85,14 @@ impl Station {
                 self.due.add(DueWork::CONTACT_RESTART);
             }
             Command::Person => return Ok(Reply::Person(self.person_state()?)),
+            Command::LearntPerson => {
+                self.require_nominal_contact_law()?;
+                return Ok(Reply::Person(self.person_state()?));
+            }
             Command::ChoosePerson(person) => {
+                if person.is_some() {
+                    self.require_nominal_contact_law()?;
+                }
                 self.choose_person(person)?;
                 self.due.add(DueWork::CONTACT_RESTART);
             }

@@ -132,6 +132,14 @@ impl Station {
         }
     }
 
+    /// What is stored of a person holds with the nominal contact law only.
+    pub(super) const fn require_nominal_contact_law(&self) -> Result<(), Refused> {
+        match self.object.bodies().resistances.law {
+            None => Ok(()),
+            Some(_) => Err(Refused::OtherContactLaw(self.object.contact_law)),
+        }
+    }
+
     /// Begins to learn the finger of this person, or of an unknown one.
     pub(super) fn choose_person(&mut self, person: Option<Person>) -> Result<(), Refused> {
         let finger = self.object.assumed_finger();
