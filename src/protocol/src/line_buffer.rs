@@ -179,7 +179,7 @@ const POWERS_OF_TEN: [u32; 10] = {
 fn put_digits(mut value: u32, places: &mut [u8]) -> u32 {
     for place in places.iter_mut().rev() {
         // A tenth, exact for each `u32`: code that is optimised for size would divide.
-        let tenth = (u64::from(value) * 0xcccc_cccd >> 35) as u32;
+        let tenth = ((u64::from(value) * 0xcccc_cccd) >> 35) as u32;
         *place = b'0' + (value - 10 * tenth) as u8;
         value = tenth;
     }
