@@ -201,7 +201,7 @@ impl FingerLearning {
         let contact = self.sums.contact(state);
         let flux_w_m2 = self.flux_of_window();
         let modelled_flux = self.sums.mean_modelled_flux();
-        self.sums = self.sums.next();
+        self.sums.begin_next();
         let (answer, fault) = (self.answer.take(), self.faults.present());
         self.was_late &= contact.is_some();
         self.was_late |= self.is_asked && answer.is_none();
