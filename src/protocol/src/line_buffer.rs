@@ -135,7 +135,7 @@ impl LineBuffer {
         // A shift of 64 bits by a variable would be a call. Fixed-point types are below 2^10, so a `u32` holds five decimals; a
         // flux is below 2^19 and has one.
         let (high, low) = ((rounded >> 32) as u32, rounded as u32);
-        let scaled = high << (32 - fraction) | low >> fraction;
+        let scaled = (high << (32 - fraction)) | (low >> fraction);
         if bits < 0 && scaled != 0 {
             self.push_str_if_fits("-");
         }
@@ -179,7 +179,7 @@ const POWERS_OF_TEN: [u32; 10] = {
 fn put_digits(mut value: u32, places: &mut [u8]) -> u32 {
     for place in places.iter_mut().rev() {
         // A tenth, exact for each `u32`: code that is optimised for size would divide.
-        let tenth = (u64::from(value) * 0xcccc_cccd >> 35) as u32;
+        let tenth = ((u64::from(value) * 0xcccc_cccd) >> 35) as u32;
         *place = b'0' + (value - 10 * tenth) as u8;
         value = tenth;
     }
