@@ -135,7 +135,7 @@ impl LineBuffer {
         // A shift of 64 bits by a variable would be a call. Fixed-point types are below 2^10, so a `u32` holds five decimals; a
         // flux is below 2^19 and has one.
         let (high, low) = ((rounded >> 32) as u32, rounded as u32);
-        let scaled = high << (32 - fraction) | low >> fraction;
+        let scaled = (high << (32 - fraction)) | (low >> fraction);
         if bits < 0 && scaled != 0 {
             self.push_str_if_fits("-");
         }

@@ -218,7 +218,7 @@ impl FingerLearning {
         });
         let flux_w_m2 = self.flux_of_window(state.is_display_at_room);
         let modelled_flux = self.sums.mean_modelled_flux();
-        self.sums = self.sums.next();
+        self.sums.begin_next();
         let (answer, fault) = (self.answer.take(), self.faults.present());
         self.was_late &= contact.is_some();
         self.was_late |= self.is_asked && answer.is_none();

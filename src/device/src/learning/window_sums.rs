@@ -86,13 +86,11 @@ impl WindowSums {
         self.ticks >= WINDOW_TICKS
     }
 
-    /// The next window.
-    #[must_use]
-    pub fn next(&self) -> Self {
-        Self {
-            of_next_window: self.of_next_window,
-            ..Self::default()
-        }
+    /// Begins the next window. Its codes and surfaces replace those of this one before they are asked for.
+    pub const fn begin_next(&mut self) {
+        self.ticks = 0;
+        self.touching_ticks = 0;
+        self.is_code_missing = false;
     }
 
     /// Sum of the ten codes.
@@ -199,7 +197,7 @@ mod tests {
                     let apart_k = above_k - found.skin_above_display_k.to_num::<f64>();
                     prop_assert!(apart_k.abs() <= 1e-5, "{}", apart_k);
                 }
-                sums = sums.next();
+                sums.begin_next();
             }
         }
     }
