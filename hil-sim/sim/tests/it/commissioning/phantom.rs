@@ -4,7 +4,7 @@ use documented_figures::assert_figure;
 use thermal_client::client::{Client, PlainCommand, QueryFlux, QueryState};
 use thermal_client::commissioning::{
     CommissionError, CommissioningEvent, FluxCalibration, PhantomPlace, Surroundings,
-    SurroundingsError, calibrate_flux,
+    SurroundingsError, SurroundingsRequest, calibrate_flux,
 };
 use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
@@ -183,6 +183,19 @@ fn gains_of_drawn_sensors_are_found_within_what_is_stated() {
     assert!(
         (0.5..2.0).contains(&(rms(&stated) / rms(&by_gel))),
         "{stated:?}"
+    );
+}
+
+#[test]
+fn lines_that_move_the_phantom_are_read_as_they_are_written() {
+    for (_, place) in PhantomPlace::WORDS {
+        let request = SurroundingsRequest::Phantom(place);
+        assert_eq!(request.to_string().parse(), Ok(request));
+    }
+    let error = "phantom under".parse::<SurroundingsRequest>();
+    assert_eq!(
+        error,
+        Err("unknown place 'under'; known: beside on away".into())
     );
 }
 
