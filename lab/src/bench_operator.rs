@@ -6,7 +6,9 @@ use std::thread;
 use std::time::Duration;
 
 use thermal_client::client::{Client, ClientError, PlainCommand, thermistor_word};
-use thermal_client::commissioning::{CommissioningEvent, Surroundings, SurroundingsError};
+use thermal_client::commissioning::{
+    CommissioningEvent, PhantomPlace, Surroundings, SurroundingsError,
+};
 use thermal_client::link::{Link, LinkError};
 use thermal_device::safety::ThermistorId;
 
@@ -254,6 +256,24 @@ impl<L: Link> Surroundings<L> for BenchOperator<'_> {
             .map(drop)
     }
 
+    fn move_phantom(
+        &mut self,
+        client: &mut Client<L>,
+        place: PhantomPlace,
+    ) -> Result<(), SurroundingsError> {
+        let what = match place {
+            PhantomPlace::Beside => {
+                "Have the phantom beside the display, a gel of 1 % agar that has the room's temperature; nothing touches the display"
+            }
+            PhantomPlace::OnDisplay => {
+                "Put the phantom on the display and 200 g on it; do not touch it from then on"
+            }
+            PhantomPlace::Away => "Take the phantom away and dry the display",
+        };
+        self.ask(client, &format!("  {what}, then press Enter: "))
+            .map(drop)
+    }
+
     fn reads_again(&mut self, why: &str) -> bool {
         // The bath stays as it is: its point is left out, as the others suffice.
         !why.starts_with("tripped") && !why.starts_with("at a step")
@@ -275,7 +295,7 @@ impl<L: Link> Surroundings<L> for BenchOperator<'_> {
                     text += "  If a number was wrong, press Ctrl-C and begin again.\n";
                 }
             }
-            CommissioningEvent::TileIdentified(_) => {}
+            CommissioningEvent::TileIdentified(_) | CommissioningEvent::FluxCalibrated(_) => {}
         }
         self.tell(&text);
     }

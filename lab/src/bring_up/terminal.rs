@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use thermal_client::client::Client;
-use thermal_client::commissioning::{CommissioningEvent, Surroundings, SurroundingsError};
+use thermal_client::commissioning::{
+    CommissioningEvent, PhantomPlace, Surroundings, SurroundingsError,
+};
 use thermal_client::link::Link;
 use thermal_device::safety::ThermistorId;
 
@@ -205,6 +207,14 @@ impl<L: Link> Surroundings<L> for Terminal<'_> {
         bath_c: f64,
     ) -> Result<(), SurroundingsError> {
         self.person.put_into_bath(client, thermistor, bath_c)
+    }
+
+    fn move_phantom(
+        &mut self,
+        client: &mut Client<L>,
+        place: PhantomPlace,
+    ) -> Result<(), SurroundingsError> {
+        self.person.move_phantom(client, place)
     }
 
     fn reads_again(&mut self, why: &str) -> bool {

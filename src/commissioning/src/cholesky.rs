@@ -24,7 +24,7 @@ pub fn solve_by_cholesky<const N: usize>(a: &mut [[f64; N]; N], b: &mut [f64; N]
     }
     for i in (0..N).rev() {
         let below = a.iter().zip(&*b).skip(i + 1);
-        let sum: f64 = below.map(|(row, b)| row[i] * b).sum();
+        let sum: f64 = below.filter_map(|(row, b)| Some(row.get(i)? * b)).sum();
         b[i] = b[i] / pivots[i] - sum;
     }
     Some(())

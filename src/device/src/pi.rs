@@ -1,6 +1,6 @@
 //! A proportional-integral controller from temperature error to current, with limited output and anti-windup.
 
-use contact_model::fixed_point::{Celsius, Word};
+use contact_model::fixed_point::{Celsius, Word, truncated_units};
 use fixed::types::{I2F30, I12F52, I16F16};
 use thermal_settings::PiGains;
 
@@ -52,10 +52,12 @@ impl PiCoefficients {
     pub fn new(gains: &PiGains, period: UpdatePeriod) -> Self {
         let per_update = gains.proportional_a_k * f64::from(period.period_ticks())
             / (gains.integral_s * f64::from(TICK_HZ));
-        let bits = |value: f64, places: u32| libm::ldexp(value, places as i32) as i32;
         Self {
-            proportional: I16F16::from_bits(bits(gains.proportional_a_k, I16F16::FRAC_NBITS)),
-            integral: I2F30::from_bits(bits(per_update, I2F30::FRAC_NBITS)),
+            proportional: I16F16::from_bits(truncated_units(
+                gains.proportional_a_k,
+                I16F16::FRAC_NBITS,
+            )),
+            integral: I2F30::from_bits(truncated_units(per_update, I2F30::FRAC_NBITS)),
             period,
         }
     }

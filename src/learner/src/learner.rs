@@ -38,6 +38,16 @@ const REMAINING_IF_DISTRUSTED: f32 = 0.75;
 /// Unit of [`Resistance`], m² K/W.
 const M2K_W_PER_BIT: f32 = 1e-6 / (1u32 << Resistance::FRAC_NBITS) as f32;
 
+/// So many ticks after landing one window of so many is learnt from.
+const fn windows_per_update(ticks: u32) -> u8 {
+    match ticks {
+        ..EVERY_WINDOW_TICKS => 1,
+        EVERY_WINDOW_TICKS..EVERY_SECOND_TICKS => 2,
+        EVERY_SECOND_TICKS..EVERY_FOURTH_TICKS => 4,
+        EVERY_FOURTH_TICKS.. => 8,
+    }
+}
+
 /// Learns a finger from the flux into the display. All methods are total, take bounded time and do not panic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Learner {
@@ -71,10 +81,7 @@ impl Learner {
     /// A learner for an input with a [`Restart`], which must be its first.
     #[must_use]
     pub const fn new() -> Self {
-        Self::of_unknown_finger(Place::Air, FluxSensor::UNKNOWN)
-    }
-
-    const fn of_unknown_finger(place: Place, sensor: FluxSensor) -> Self {
+        let (place, sensor) = (Place::Air, FluxSensor::UNKNOWN);
         Self {
             scale: Scale::new(place, sensor.lag_deviation()),
             place,
@@ -92,12 +99,27 @@ impl Learner {
         }
     }
 
-    pub(crate) fn begin(restart: Restart) -> Self {
-        let mut learner = Self::of_unknown_finger(restart.place, restart.sensor);
-        learner.person = restart.person;
-        learner.estimate = learner.prior();
-        learner.weights = relative_weights(&learner.estimate.parameters);
-        learner
+    /// Begins anew with these place, sensor and person. Their copy is no reference, which would keep all of an input in memory.
+    #[inline(always)]
+    pub(crate) fn restart(&mut self, restart: Restart) {
+        self.place = restart.place;
+        self.sensor = restart.sensor;
+        self.person = restart.person;
+        self.begin();
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn begin(&mut self) {
+        self.scale = Scale::new(self.place, self.sensor.lag_deviation());
+        self.signals = Signals::NEW;
+        self.estimate = self.prior();
+        self.weights = relative_weights(&self.estimate.parameters);
+        self.judge = Judge::NEW;
+        self.windows_in_contact = None;
+        self.ticks_since_landing = 0;
+        self.stored_contacts = 0;
+        self.has_changed = true;
     }
 
     /// What is known of the finger before its contacts.
@@ -110,13 +132,11 @@ impl Learner {
     /// Takes one window's measurements, and returns what is known of the finger after it.
     pub fn advance(&mut self, input: &LearnerInput) -> &LearnerOutput {
         if let Some(restart) = input.restart {
-            *self = Self {
-                output: self.output,
-                ..Self::begin(restart)
-            };
+            self.restart(restart);
         }
-        let lagged = self.signals.advance(input, &self.sensor);
         let mut person = None;
+        // Of how many windows one is learnt from, if this is one.
+        let mut every = None;
         match &input.contact {
             Some(contact) => {
                 if self.windows_in_contact.is_none() {
@@ -136,7 +156,8 @@ impl Learner {
                 let is_learnt_from =
                     contact.is_steady && contact.ticks_since_landing >= LEARNT_FROM_TICKS;
                 if is_learnt_from && !matches!(self.judge.trust(), Trust::Mean(_)) {
-                    self.learn(contact, windows, &lagged);
+                    every = Some(windows_per_update(contact.ticks_since_landing))
+                        .filter(|every| windows.is_multiple_of(*every));
                 }
             }
             None => {
@@ -147,6 +168,12 @@ impl Learner {
                 }
             }
         }
+        let drive = self.signals.drive(input, &self.sensor);
+        if let (Some(contact), Some(every)) = (&input.contact, every) {
+            let lagged = self.signals.lagged(&drive, &self.sensor);
+            self.learn(contact, every, &lagged);
+        }
+        self.signals.advance(&drive, &self.sensor);
         if let Trust::Mean(why) = self.judge.trust() {
             self.approach_mean(why);
             self.stored_contacts = 0;
@@ -171,17 +198,9 @@ impl Learner {
         })
     }
 
-    fn learn(&mut self, contact: &Contact, windows: u8, lagged: &Lagged) {
+    /// Learns from one window of so many.
+    fn learn(&mut self, contact: &Contact, every: u8, lagged: &Lagged) {
         let ticks = contact.ticks_since_landing;
-        let every = match ticks {
-            ..EVERY_WINDOW_TICKS => 1,
-            EVERY_WINDOW_TICKS..EVERY_SECOND_TICKS => 2,
-            EVERY_SECOND_TICKS..EVERY_FOURTH_TICKS => 4,
-            EVERY_FOURTH_TICKS.. => 8,
-        };
-        if !windows.is_multiple_of(every) {
-            return;
-        }
         let resistance_m2k_w = contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT;
         let parameters = self.estimate.parameters;
         if self.has_changed {

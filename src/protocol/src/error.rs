@@ -3,7 +3,7 @@
 use core::fmt;
 
 use contact_model::decimal::{Rounded, Shortest};
-use contact_model::fixed_point::{BodyError, Celsius, ContactPairError};
+use contact_model::fixed_point::{BodyError, Celsius, ContactPairError, units_to_f64};
 use contact_model::material::MATERIALS;
 
 use thermal_commissioning::{
@@ -533,7 +533,7 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         }
         Refused::CourseOutOfRange(celsius) => {
             let (min, max) = (Shortest(SETPOINT_MIN_C), Shortest(SETPOINT_MAX_C));
-            let celsius = Rounded(celsius.to_num(), 2);
+            let celsius = rounded_celsius(*celsius);
             return write!(
                 f,
                 "with the present skin the course reaches {celsius} C; {min} to {max} C are allowed"
@@ -547,9 +547,17 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
     })
 }
 
+/// A temperature with two decimals.
+fn rounded_celsius(celsius: Celsius) -> Rounded {
+    Rounded(
+        units_to_f64(celsius.to_bits().into(), Celsius::FRAC_NBITS),
+        2,
+    )
+}
+
 fn write_celsius_or_dash(f: &mut fmt::Formatter<'_>, value: Option<Celsius>) -> fmt::Result {
     match value {
-        Some(celsius) => write!(f, "{} C", Rounded(celsius.to_num(), 2)),
+        Some(celsius) => write!(f, "{} C", rounded_celsius(celsius)),
         None => f.write_str("-"),
     }
 }
@@ -601,7 +609,7 @@ fn write_calibration_point_error(f: &mut fmt::Formatter<'_>, error: &PointError)
         PointError::TooFar(reading) => write!(
             f,
             "the device reads {} C; allowed is within {} C of that",
-            Rounded(reading.to_num(), 2),
+            rounded_celsius(*reading),
             Shortest(REFERENCE_DIFFERENCE_MAX_K)
         ),
         PointError::Contradicts => {

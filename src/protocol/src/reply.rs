@@ -4,13 +4,14 @@ use core::fmt::{self, Display as _};
 
 use contact_model::contact_law::ContactLaw;
 use contact_model::decimal::Rounded;
+use contact_model::fixed_point::units_to_f64;
 use thermal_commissioning::{
     CONVERTER_STEPS_PER_LINE_MAX, SessionReply, Setting, StorageOrder, THERMISTOR_WORDS,
 };
 use thermal_device::command::{self, FluxState, Status};
 use thermal_device::safety::{SelfTestReport, SideLine, TripCause};
 use thermal_device::sense::Samples;
-use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
+use thermal_device::{Flux, SCANS_PER_SECOND, TICK_HZ};
 use thermal_settings::{Calibration, DisplaySurface, FluxSensor, Tile};
 
 use crate::BoardStatus;
@@ -152,7 +153,10 @@ fn write_flux_answer(
         write!(f, " {name}={}", Rounded(value, decimals as usize))?;
     }
     match state.flux {
-        Some(flux) => write!(f, " w_m2={}", Rounded(flux.to_num(), 1))?,
+        Some(flux) => {
+            let flux_w_m2 = units_to_f64(flux.to_bits().into(), Flux::FRAC_NBITS);
+            write!(f, " w_m2={}", Rounded(flux_w_m2, 1))?;
+        }
         None => f.write_str(" w_m2=-")?,
     }
     write!(f, " finger={}", state.knowledge.name())
@@ -178,7 +182,7 @@ fn state_answer_line(status: &Status) -> LineBuffer {
     line.push_str_if_fits(status.material.unwrap_or("-"));
     line.push_str_if_fits(" object_c=");
     match status.object {
-        Some(_) => line.push_celsius_or_dash::<2>(status.object),
+        Some(_) => line.push_celsius_or_dash(2, status.object),
         None => line.push_str_if_fits("room"),
     }
     line.push_str_if_fits(" mode=");
@@ -187,7 +191,7 @@ fn state_answer_line(status: &Status) -> LineBuffer {
         .find(|(_, mode)| *mode == status.mode);
     line.push_str_if_fits(mode.map_or("-", |(name, _)| name));
     line.push_str_if_fits(" setpoint_c=");
-    line.push_celsius_or_dash::<2>(status.setpoint);
+    line.push_celsius_or_dash(2, status.setpoint);
     line.push_str_if_fits(if status.limited { " limited" } else { "" });
     line.push_str_if_fits(" body=");
     line.push_str_if_fits(status.body);
@@ -210,7 +214,7 @@ fn trip_cause_answer_line(cause: Option<&TripCause>) -> LineBuffer {
         (" sink_c=", cause.sink),
     ] {
         line.push_str_if_fits(name);
-        line.push_celsius_or_dash::<2>(temperature);
+        line.push_celsius_or_dash(2, temperature);
     }
     line.push_str_if_fits(" current_a=");
     line.push_current(cause.current);
@@ -266,10 +270,14 @@ fn pulse_test_answer_words(report: &SelfTestReport) -> LineBuffer {
         .zip(report.responses)
     {
         line.push_str_if_fits(name);
-        line.push_celsius_or_dash::<2>(response);
+        line.push_celsius_or_dash(2, response);
     }
     line.push_str_if_fits(" result=");
     line.push_str_if_fits(report.result.name());
+    if let Some(test) = report.flux_sensor {
+        line.push_str_if_fits(" flux=");
+        line.push_str_if_fits(test.name());
+    }
     line
 }
 

@@ -16,9 +16,10 @@ impl PersonCode {
     #[must_use]
     pub fn new(word: &str) -> Option<Self> {
         let mut padded = [0; Self::MAX_BYTES];
-        padded
-            .get_mut(..word.len())?
-            .copy_from_slice(word.as_bytes());
+        let places = padded.get_mut(..word.len())?;
+        for (place, byte) in places.iter_mut().zip(word.bytes()) {
+            *place = byte;
+        }
         Self::from_bytes(padded)
     }
 

@@ -29,7 +29,7 @@ pub use thermal_client::commissioning::{
 pub use enrolment::with_person;
 pub use frequency_response::FrequencyResponse;
 pub use operator::{commission, restore};
-pub use setup::CommissioningSetup;
+pub use setup::{CommissioningSetup, SimulatedPhantom};
 pub use surroundings::{SimulatedOperator, SimulatedSurroundings, SurroundingsAction};
 
 /// Lines of settings, or why commissioning failed; computed once.

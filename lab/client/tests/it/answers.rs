@@ -11,7 +11,7 @@ use thermal_client::client::{
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
 use thermal_device::events::DeviceEventKind;
-use thermal_device::learning::FingerKnowledge;
+use thermal_device::learning::{FingerKnowledge, FluxSensorTest};
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_device::stimulus::TemperatureKind;
 use thermal_device::{StateName, TelemetryFields};
@@ -423,6 +423,13 @@ fn the_answers_for_diagnosis_are_read() {
     )]);
     let test = newer.ask(&QuerySelfTest).unwrap();
     assert_eq!(test.side, Some(SideLine::StuckLow));
+    assert_eq!(test.flux_sensor, None, "a device without the sensor");
+    let mut fitted = knows(&[(
+        "self-test",
+        "ok hot_cut_ms=1 hot_supply_v=4.1 hot_release_ms=1 cold_cut_ms=1 cold_supply_v=4.1 cold_release_ms=1 side=ok supply_v=12.0 cool_a=1.00 warm_a=1.00 display_k=0.54 check_k=0.54 result=passed flux=zero",
+    )]);
+    let test = fitted.ask(&QuerySelfTest).unwrap();
+    assert_eq!(test.flux_sensor, Some(FluxSensorTest::Zero));
     let raw = client.ask(&QueryRaw).unwrap();
     assert_eq!((raw.display, raw.supply), (2048.25, 2730.0));
     assert!(raw.fault_line && !raw.stop);

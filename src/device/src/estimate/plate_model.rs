@@ -170,7 +170,7 @@ impl TileToClassRatios {
         Self {
             pumped: gain,
             joule: ratio(gain * tile.joule_per_a, Tile::FACTORY_DEFAULT.joule_per_a),
-            finger: libm::pow(gain, GAIN_RATIO_TO_FINGER_RATIO_EXPONENT),
+            finger: libm::exp(GAIN_RATIO_TO_FINGER_RATIO_EXPONENT * libm::log(gain)),
             leak: ratio(tile.leak_1_s, Tile::FACTORY_DEFAULT.leak_1_s),
         }
     }

@@ -54,6 +54,12 @@ impl CodeFaults {
         within
     }
 
+    /// Sum of the codes of the last window.
+    #[must_use]
+    pub const fn last_sum(&self) -> u32 {
+        self.last_sum
+    }
+
     /// The fault of the last window.
     #[must_use]
     pub const fn present(&self) -> Option<CodeFault> {

@@ -14,6 +14,7 @@ mod code_faults;
 mod flux_parameters;
 mod person_state;
 mod resting_code;
+mod self_test;
 mod window_sums;
 
 use thermal_learner::{
@@ -28,6 +29,7 @@ pub use flux_parameters::FluxParameters;
 pub use person_state::PersonState;
 pub use resting_code::RestingCode;
 use resting_code::RestingCodes;
+pub use self_test::FluxSensorTest;
 use window_sums::WindowSums;
 pub use window_sums::{MeasuredTick, StateAtEnd};
 

@@ -40,6 +40,7 @@ pub struct ChosenObject {
 }
 
 /// Contact constants of the first material on this display.
+#[inline(never)]
 fn default_pair(display: &Surface) -> Option<ContactPair> {
     let [(_, any), ..] = &MATERIALS;
     ContactPair::new(&SKIN, any, display, TICK_S).ok()

@@ -439,6 +439,10 @@ impl Station {
                     }
                     SelfTestStep::Passed => {
                         report.result = SelfTestResult::Passed;
+                        let above_room = valid.display.saturating_sub(valid.room);
+                        let learning = self.learning.as_ref();
+                        report.flux_sensor =
+                            learning.map(|learning| learning.test_sensor(above_room));
                         self.apply_event(Event::Pass);
                         BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST
                     }

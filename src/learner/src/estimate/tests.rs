@@ -32,7 +32,9 @@ fn covariance_stays_positive_over_a_million_updates() {
         };
         let mut signals = Signals::NEW;
         for input in scene.inputs(&mut random, 0) {
-            let lagged = signals.advance(&input, &sensor);
+            let drive = signals.drive(&input, &sensor);
+            let lagged = signals.lagged(&drive, &sensor);
+            signals.advance(&drive, &sensor);
             let resistance = display_resistance_m2k_w(force_n) as f32;
             measurements.push(lagged.measurement(
                 resistance,

@@ -30,11 +30,13 @@ pub fn new_learner(place: Place) -> Learner {
 
 /// A learner with that sensor of a finger at this place, of which this is known.
 pub fn learner_of(place: Place, person: Option<PersonPrior>) -> Learner {
-    Learner::begin(Restart {
+    let mut learner = Learner::new();
+    learner.restart(Restart {
         place,
         sensor: sensor(),
         person,
-    })
+    });
+    learner
 }
 
 pub fn learnt(scene: &Scene<'_>, random: &mut Random, phase: usize) -> Vec<LearnerOutput> {

@@ -102,7 +102,8 @@ proptest! {
         inputs in prop::collection::vec(input(), 1..300),
     ) {
         let sensor = FluxSensor::new(lag_us, Resistance::from_bits(resistance));
-        let mut learner = Learner::begin(Restart { place, sensor, person });
+        let mut learner = Learner::new();
+        learner.restart(Restart { place, sensor, person });
         for input in inputs {
             let output = learner.advance(&input);
             prop_assert_eq!(output.sequence, input.sequence);

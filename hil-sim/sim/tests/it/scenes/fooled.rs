@@ -96,13 +96,16 @@ impl Case {
             finger,
             plant,
             tables,
+            t_s,
             ..
         } = self;
         let text = format!(
-            "duration_s = 6\nskin_c = 34\nroom_c = 24\nseed = 1\n[device]\nflux_sensor = true\n{finger}\
+            "duration_s = {:?}\nskin_c = 34\nroom_c = 24\nseed = 1\n[device]\nflux_sensor = true\n{finger}\
              [object]\nmaterial = \"{material}\"\n[plant]\n{plant}\n\
              [[force]]\nt_s = {LANDING_S:?}\nforce_n = 2\n{tables}{more}\
-             [[host]]\nt_s = 0.1\nline = \"events on\"\n[[host]]\nt_s = 5.9\nline = \"flux\"\n"
+             [[host]]\nt_s = 0.1\nline = \"events on\"\n[[host]]\nt_s = {:?}\nline = \"flux\"\n",
+            t_s + 2.0,
+            t_s + 1.9,
         );
         let scene = scene(&text);
         let mut engine = NativeEngine::new(World::new(&scene).expect("a plant for the scene"));
