@@ -12,7 +12,7 @@ use thermal_sim::{NativeRunner, SceneRunner};
 
 /// Largest skin errors from 50 ms on, mK, of some cases of a population; no device reports a fault.
 fn errors_mk(population: Population, draws: u64, sample: usize) -> Percentiles {
-    let cases = spread(&population.cases(1, draws), sample);
+    let cases = spread(&population.cases(1, draws).expect("cases"), sample);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let results = parallel_map(
         &cases,
@@ -53,7 +53,7 @@ type Part = fn(&mut FingerParams, &FingerParams, &FingerDraw);
 /// Median of the largest skin errors from 50 ms on, mK, with six fingers that differ from the device's in one respect, on the
 /// six objects and a nominal, commissioned device. `told` is whether the device is told of a pad.
 fn median_of_part_mk(part: Part, told: bool) -> f64 {
-    let cases = Population::DrawnFingers.cases(1, 6);
+    let cases = Population::DrawnFingers.cases(1, 6).expect("cases");
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let work = |case: &thermal_campaigns::fidelity::PopulationCase| {
         let mut scene = case.scene(Way::AsItIs)?;

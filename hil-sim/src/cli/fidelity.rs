@@ -255,14 +255,15 @@ fn cases(arguments: &Arguments) -> Result<(Vec<FidelityCase>, Vec<PopulationCase
         .filter_map(|chosen| chosen.scenario())
         .flat_map(Scenario::cases)
         .collect();
-    let mut populations: Vec<_> = (Population::ALL.into_iter())
-        .filter(|population| chosen.contains(&Chosen::Populations(population.scenario())))
-        .flat_map(|population| {
+    let mut populations = Vec::new();
+    for population in Population::ALL {
+        if chosen.contains(&Chosen::Populations(population.scenario())) {
             let cases = population.cases(arguments.seed, arguments.draws);
+            let cases = cases.map_err(Failure::run)?;
             let sample = arguments.sample.unwrap_or(cases.len());
-            fidelity::spread(&cases, sample)
-        })
-        .collect();
+            populations.extend(fidelity::spread(&cases, sample));
+        }
+    }
     let all = || {
         let populations = populations.iter();
         let populations =

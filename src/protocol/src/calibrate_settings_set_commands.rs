@@ -66,8 +66,8 @@ pub fn parse_calibration_point_or_clear(words: &mut Words<'_>) -> Result<Session
     })
 }
 
-/// Reads the argument of the command `settings`: a number from 1 to 9 requests the line of the settings with this
-/// number. Without an argument, the number of lines is requested.
+/// Reads the argument of the command `settings`: a number from 1 to [`SETTINGS_LINE_COUNT_MAX`], 10, requests the line of the settings
+/// with this number: there are 8, one more with a heat-flux sensor, and one more with a measured surface of the display. Without an argument, the number of lines is requested.
 pub fn parse_settings_query(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
     if words.clone().next().is_none() {
         return Ok(SessionRequest::CountSettingsLines);

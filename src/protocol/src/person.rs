@@ -68,7 +68,7 @@ fn code(word: &str) -> Result<PersonCode, Error> {
 pub struct PersonReply {
     /// The chosen one, or the one that was stored.
     pub person: Option<Person>,
-    /// Contacts of 8 s or more from which the finger is learnt.
+    /// Contacts of 8 s or more, trusted to their end, since the person was chosen or the finger was last distrusted.
     pub contacts: u8,
 }
 

@@ -11,7 +11,7 @@ use super::{Command, Fields};
 pub struct PersonReport {
     /// The chosen or enrolled person; `None` for an unknown one.
     pub person: Option<Person>,
-    /// Contacts of 8 s or more, trusted to their end, since learning has begun.
+    /// Contacts of 8 s or more, trusted to their end, since the person was chosen or the finger was last distrusted.
     pub contacts: u8,
 }
 

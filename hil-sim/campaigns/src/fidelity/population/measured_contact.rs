@@ -42,8 +42,11 @@ pub fn measured_contact(seed: u64) -> anyhow::Result<ContactLaw> {
         let world = client.link().world();
         world.set_force_and_faults(step.target_n(), std::iter::empty());
     })
-    .with_context(|| format!("contact.draw = {seed}"))?;
-    Ok(fit(&measurement.recording)?.law)
+    .with_context(|| format!("measured contact.draw = {seed}"))?;
+    let fit = fit(&measurement.recording);
+    Ok(fit
+        .with_context(|| format!("fitted contact.draw = {seed}"))?
+        .law)
 }
 
 /// The finger at the device on which it is measured.

@@ -115,6 +115,12 @@ impl Population {
         }
     }
 
+    /// Whether its fingers are enrolled before.
+    #[must_use]
+    pub const fn is_of_enrolled(self) -> bool {
+        matches!(self, Self::EnrolledDesigned | Self::EnrolledHypothetical)
+    }
+
     /// Description of the population.
     #[must_use]
     pub const fn title(self) -> &'static str {
@@ -188,8 +194,10 @@ impl Population {
     }
 
     /// The cases: all objects, or six objects for each of a number of draws.
-    #[must_use]
-    pub fn cases(self, seed: u64, draws: u64) -> Vec<PopulationCase> {
+    ///
+    /// # Errors
+    /// A person's contact law cannot be measured.
+    pub fn cases(self, seed: u64, draws: u64) -> anyhow::Result<Vec<PopulationCase>> {
         let case = |object, (name, own): (String, u64), tables: String| PopulationCase {
             population: self,
             name,
@@ -198,10 +206,10 @@ impl Population {
             tables,
         };
         if self == Self::Objects {
-            return every_object()
+            return Ok(every_object()
                 .into_iter()
                 .map(|object| case(object.clone(), (object.name, seed), String::new()))
-                .collect();
+                .collect());
         }
         let mut cases = Vec::new();
         for number in 0..draws {
@@ -230,9 +238,7 @@ impl Population {
                 }
                 Self::ToldContactLaws => (seed, drawn_contact(own) + &told(exact_contact(own))),
                 Self::MeasuredContactLaws => {
-                    // A person whose measurement fails is told nothing.
-                    let line = measured_contact(own).map_or(String::new(), told);
-                    (seed, drawn_contact(own) + &line)
+                    (seed, drawn_contact(own) + &told(measured_contact(own)?))
                 }
                 _ => (seed, drawn_contact(own)),
             };
@@ -241,7 +247,7 @@ impl Population {
                 cases.push(case(object, (name, of_device), tables.clone()));
             }
         }
-        cases
+        Ok(cases)
     }
 }
 

@@ -23,6 +23,8 @@ pub struct PopulationResult {
     pub max_after_500ms_mk: f64,
     /// Its root mean square over the contact, mK.
     pub rms_mk: f64,
+    /// Whether the device knew the person.
+    pub is_enrolled: bool,
     /// Faults that the device reported.
     pub faults: Vec<String>,
 }
@@ -51,6 +53,8 @@ pub struct WayStatistics {
     pub rms_mk: Percentiles,
     /// Runs in which the device reported a fault.
     pub faulty: usize,
+    /// Runs in which the device knew the person.
+    pub enrolled: usize,
     /// The worst runs, worst first.
     pub worst: Vec<PopulationResult>,
 }
@@ -151,6 +155,7 @@ fn statistics(way: Way, mut own: Vec<&PopulationResult>) -> Option<WayStatistics
         max_after_500ms_mk: column(|one| one.max_after_500ms_mk)?,
         rms_mk: column(|one| one.rms_mk)?,
         faulty: own.iter().filter(|one| !one.faults.is_empty()).count(),
+        enrolled: own.iter().filter(|one| one.is_enrolled).count(),
         worst: own.into_iter().take(WORST).cloned().collect(),
     })
 }
@@ -201,6 +206,13 @@ pub fn table(reports: &[PopulationReport]) -> String {
                 rms.p50,
                 rms.p95,
                 way.faulty
+            );
+        }
+        if population.is_of_enrolled() {
+            let enrolled: usize = ways.iter().map(|way| way.enrolled).sum();
+            let _ = writeln!(
+                text,
+                "finger enrolled in {enrolled} of {cases} cases; the device did not trust the others"
             );
         }
         for aim in aims {
