@@ -1,5 +1,6 @@
 //! Populations: many objects, fingers or contact laws, each run as the device is now told of it, and as version 0.1 was.
 
+mod bound;
 mod case;
 mod chart;
 mod measured_contact;
@@ -16,6 +17,7 @@ use thermal_sim::named_enum;
 
 use super::plant_draws::SAME_VALUE;
 
+pub use bound::{BoundResult, BoundRow, Compared, Priors, rows as bound_rows};
 pub use case::{PopulationCase, Way};
 pub use chart::{SVG, draw as chart};
 use measured_contact::measured_contact;

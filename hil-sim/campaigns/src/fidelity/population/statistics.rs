@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::{Aim, Population, Since, Way};
+use super::{Aim, BoundRow, Population, Since, Way, bound};
 use crate::fidelity::Percentiles;
 use crate::percentile;
 
@@ -94,6 +94,9 @@ pub struct PopulationReport {
     pub image: Option<ImageSample>,
     /// Statistics by what the device was told.
     pub ways: Vec<WayStatistics>,
+    /// What was learnt against the bound of Cramér and Rao, if that was computed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bound: Vec<BoundRow>,
 }
 
 /// Number of worst runs that are listed.
@@ -140,6 +143,7 @@ impl PopulationReport {
                 .collect::<Option<_>>()?,
             image,
             ways: ways.flatten().collect(),
+            bound: Vec::new(),
         })
     }
 }
@@ -172,6 +176,7 @@ pub fn table(reports: &[PopulationReport]) -> String {
             aims,
             image,
             ways,
+            bound,
         } = report;
         // Writing to a String cannot fail.
         let _ = write!(
@@ -240,6 +245,7 @@ pub fn table(reports: &[PopulationReport]) -> String {
                 one.faults.join(", ")
             );
         }
+        text += &bound::table(bound);
     }
     text
 }
