@@ -22,7 +22,7 @@ use thermal_learner::{
 use thermal_settings::Person;
 
 use crate::estimate::FluxPerMm2;
-use beyond_model::BeyondModel;
+use beyond_model::{BeyondModel, flux_per_mm2};
 use code_faults::{CodeFault, CodeFaults};
 pub use flux_parameters::FluxParameters;
 pub use person_state::PersonState;
@@ -132,6 +132,8 @@ pub struct FingerLearning {
     /// The finger of the last answer, and whether it was not compared with the applied one yet.
     learnt: Option<LearnerOutput>,
     is_new: bool,
+    /// Whether the sensor was at a rail for too long since the last window without contact: nothing more is learnt of this one.
+    was_saturated: bool,
     /// Whether an answer was missing since the last window without contact.
     was_late: bool,
     /// The finger that was applied last; `None` for the assumed one.
@@ -159,6 +161,7 @@ impl FingerLearning {
             answer: None,
             learnt: None,
             is_new: false,
+            was_saturated: false,
             was_late: false,
             applied: None,
             knowledge: FingerKnowledge::Learnt(Trust::Learning),
@@ -198,9 +201,14 @@ impl FingerLearning {
     /// one that was applied last. That is the answer to the input before; if it is missing, one that is nearer to the assumed finger, until
     /// a window without contact. So it is while the sensor's code cannot be right.
     pub fn end_window(&mut self, state: &StateAtEnd) -> Option<&LearnerOutput> {
-        let contact = self.sums.contact(state);
-        let flux_w_m2 = self.flux_of_window();
         let modelled_flux = self.sums.mean_modelled_flux();
+        let flux_w_m2 = self.flux_of_window(modelled_flux);
+        let mut contact = self.sums.contact(state);
+        self.was_saturated &= contact.is_some();
+        self.was_saturated |= self.faults.is_saturated();
+        if let Some(contact) = &mut contact {
+            contact.is_steady &= !self.was_saturated;
+        }
         self.sums = self.sums.next();
         let (answer, fault) = (self.answer.take(), self.faults.present());
         self.was_late &= contact.is_some();
@@ -247,7 +255,7 @@ impl FingerLearning {
     }
 
     /// Mean flux of the window, 0 without contact; `None` if the codes cannot be right. Notes the codes if the finger has lifted.
-    fn flux_of_window(&mut self) -> Option<Flux> {
+    fn flux_of_window(&mut self, modelled: FluxPerMm2) -> Option<Flux> {
         self.counting_windows = if self.sums.has_contact() {
             self.parameters.windows_after_lifting + 1
         } else {
@@ -258,7 +266,16 @@ impl FingerLearning {
             return Some(Flux::ZERO);
         }
         let sums = &self.sums;
-        let codes = (self.faults).judge(sums.codes(), self.code, sums.is_code_missing);
+        // At least half of what was measured.
+        let measured = flux_per_mm2(self.parameters.mean_flux(sums.codes()));
+        let is_beyond_likely = (modelled.saturating_mul_int(2).abs() >= measured.abs())
+            && modelled.is_negative() == measured.is_negative();
+        let codes = (self.faults).judge(
+            sums.codes(),
+            self.code,
+            sums.is_code_missing,
+            is_beyond_likely,
+        );
         let is_valid = self.faults.present().is_none();
         let counts = self.counting_windows != 0;
         self.resting.add((is_valid && !counts).then_some(codes));
