@@ -1,6 +1,6 @@
 //! Recursive least squares: parameters and their covariance.
 
-use crate::parameters::{PARAMETERS, PRIOR, Parameters, Scale, clamped};
+use crate::parameters::{PARAMETERS, PRIOR, Parameters, RESISTANCE, Scale, clamped};
 use crate::regressors::Measurement;
 use crate::signals::dot;
 
@@ -52,6 +52,12 @@ impl Estimate {
             let deviation = change / prior;
             row[i] = with_added(row[i], deviation * deviation);
         }
+    }
+
+    /// Raises the variance of the contact resistance, in prior variances.
+    pub fn widen_resistance(&mut self, added: f32) {
+        let variance = &mut self.covariance[RESISTANCE][RESISTANCE];
+        *variance = with_added(*variance, added);
     }
 
     /// Updates by a measurement whose error has this variance, K². Returns the squared innovation over its variance; none if

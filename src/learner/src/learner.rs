@@ -6,11 +6,12 @@ use crate::estimate::Estimate;
 use crate::output::LearnerOutput;
 use crate::parameters::{Place, RESISTANCE, Scale, relative_weights};
 use crate::person::PersonPrior;
-use crate::regressors::{Lagged, Signals};
+use crate::recent::Recent;
+use crate::regressors::{Lagged, Signals, to_float};
 use crate::sensor::FluxSensor;
 use crate::signals::BankOutput;
 use crate::trust::{Distrust, Judge, Trust};
-use crate::window::{Contact, LearnerInput, Resistance, Restart};
+use crate::window::{Contact, LearnerInput, Resistance, Restart, WINDOW_TICKS};
 
 /// Ticks after landing from which a contact is learnt from.
 const LEARNT_FROM_TICKS: u32 = 10;
@@ -19,7 +20,8 @@ const SETTLED_TICKS: u32 = 20;
 /// Error of the model before that, K: small enough to show a contact resistance of half or twice the nominal one. No innovation is
 /// judged by it.
 const UNSETTLED_ERROR_K: f32 = 0.3;
-/// Up to these ticks after landing every window, every second one, and every fourth is learnt from; later every eighth.
+/// Up to these ticks after landing every window, every second one, and every fourth is learnt from; later every eighth. One in
+/// place of two has half of the variance; later the error of the model changes so slowly that a window is worth no more than one.
 const EVERY_WINDOW_TICKS: u32 = 300;
 const EVERY_SECOND_TICKS: u32 = 1000;
 const EVERY_FOURTH_TICKS: u32 = 3000;
@@ -29,6 +31,15 @@ const MODEL_ERROR_K: f32 = 20e-3;
 const MODEL_ERROR_TICKS: f32 = 50.0;
 /// Error of the surface of the display, K.
 const SURFACE_ERROR_K: f32 = 1.5e-3;
+/// Part of the display's change of the last second by which its surface may be off: what the model of the plate has wrong is seen
+/// by the thermistor of the display later.
+const DISPLAY_CHANGE_ERROR: f32 = 0.05;
+/// Shares per window of the low-passes from which display and contact resistance have changed: in 1 s, and in 20 ms, which are
+/// the lags of force and sensor.
+const DISPLAY_SHARE: f32 = 0.01;
+const RESISTANCE_SHARE: f32 = 0.5;
+/// Part of a change of the nominal resistance by which the factor on it may become another one: the force has an error.
+const FACTOR_CHANGE: f32 = 0.2;
 /// Error of the sensor's zero, W/m²: two of its deviations.
 const ZERO_ERROR_W_M2: f32 = 7.0;
 /// Ticks of a contact after which the finger is well enough known to be stored.
@@ -58,6 +69,11 @@ pub struct Learner {
     signals: Signals,
     pub(crate) estimate: Estimate,
     judge: Judge,
+    /// Skin before contact above the display's surface, K, and nominal contact resistance, m² K/W, in the present contact.
+    above_display: Recent,
+    resistance: Recent,
+    /// The resistance at which the finger was last learnt from; 0 before.
+    learnt_resistance_m2k_w: f32,
     /// Of the present contact, modulo 256.
     windows_in_contact: Option<u8>,
     /// Ticks of the last contact.
@@ -90,6 +106,9 @@ impl Learner {
             signals: Signals::NEW,
             estimate: Estimate::PRIOR,
             judge: Judge::NEW,
+            above_display: Recent::NEW,
+            resistance: Recent::NEW,
+            learnt_resistance_m2k_w: 0.0,
             windows_in_contact: None,
             ticks_since_landing: 0,
             stored_contacts: 0,
@@ -139,10 +158,12 @@ impl Learner {
         let mut every = None;
         match &input.contact {
             Some(contact) => {
-                if self.windows_in_contact.is_none() {
+                let lands = self.windows_in_contact.is_none();
+                if lands {
                     self.land();
                     self.ticks_since_landing = 0;
                 }
+                self.follow(contact, lands);
                 let windows = self
                     .windows_in_contact
                     .map_or(1, |windows| windows.wrapping_add(1));
@@ -188,6 +209,15 @@ impl Learner {
         }
     }
 
+    /// Follows display and force.
+    fn follow(&mut self, contact: &Contact, lands: bool) {
+        let touching = f32::from(contact.touching_ticks.max(1)) / WINDOW_TICKS as f32;
+        let above_k = to_float(contact.skin_above_display_k) / touching;
+        let share = |share: f32| if lands { 1.0 } else { share };
+        (self.above_display).advance(above_k, share(DISPLAY_SHARE));
+        (self.resistance).advance(resistance_m2k_w(contact), share(RESISTANCE_SHARE));
+    }
+
     /// What to store of the finger after a contact, if that was trusted and long enough.
     fn person_after_contact(&mut self) -> Option<PersonPrior> {
         let is_stored =
@@ -201,7 +231,7 @@ impl Learner {
     /// Learns from one window of so many.
     fn learn(&mut self, contact: &Contact, every: u8, lagged: &Lagged) {
         let ticks = contact.ticks_since_landing;
-        let resistance_m2k_w = contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT;
+        let resistance_m2k_w = resistance_m2k_w(contact);
         let parameters = self.estimate.parameters;
         if self.has_changed {
             self.weights = relative_weights(&parameters);
@@ -216,15 +246,37 @@ impl Learner {
         }
         let factor = 1.0 + parameters[RESISTANCE] * self.scale.deviations[RESISTANCE];
         let zero_k = factor * resistance_m2k_w * ZERO_ERROR_W_M2;
-        let variance_k2 =
-            (model_k2 + zero_k * zero_k + SURFACE_ERROR_K * SURFACE_ERROR_K) / f32::from(every);
+        let error_k2 = model_k2 + zero_k * zero_k + SURFACE_ERROR_K * SURFACE_ERROR_K;
+        let display_k = DISPLAY_CHANGE_ERROR * self.above_display.change();
+        let force_k = self.resistance.change() * lagged.flux_w_m2;
+        let changes_k2 = display_k * display_k + force_k * force_k;
         self.has_changed = true;
+        self.widen_factor(resistance_m2k_w);
+        let skipped = if ticks < EVERY_SECOND_TICKS { every } else { 1 };
+        let variance_k2 = (error_k2 + changes_k2) / f32::from(skipped);
         let innovation = self.estimate.update(&measurement, variance_k2, &self.scale);
         let innovation = innovation.map(|innovation| if is_settled { innovation } else { 0.0 });
         let parameters = &self.estimate.parameters;
-        let state = (resistance_m2k_w, ticks);
+        let state = (resistance_m2k_w, ticks, error_k2);
         self.judge
             .judge(innovation, &measurement, state, parameters, &self.scale);
+    }
+
+    /// Raises the variance of the factor on the contact resistance, because the nominal resistance has changed.
+    fn widen_factor(&mut self, resistance_m2k_w: f32) {
+        let before_m2k_w = self.learnt_resistance_m2k_w;
+        self.learnt_resistance_m2k_w = resistance_m2k_w;
+        if before_m2k_w > 0.0 {
+            let change_m2k_w = resistance_m2k_w - before_m2k_w;
+            let larger_m2k_w = if change_m2k_w > 0.0 {
+                resistance_m2k_w
+            } else {
+                before_m2k_w
+            };
+            let relative = change_m2k_w / larger_m2k_w;
+            let deviation = FACTOR_CHANGE * relative / self.scale.deviations[RESISTANCE];
+            self.estimate.widen_resistance(deviation * deviation);
+        }
     }
 
     /// Takes the parameters towards those of the mean finger, in some 100 ms so that set-points do not jump. That the contact
@@ -249,4 +301,9 @@ impl Learner {
         self.output.person = person;
         &self.output
     }
+}
+
+/// The nominal contact resistance, m² K/W.
+fn resistance_m2k_w(contact: &Contact) -> f32 {
+    contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT
 }

@@ -25,7 +25,7 @@ pub struct LearnerOutput {
     pub revision: u16,
     /// Weights of the tissue over those of the mean finger, 0.4 to 2, for `TissueWeights`.
     pub weights: [I2F30; WEIGHTS],
-    /// Relative change of the flux that the air took before contact, -1 to 1.5.
+    /// Relative change of the flux that the air took before contact, -2.5 to 2.5.
     pub air_change: I4F28,
     /// Skin before contact less what its thermistor says, -0.3 to 0.3 K.
     pub skin_offset_k: Celsius,

@@ -85,12 +85,12 @@ pub struct Scale {
 }
 
 /// Limits of the components (the second one takes strong perfusion of the dermis, too: 5.6 in a finger of scenario G), of the
-/// relative change of the air's flux, of the skin's temperature, K, of the factor on the contact resistance, and of the relative
+/// relative change of the air's flux (below -1 for a finger on a pad whose blood the force stops), of the skin's temperature, K, of the factor on the contact resistance, and of the relative
 /// change of the lag.
 const LIMITS: [(f32, f32); PARAMETERS] = [
     (-3.5, 3.5),
     (-7.0, 7.0),
-    (-1.0, 1.5),
+    (-2.5, 2.5),
     (-0.3, 0.3),
     (0.4 - 1.0, 2.5 - 1.0),
     (-0.3, 0.3),

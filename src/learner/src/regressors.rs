@@ -42,7 +42,8 @@ impl Drive {
 /// Signals of one window with contact, after the sensor's lag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lagged {
-    flux_w_m2: f32,
+    /// The measured flux.
+    pub flux_w_m2: f32,
     /// Skin before contact above the display's surface, K; and with the lag applied twice.
     above_k: f32,
     above_twice_k: f32,
@@ -53,7 +54,7 @@ pub struct Lagged {
 }
 
 /// A measurement as a float.
-fn to_float<T: Fixed<Bits = i32>>(value: T) -> f32 {
+pub fn to_float<T: Fixed<Bits = i32>>(value: T) -> f32 {
     value.to_bits() as f32 / (1u32 << T::FRAC_NBITS) as f32
 }
 

@@ -15,6 +15,11 @@ const FROM_TICKS: u64 = 10;
 /// From W/m² to W/mm².
 const M2_PER_MM2: U0F32 = U0F32::lit("1e-6");
 
+/// A measured flux in the model's unit.
+pub fn flux_per_mm2(flux: Flux) -> FluxPerMm2 {
+    product(flux, M2_PER_MM2)
+}
+
 /// Flux of the modelled finger behind the sensor's lag, and what is added to it in the present window.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BeyondModel {
@@ -44,7 +49,7 @@ impl BeyondModel {
             (self.owed, self.added) = (FluxPerMm2::ZERO, FluxPerMm2::ZERO);
             return;
         };
-        let measured: FluxPerMm2 = product(flux, M2_PER_MM2);
+        let measured = flux_per_mm2(flux);
         let beyond = measured.saturating_sub(self.modelled);
         let short = beyond.saturating_sub(self.added);
         self.owed = self.owed.saturating_add(short);

@@ -23,7 +23,7 @@ use thermal_learner::{
 use thermal_settings::Person;
 
 use crate::estimate::FluxPerMm2;
-use beyond_model::BeyondModel;
+use beyond_model::{BeyondModel, flux_per_mm2};
 use code_faults::{CodeFault, CodeFaults};
 pub use flux_parameters::FluxParameters;
 pub use person_state::PersonState;
@@ -137,6 +137,8 @@ pub struct FingerLearning {
     /// The finger of the last answer, and whether it was not compared with the applied one yet.
     learnt: Option<LearnerOutput>,
     is_new: bool,
+    /// Whether the sensor was at a rail for too long since the last window without contact: nothing more is learnt of this one.
+    was_saturated: bool,
     /// Whether an answer was missing since the last window without contact.
     was_late: bool,
     /// The finger that was applied last; `None` for the assumed one.
@@ -165,6 +167,7 @@ impl FingerLearning {
             answer: None,
             learnt: None,
             is_new: false,
+            was_saturated: false,
             was_late: false,
             applied: None,
             knowledge: FingerKnowledge::Learnt(Trust::Learning),
@@ -212,12 +215,14 @@ impl FingerLearning {
     /// the next window without contact, it is a step towards the assumed finger.
     pub fn end_window(&mut self, state: &StateAtEnd) -> Option<&LearnerOutput> {
         self.has_unknown_history &= self.sums.has_contact();
-        let contact = self.sums.contact(&StateAtEnd {
-            is_steady: state.is_steady && !self.has_unknown_history,
-            ..*state
-        });
-        let flux_w_m2 = self.flux_of_window(state.is_display_at_room);
         let modelled_flux = self.sums.mean_modelled_flux();
+        let flux_w_m2 = self.flux_of_window(modelled_flux, state.is_display_at_room);
+        let mut contact = self.sums.contact(state);
+        self.was_saturated &= contact.is_some();
+        self.was_saturated |= self.faults.is_saturated();
+        if let Some(contact) = &mut contact {
+            contact.is_steady &= !self.was_saturated && !self.has_unknown_history;
+        }
         self.sums.begin_next();
         let (answer, fault) = (self.answer.take(), self.faults.present());
         self.was_late &= contact.is_some();
@@ -265,7 +270,7 @@ impl FingerLearning {
     }
 
     /// Mean flux of the window, 0 without contact; `None` if the codes cannot be right. Notes the codes if no flux is expected.
-    fn flux_of_window(&mut self, is_display_at_room: bool) -> Option<Flux> {
+    fn flux_of_window(&mut self, modelled: FluxPerMm2, is_display_at_room: bool) -> Option<Flux> {
         self.counting_windows = if self.sums.has_contact() {
             self.parameters.windows_after_lifting + 1
         } else {
@@ -276,7 +281,16 @@ impl FingerLearning {
             return Some(Flux::ZERO);
         }
         let sums = &self.sums;
-        let codes = (self.faults).judge(sums.codes(), self.code, sums.is_code_missing);
+        // At least half of what was measured.
+        let measured = flux_per_mm2(self.parameters.mean_flux(sums.codes()));
+        let is_beyond_likely = (modelled.saturating_mul_int(2).abs() >= measured.abs())
+            && modelled.is_negative() == measured.is_negative();
+        let codes = (self.faults).judge(
+            sums.codes(),
+            self.code,
+            sums.is_code_missing,
+            is_beyond_likely,
+        );
         let is_valid = self.faults.present().is_none();
         let counts = self.counting_windows != 0;
         let is_resting = is_valid && !counts && is_display_at_room;
