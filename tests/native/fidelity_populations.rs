@@ -54,7 +54,7 @@ fn skin_follows_with_fingers_that_the_device_does_not_know() {
 fn what_is_learnt_is_near_the_bound_of_cramer_and_rao() {
     let population = Population::DesignedSensor;
     let priors = Priors::of(population, 1).expect("scenes");
-    let cases = population.cases(1, 2).into_iter();
+    let cases = population.cases(1, 2).expect("cases").into_iter();
     let cases = cases.filter(|case| case.object.name == "abs");
     let results = cases.map(|case| BoundResult::run(&case, &priors).expect("runs"));
     let rows = bound_rows(population, &results.collect::<Vec<_>>());

@@ -76,7 +76,7 @@ impl Priors {
     /// A drawn scene contradicts itself, or its display has no sensor.
     pub fn of(population: Population, seed: u64) -> anyhow::Result<Self> {
         let mut drawn: HashMap<_, Vec<Vector>> = HashMap::new();
-        for case in population.cases(seed, PRIOR_DRAWS) {
+        for case in population.cases(seed, PRIOR_DRAWS)? {
             let scene = case.scene(Way::AsItIs)?;
             let alike = drawn.entry((case.object.name, is_on_pad(&scene)));
             alike.or_default().push(touch(&scene)?.parameters(&scene));
