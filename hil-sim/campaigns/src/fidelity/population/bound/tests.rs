@@ -4,7 +4,7 @@ use super::*;
 
 /// A first contact of each object.
 fn cases() -> Vec<PopulationCase> {
-    Population::DesignedSensor.cases(1, 2)
+    Population::DesignedSensor.cases(1, 2).expect("cases")
 }
 
 /// The readings of the sensor in the plant, from the surface of the display there: another solver with a tile, and noise.
