@@ -137,8 +137,6 @@ pub struct FingerLearning {
     /// The finger of the last answer, and whether it was not compared with the applied one yet.
     learnt: Option<LearnerOutput>,
     is_new: bool,
-    /// Whether the sensor was at a rail for too long since the last window without contact: nothing more is learnt of this one.
-    was_saturated: bool,
     /// Whether an answer was missing since the last window without contact.
     was_late: bool,
     /// The finger that was applied last; `None` for the assumed one.
@@ -167,7 +165,6 @@ impl FingerLearning {
             answer: None,
             learnt: None,
             is_new: false,
-            was_saturated: false,
             was_late: false,
             applied: None,
             knowledge: FingerKnowledge::Learnt(Trust::Learning),
@@ -218,10 +215,8 @@ impl FingerLearning {
         let modelled_flux = self.sums.mean_modelled_flux();
         let flux_w_m2 = self.flux_of_window(modelled_flux, state.is_display_at_room);
         let mut contact = self.sums.contact(state);
-        self.was_saturated &= contact.is_some();
-        self.was_saturated |= self.faults.is_saturated();
         if let Some(contact) = &mut contact {
-            contact.is_steady &= !self.was_saturated && !self.has_unknown_history;
+            contact.is_steady &= !self.faults.is_saturated() && !self.has_unknown_history;
         }
         self.sums.begin_next();
         let (answer, fault) = (self.answer.take(), self.faults.present());
