@@ -16,7 +16,7 @@ use thermal_settings::Person;
 use crate::control::{ControlParameters, Law};
 use crate::events::EventKinds;
 use crate::identification::{AbortReason, NormalEquationRow};
-use crate::learning::{FingerKnowledge, FluxParameters, PersonState, RestingCode};
+use crate::learning::{FingerKnowledge, FluxParameters, NoContactCodeSum, PersonState};
 use crate::reference::ContactModel;
 use crate::safety::{Fault, PredictedDose, SelfTestReport, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, Samples, ThermistorAverage};
@@ -326,7 +326,7 @@ pub enum Reply {
     /// Answer to [`Command::Person`].
     Person(PersonState),
     /// Answer to [`Command::FluxZero`].
-    FluxZero(RestingCode),
+    FluxZero(NoContactCodeSum),
     /// Answer to [`Command::NormalEquation`]: one row of the normal equations of the tile's identification.
     NormalEquation(NormalEquationRow),
 }

@@ -17,18 +17,18 @@ use crate::window::{Contact, LearnerInput, Resistance, Restart, WINDOW_TICKS};
 const LEARNT_FROM_TICKS: u32 = 10;
 /// Ticks after landing from which the display's surface and the sensor have settled.
 const SETTLED_TICKS: u32 = 20;
-/// Error of the model before that, K: small enough to show a contact resistance of half or twice the nominal one. No innovation is
-/// judged by it.
+/// Error of the model before that, K: small enough that the contact resistance shows already. Innovations then count as 0 in [`Judge`],
+/// so that they cannot cause a distrust.
 const UNSETTLED_ERROR_K: f32 = 0.3;
 /// Up to these ticks after landing every window, every second one, and every fourth is learnt from; later every eighth. One in
 /// place of two has half of the variance; later the error of the model changes so slowly that a window is worth no more than one.
-const EVERY_WINDOW_TICKS: u32 = 300;
-const EVERY_SECOND_TICKS: u32 = 1000;
-const EVERY_FOURTH_TICKS: u32 = 3000;
+const ALL_WINDOWS_UNTIL_TICKS: u32 = 300;
+const ONE_IN_TWO_UNTIL_TICKS: u32 = 1000;
+const ONE_IN_FOUR_UNTIL_TICKS: u32 = 3000;
 /// Error of the model at landing, K. Its square grows in proportion to the time, so that each octave of time weighs alike.
 const MODEL_ERROR_K: f32 = 20e-3;
-/// Ticks in which the model's squared error at landing is added once more.
-const MODEL_ERROR_TICKS: f32 = 50.0;
+/// Ticks after landing at which the variance of the model's error is twice that at landing. It grows linearly.
+const MODEL_VARIANCE_DOUBLED_TICKS: f32 = 50.0;
 /// Error of the surface of the display, K.
 const SURFACE_ERROR_K: f32 = 1.5e-3;
 /// Part of the display's change of the last second by which its surface may be off: what the model of the plate has wrong is seen
@@ -44,18 +44,18 @@ const FACTOR_CHANGE: f32 = 0.2;
 const ZERO_ERROR_W_M2: f32 = 7.0;
 /// Ticks of a contact after which the finger is well enough known to be stored.
 const STORED_FROM_TICKS: u32 = 8000;
-/// Part of the parameters that remains per window once the finger is distrusted.
-const REMAINING_IF_DISTRUSTED: f32 = 0.75;
+/// Factor by which the parameters shrink in each window after a distrust: towards 0, the mean finger.
+const DECAY_PER_WINDOW_IF_DISTRUSTED: f32 = 0.75;
 /// Unit of [`Resistance`], m² K/W.
 const M2K_W_PER_BIT: f32 = 1e-6 / (1u32 << Resistance::FRAC_NBITS) as f32;
 
 /// So many ticks after landing one window of so many is learnt from.
 const fn windows_per_update(ticks: u32) -> u8 {
     match ticks {
-        ..EVERY_WINDOW_TICKS => 1,
-        EVERY_WINDOW_TICKS..EVERY_SECOND_TICKS => 2,
-        EVERY_SECOND_TICKS..EVERY_FOURTH_TICKS => 4,
-        EVERY_FOURTH_TICKS.. => 8,
+        ..ALL_WINDOWS_UNTIL_TICKS => 1,
+        ALL_WINDOWS_UNTIL_TICKS..ONE_IN_TWO_UNTIL_TICKS => 2,
+        ONE_IN_TWO_UNTIL_TICKS..ONE_IN_FOUR_UNTIL_TICKS => 4,
+        ONE_IN_FOUR_UNTIL_TICKS.. => 8,
     }
 }
 
@@ -239,7 +239,8 @@ impl Learner {
         let measurement =
             lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &self.weights);
 
-        let mut model_k2 = MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_ERROR_TICKS);
+        let mut model_k2 =
+            MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_VARIANCE_DOUBLED_TICKS);
         let is_settled = ticks >= SETTLED_TICKS;
         if !is_settled {
             model_k2 += UNSETTLED_ERROR_K * UNSETTLED_ERROR_K;
@@ -252,7 +253,11 @@ impl Learner {
         let changes_k2 = display_k * display_k + force_k * force_k;
         self.has_changed = true;
         self.widen_factor(resistance_m2k_w);
-        let skipped = if ticks < EVERY_SECOND_TICKS { every } else { 1 };
+        let skipped = if ticks < ONE_IN_TWO_UNTIL_TICKS {
+            every
+        } else {
+            1
+        };
         let variance_k2 = (error_k2 + changes_k2) / f32::from(skipped);
         let innovation = self.estimate.update(&measurement, variance_k2, &self.scale);
         let innovation = innovation.map(|innovation| if is_settled { innovation } else { 0.0 });
@@ -279,13 +284,13 @@ impl Learner {
         }
     }
 
-    /// Takes the parameters towards those of the mean finger, in some 100 ms so that set-points do not jump. That the contact
-    /// is better than usual is kept.
+    /// Takes the parameters to those of the mean finger, in some 100 ms so that set-points do not jump. After [`Distrust::Wet`] the
+    /// contact resistance stays.
     fn approach_mean(&mut self, why: Distrust) {
         self.has_changed = true;
         for (index, parameter) in self.estimate.parameters.iter_mut().enumerate() {
             if index != RESISTANCE || why != Distrust::Wet {
-                *parameter *= REMAINING_IF_DISTRUSTED;
+                *parameter *= DECAY_PER_WINDOW_IF_DISTRUSTED;
             }
         }
     }

@@ -122,8 +122,8 @@ pub struct Measurement {
     pub residual_k: f32,
     /// Change of the residual per prior deviation of each parameter, K.
     pub regressors: Parameters,
-    /// Temperature difference across tissue and contact, K: the skin that would be without contact, above the display.
-    pub drop_k: f32,
+    /// Skin as it would be if no heat flowed into the display (its open-circuit temperature), less the display's surface, K.
+    pub open_circuit_difference_k: f32,
 }
 
 /// Sum of a bank's output with the mean finger's weights times relative ones, K.
@@ -164,7 +164,7 @@ impl Lagged {
         Measurement {
             residual_k,
             regressors,
-            drop_k: self.above_k + dot(&self.by_air, &MEAN_WEIGHTS),
+            open_circuit_difference_k: self.above_k + dot(&self.by_air, &MEAN_WEIGHTS),
         }
     }
 }

@@ -7,8 +7,8 @@ use crate::parameters::RELAXATIONS;
 use crate::sensor::FluxSensor;
 use crate::window::WINDOW_S;
 
-/// Number of relaxations with a rate.
-pub const RATES: usize = WEIGHTS - 1;
+/// Number of relaxations in a bank: those of the mean finger without its integrator.
+pub const RELAXATION_COUNT: usize = WEIGHTS - 1;
 
 /// The flux sensor's lag, applied to another signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,21 +43,21 @@ struct UnitRelaxation {
     mean_gain_s: f32,
 }
 
-const UNIT_RELAXATIONS: [UnitRelaxation; RATES] = {
+const UNIT_RELAXATIONS: [UnitRelaxation; RELAXATION_COUNT] = {
     let mut all = [UnitRelaxation {
         remaining: 0.0,
         gain_s: 0.0,
         mean: 0.0,
         mean_gain_s: 0.0,
-    }; RATES];
+    }; RELAXATION_COUNT];
     let mut k = 0;
-    while k < RATES {
+    while k < RELAXATION_COUNT {
         let decay = WindowDecay::new(RELAXATIONS[k].rate_1_s);
         all[k] = UnitRelaxation {
             remaining: decay.remaining as f32,
             gain_s: (decay.mean * WINDOW_S) as f32,
             mean: decay.mean as f32,
-            mean_gain_s: (decay.mean_of_dose * WINDOW_S) as f32,
+            mean_gain_s: (decay.mean_of_input_response * WINDOW_S) as f32,
         };
         k += 1;
     }
@@ -66,14 +66,14 @@ const UNIT_RELAXATIONS: [UnitRelaxation; RATES] = {
 
 /// Unit relaxations of the mean finger's rates, all driven by one flux.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bank([f32; RATES]);
+pub struct Bank([f32; RELAXATION_COUNT]);
 
 /// Window means of a bank's states, J/m², and the flux itself, W/m²: with the weights of a finger their sum is the rise of its
 /// surface, K.
 pub type BankOutput = [f32; WEIGHTS];
 
 impl Bank {
-    pub const ZERO: Self = Self([0.0; RATES]);
+    pub const ZERO: Self = Self([0.0; RELAXATION_COUNT]);
 
     /// Output in the next window, with this mean flux, W/m².
     pub fn output(&self, flux_w_m2: f32) -> BankOutput {

@@ -24,7 +24,8 @@ pub enum Distrust {
 /// What the output is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trust {
-    /// Learnt from less than half a second of contact; before the first contact an average finger.
+    /// Learnt from less than half a second of a contact. Before the first contact the chosen person's finger, or without one the mean of
+    /// the simulated fingers.
     Learning,
     /// Learnt from half a second of contact or more.
     Trusted,
@@ -52,8 +53,8 @@ const AT_LIMIT_IN_A_ROW: u8 = 30;
 const TELLING: f32 = 4.0;
 /// Temperature drop, K, from which it is asked how much of it the measured flux explains.
 const DROP_MIN_K: f32 = 1.0;
-/// Part of the drop that the measured flux makes in the mean finger, below which the flux is missing.
-const EXPLAINED_BY_NO_FLUX: f32 = 0.05;
+/// Least part of the temperature difference that the measured flux must make in the mean finger; below it the flux is missing.
+const EXPLAINED_PART_MIN: f32 = 0.05;
 
 /// Counts of what does not fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,7 +151,7 @@ impl Judge {
     fn cause(&self, explained: Option<f32>, ticks: u32, resistance: Option<Limit>) -> Distrust {
         let was_trusted = self.trust == Trust::Trusted && ticks >= TRUSTED_TICKS;
         match (explained, resistance) {
-            (Some(part), _) if part < EXPLAINED_BY_NO_FLUX => Distrust::Sensor,
+            (Some(part), _) if part < EXPLAINED_PART_MIN => Distrust::Sensor,
             _ if was_trusted => Distrust::Contact,
             (Some(part), Some(Limit::High)) if part < 1.0 => Distrust::Between,
             _ => Distrust::Unexplained,
@@ -168,9 +169,9 @@ enum Limit {
 /// Drop of temperature that the measured flux makes in the mean finger with its contact, over the drop that there is; none if
 /// that one is small.
 fn explained(measurement: &Measurement) -> Option<f32> {
-    let drop_k = measurement.drop_k;
-    (!(-DROP_MIN_K..=DROP_MIN_K).contains(&drop_k))
-        .then(|| (drop_k - measurement.residual_k) / drop_k)
+    let open_circuit_difference_k = measurement.open_circuit_difference_k;
+    (!(-DROP_MIN_K..=DROP_MIN_K).contains(&open_circuit_difference_k))
+        .then(|| (open_circuit_difference_k - measurement.residual_k) / open_circuit_difference_k)
 }
 
 /// Counts in a row.

@@ -12,8 +12,8 @@
 mod beyond_model;
 mod code_faults;
 mod flux_parameters;
+mod no_contact_code;
 mod person_state;
-mod resting_code;
 mod self_test;
 mod window_sums;
 
@@ -26,9 +26,9 @@ use crate::estimate::FluxPerMm2;
 use beyond_model::{BeyondModel, flux_per_mm2};
 use code_faults::{CodeFault, CodeFaults};
 pub use flux_parameters::FluxParameters;
+pub use no_contact_code::NoContactCodeSum;
+use no_contact_code::NoContactCodes;
 pub use person_state::PersonState;
-pub use resting_code::RestingCode;
-use resting_code::RestingCodes;
 pub use self_test::FluxSensorTest;
 use window_sums::WindowSums;
 pub use window_sums::{MeasuredTick, StateAtEnd};
@@ -120,7 +120,7 @@ pub struct FingerLearning {
     input: Option<LearnerInput>,
     parameters: FluxParameters,
     faults: CodeFaults,
-    resting: RestingCodes,
+    resting: NoContactCodes,
     beyond_model: BeyondModel,
     /// Windows in which the flux still counts if the finger has lifted.
     counting_windows: u32,
@@ -154,7 +154,7 @@ impl FingerLearning {
             code: 0,
             parameters: *parameters,
             faults: CodeFaults::default(),
-            resting: RestingCodes::default(),
+            resting: NoContactCodes::default(),
             beyond_model: BeyondModel::default(),
             counting_windows: 0,
             sequence: 0,
@@ -340,7 +340,7 @@ impl FingerLearning {
 
     /// Mean code of half a second without contact, with the display at the temperature of the room.
     #[must_use]
-    pub const fn resting_code(&self) -> Option<RestingCode> {
+    pub const fn no_contact_code(&self) -> Option<NoContactCodeSum> {
         self.resting.last()
     }
 

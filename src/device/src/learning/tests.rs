@@ -39,7 +39,7 @@ fn answer(input: &LearnerInput) -> LearnerOutput {
     let mean = *Learner::new().advance(input);
     LearnerOutput {
         weights: [I2F30::lit("0.9"); 9],
-        air_change: I4F28::lit("0.5"),
+        air_flux_deviation: I4F28::lit("0.5"),
         skin_offset_k: Celsius::lit("-0.05"),
         resistance_factor: I4F28::lit("1.5"),
         revision: 7,
@@ -173,7 +173,10 @@ fn a_missing_answer_and_one_for_another_window_end_in_the_mean_finger() {
             assert_eq!(learning.knowledge(), FingerKnowledge::Late);
             let now = last.expect("a finger nearer to the mean one");
             let share = |now: f64, before: f64| now / before;
-            let left = share(now.air_change.to_num(), before.air_change.to_num());
+            let left = share(
+                now.air_flux_deviation.to_num(),
+                before.air_flux_deviation.to_num(),
+            );
             assert!((left - 0.75f64.powi(number + 1)).abs() < 1e-6, "{left}");
         }
         let last = last.expect("a finger");

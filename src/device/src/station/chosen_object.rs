@@ -148,9 +148,11 @@ impl ChosenObject {
 
     /// Gives the assumed finger what was learnt of the one that touches: its tissue, the relative change of the flux that the air
     /// took from it, and the factor on its contact resistance.
-    pub fn learn_finger(&mut self, tissue: &Body, air_change: I4F28, skin_factor: I4F28) {
+    pub fn learn_finger(&mut self, tissue: &Body, air_flux_deviation: I4F28, skin_factor: I4F28) {
         let air = u64::from(self.finger.body().air.to_bits());
-        let factor = air_change.saturating_add(I4F28::ONE).max(I4F28::ZERO);
+        let factor = air_flux_deviation
+            .saturating_add(I4F28::ONE)
+            .max(I4F28::ZERO);
         let air = (air * u64::from(factor.to_bits().unsigned_abs())) >> I4F28::FRAC_NBITS;
         // Each by itself, so that the tissue is copied once.
         self.bodies.finger.tissue = *tissue;

@@ -10,7 +10,7 @@ use crate::command::{AssumedFinger, FluxState, Refused};
 use crate::estimate::FluxPerMm2;
 use crate::events::DeviceEventKind;
 use crate::learning::{
-    FingerLearning, FluxParameters, MeasuredTick, PersonState, RestingCode, StateAtEnd,
+    FingerLearning, FluxParameters, MeasuredTick, NoContactCodeSum, PersonState, StateAtEnd,
 };
 
 /// Largest temperature difference of display and room at which the zero may be taken, K: the air then takes some 3 W/m².
@@ -64,7 +64,7 @@ impl Station {
     }
 
     /// Mean code of the heat-flux sensor, at a time at which no flux is expected.
-    pub(super) fn flux_zero(&self) -> Result<RestingCode, Refused> {
+    pub(super) fn flux_zero(&self) -> Result<NoContactCodeSum, Refused> {
         let learning = self
             .learning
             .as_ref()
@@ -80,7 +80,7 @@ impl Station {
         if learning.flux().is_none() {
             return Err(Refused::FluxSensorFault);
         }
-        learning.resting_code().ok_or(Refused::TooEarly)
+        learning.no_contact_code().ok_or(Refused::TooEarly)
     }
 
     /// Whether hardly any heat flows through the heat-flux sensor without a finger.
@@ -198,7 +198,7 @@ impl Station {
             finger.change_tissue(&factors, &to);
             self.reference.change_finger(&factors, &to);
             self.object
-                .learn_finger(&to, learnt.air_change, learnt.resistance_factor);
+                .learn_finger(&to, learnt.air_flux_deviation, learnt.resistance_factor);
             finger.forget_conductances();
             finger.set_skin_offset(learnt.skin_offset_k);
         }

@@ -71,7 +71,7 @@ fn measurements_that_are_no_numbers_are_refused() {
             let mut measurement = Measurement {
                 residual_k: 0.1,
                 regressors: [0.1; PARAMETERS],
-                drop_k: 1.0,
+                open_circuit_difference_k: 1.0,
             };
             if in_regressor {
                 measurement.regressors[2] = value;

@@ -82,7 +82,7 @@ fn assert_within_limits(output: &LearnerOutput) {
     for weight in output.weights {
         within(weight.to_num(), 0.4, 2.0);
     }
-    within(output.air_change.to_num(), -2.5, 2.5);
+    within(output.air_flux_deviation.to_num(), -2.5, 2.5);
     within(output.skin_offset_k.to_num(), -0.3, 0.3);
     within(output.resistance_factor.to_num(), 0.4, 2.5);
     within(output.parameters[0].to_num(), -3.5, 3.5);

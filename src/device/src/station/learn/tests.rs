@@ -76,7 +76,7 @@ fn code(tick: u32) -> Option<u16> {
 fn answer(input: &LearnerInput) -> LearnerOutput {
     LearnerOutput {
         weights: [I2F30::lit("0.8"); 9],
-        air_change: I4F28::lit("0.5"),
+        air_flux_deviation: I4F28::lit("0.5"),
         skin_offset_k: Celsius::lit("-0.05"),
         resistance_factor: I4F28::lit("1.5"),
         ..*Learner::new().advance(input)
