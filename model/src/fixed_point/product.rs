@@ -115,11 +115,11 @@ pub fn rounded_units(value: f64, places: u32) -> i64 {
     libm::round(libm::ldexp(value, places as i32)) as i64
 }
 
-/// `value` in units of `2^-places`, rounded towards 0 and limited to 32 bits. Not inlined, as above.
+/// `value` in units of `2^-places`, of which there are at most 63, rounded towards 0 and limited to 32 bits. Not inlined, as above.
 #[must_use]
 #[inline(never)]
-pub fn truncated_units(value: f64, places: u32) -> i32 {
-    libm::ldexp(value, places as i32) as i32
+pub const fn truncated_units(value: f64, places: u32) -> i32 {
+    (value * (1u64 << places) as f64) as i32
 }
 
 /// The number with this number of units of `2^-places`. The conversions of `fixed`, which give the same, have 1.5 KB of code.

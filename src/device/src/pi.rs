@@ -49,9 +49,9 @@ impl PiCoefficients {
     /// gain saturates at 32768 A/K, the integral gain at 2 A/K per update, where their fixed-point types end. Computed
     /// in `f64`, so it is for start-up and the task that serves the host, not for the tick.
     #[must_use]
-    pub fn new(gains: &PiGains, period: UpdatePeriod) -> Self {
-        let per_update = gains.proportional_a_k * f64::from(period.period_ticks())
-            / (gains.integral_s * f64::from(TICK_HZ));
+    pub const fn new(gains: &PiGains, period: UpdatePeriod) -> Self {
+        let per_update = gains.proportional_a_k * period.period_ticks() as f64
+            / (gains.integral_s * TICK_HZ as f64);
         Self {
             proportional: I16F16::from_bits(truncated_units(
                 gains.proportional_a_k,
