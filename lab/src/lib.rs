@@ -1,11 +1,11 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+pub mod bench_operator;
 pub mod bring_up;
 pub mod contact;
 pub mod enrolment;
 pub mod link;
-pub mod person;
 pub mod terminal_people;
 pub mod watched;
 

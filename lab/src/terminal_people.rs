@@ -9,7 +9,7 @@ use thermal_device::StateName;
 use thermal_session::{AnswerKind, Decision, OperatorQuestion, People, Question, Response, Update};
 use thermal_window::{MonitorPeople, Order, StopFlag, Tones, texts};
 
-use crate::person::Lines;
+use crate::bench_operator::Lines;
 
 /// What is entered to end everything with the bridge off.
 const STOP: &str = "stop";

@@ -32,9 +32,10 @@ impl ContactLaw {
     pub const GAPS_W_M2K: RangeInclusive<f64> = 0.0..=1e5;
 
     /// Conductance under a pressure, W/(m² K), where that of the spots at a pressure equal to the microhardness is
-    /// `mean_w_m2k` ([`crate::reference::mean_conductance`]).
+    /// `at_hardness_w_m2k` ([`crate::reference::conductance_at_hardness`]).
     #[must_use]
-    pub fn conductance_w_m2k(&self, mean_w_m2k: f64, pressure_pa: f64) -> f64 {
-        mean_w_m2k * Real::powf(pressure_pa / self.hardness_pa, self.exponent) + self.gap_w_m2k
+    pub fn conductance_w_m2k(&self, at_hardness_w_m2k: f64, pressure_pa: f64) -> f64 {
+        at_hardness_w_m2k * Real::powf(pressure_pa / self.hardness_pa, self.exponent)
+            + self.gap_w_m2k
     }
 }

@@ -105,7 +105,7 @@ impl Slab {
     /// The relaxations of the slab, the slowest first. If there are more than [`RELAXATIONS_MAX`], the static impedance of the
     /// fastest is added to the direct term.
     #[must_use]
-    #[inline(never)]
+    #[inline]
     pub fn relaxations(&self) -> SlabRelaxations {
         let mut all = SlabRelaxations {
             direct_m2k_w: 0.0,

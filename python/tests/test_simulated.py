@@ -259,6 +259,7 @@ def test_all_questions_are_understood(hil_sim: str) -> None:
         assert display.self_test().result == "none"
         display.arm(wait_s=20)
         assert display.self_test().result == "passed"
+        assert display.self_test().flux is None
         assert 0 < display.raw().display < 4096
         assert display.margins().gain_margin > 1
         assert display.flux() is None

@@ -70,6 +70,12 @@ def test_commits_are_those_of_the_protocols_examples() -> None:
         ("flux zero", False),
         ("surface", True),
         ("surface nominal", False),
+        ("contact", True),
+        ("contact nominal", False),
+        ("person", True),
+        ("@0 person", True),
+        ("person none", False),
+        ("persons", True),
     ],
 )
 def test_questions_and_numbered_rows_only_may_be_repeated(line: str, repeated: bool) -> None:

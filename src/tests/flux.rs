@@ -174,10 +174,20 @@ fn the_zero_is_the_mean_code_of_half_a_second_without_a_finger_at_the_rooms_temp
     let line = one.send("settings 9");
     assert_eq!(line, "ok set flux 0.119200 2070.500 5.000 30.000");
 
+    // Codes of a display that differed from the room do not count.
+    step(
+        &mut one,
+        &mut learner,
+        (FREE, COOLER),
+        noisy(2000).take(700),
+    );
+    step(&mut one, &mut learner, (FREE, SAME), noisy(2070).take(400));
+    assert_eq!(one.send("flux zero"), early);
+
     step(&mut one, &mut learner, (FREE, SAME), noisy(4090).take(600));
     assert_eq!(
         one.send("flux zero"),
-        "err the code of the heat-flux sensor is at a rail or does not change; look at its wires"
+        "err the heat-flux sensor has no code, or one at a rail or that does not change; look at its wires"
     );
 }
 
@@ -264,4 +274,21 @@ fn telemetry_has_flux_surface_and_finger_if_they_are_named() {
     // Nothing warms or cools the display.
     let kelvin = |word: &str| word.parse::<f64>().expect(word);
     assert!((kelvin(display) - kelvin(surface)).abs() < 0.1, "{line}");
+}
+
+/// It belongs to the finger, not to the sensor.
+#[test]
+fn a_contact_law_that_was_told_stays_with_another_sensor() {
+    let (mut one, mut learner) = (Bench::<1>::new(), Learner::new());
+    assert_eq!(one.send("contact 0.9 245000 500"), "ok");
+    for line in [
+        "flux set 0.1192 2048 5 30",
+        "flux set 0.1 2048 5 0",
+        "flux none",
+    ] {
+        assert_eq!(one.send(line), "ok", "{line}");
+        step(&mut one, &mut learner, (FREE, SAME), noisy(2048).take(20));
+        let told = "ok exponent=0.9000 hardness_pa=245000 gap_w_m2k=500.0";
+        assert_eq!(one.send("contact"), told, "{line}");
+    }
 }

@@ -173,9 +173,31 @@ fn each_finger_has_a_person_of_the_same_store() {
     );
     assert_eq!(two.send("person enrol P08"), "err finger (as @0) missing");
     assert_eq!(two.send("person P07"), "ok");
-    let both = format!("ok person=P07 contacts=0 data={DATA}");
-    assert_eq!(two.send("person"), both);
-    assert_eq!(two.send("@0 person"), format!("@0 {both}"));
+    // A question without a finger is answered by finger 0.
+    let first = format!("@0 ok person=P07 contacts=0 data={DATA}");
+    for question in ["person", "@0 person"] {
+        assert_eq!(two.send(question), first, "{question}");
+    }
+}
+
+#[test]
+fn persons_are_chosen_and_enrolled_with_the_nominal_contact_law_only() {
+    let mut one = Bench::<1>::new();
+    one.send(SENSOR);
+    one.send(&format!("person P07 {DATA}"));
+    assert_eq!(one.send("contact 0.9 100000 20"), "ok");
+    windows(&mut one, FingerIndex::FIRST, learnt(2));
+    assert_eq!(one.send("person"), "ok person=none contacts=2");
+    let refused = "err person needs contact nominal first; told is exponent=0.9000 hardness_pa=100000 gap_w_m2k=20.0";
+    for line in ["person enrol P08", "person P07"] {
+        assert_eq!(one.send(line), refused, "{line}");
+    }
+    assert_eq!(one.send("person none"), "ok");
+    assert_eq!(one.send("contact nominal"), "ok");
+    assert_eq!(one.send("person P07"), "ok");
+    windows(&mut one, FingerIndex::FIRST, learnt(2));
+    let enrolled = one.send("person enrol P08");
+    assert!(enrolled.starts_with("ok person=P08 "), "{enrolled}");
 }
 
 #[test]

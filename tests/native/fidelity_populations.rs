@@ -2,7 +2,9 @@
 //! of the populations that `cargo xtask fidelity --scenario E F G I` runs whole.
 
 use documented_figures::assert_figure;
-use thermal_campaigns::fidelity::{Percentiles, Population, Way, spread};
+use thermal_campaigns::fidelity::{
+    BoundResult, BoundRow, Percentiles, Population, Priors, Way, bound_rows, spread,
+};
 use thermal_campaigns::parallel_map;
 use thermal_plant::Params;
 use thermal_plant::finger::FingerParams;
@@ -12,7 +14,7 @@ use thermal_sim::{NativeRunner, SceneRunner};
 
 /// Largest skin errors from 50 ms on, mK, of some cases of a population; no device reports a fault.
 fn errors_mk(population: Population, draws: u64, sample: usize) -> Percentiles {
-    let cases = spread(&population.cases(1, draws), sample);
+    let cases = spread(&population.cases(1, draws).expect("cases"), sample);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let results = parallel_map(
         &cases,
@@ -47,13 +49,37 @@ fn skin_follows_with_fingers_that_the_device_does_not_know() {
     assert_figure("population_sample.sensor_most", learnt.max);
 }
 
+/// Two fingers on ABS, half a second after landing.
+#[test]
+fn what_is_learnt_is_near_the_bound_of_cramer_and_rao() {
+    let population = Population::DesignedSensor;
+    let priors = Priors::of(population, 1).expect("scenes");
+    let cases = population.cases(1, 2).expect("cases").into_iter();
+    let cases = cases.filter(|case| case.object.name == "abs");
+    let results = cases.map(|case| BoundResult::run(&case, &priors).expect("runs"));
+    let rows = bound_rows(population, &results.collect::<Vec<_>>());
+    let row = rows.into_iter().find(|row| row.since_s == 0.5);
+    let BoundRow {
+        contact,
+        tissue,
+        skin_mk,
+        ..
+    } = row.expect("a row");
+    assert_figure("learner_bound.contact", 100.0 * contact.bound);
+    assert_figure("learner_bound.contact_error", 100.0 * contact.error);
+    assert_figure("learner_bound.tissue", 100.0 * tissue.bound);
+    assert_figure("learner_bound.tissue_error", 100.0 * tissue.error);
+    assert_figure("learner_bound.skin", skin_mk.bound);
+    assert_figure("learner_bound.skin_error", skin_mk.error);
+}
+
 /// What a finger of `finger.draw` has of its draw; the rest is the nominal layered finger.
 type Part = fn(&mut FingerParams, &FingerParams, &FingerDraw);
 
 /// Median of the largest skin errors from 50 ms on, mK, with six fingers that differ from the device's in one respect, on the
 /// six objects and a nominal, commissioned device. `told` is whether the device is told of a pad.
 fn median_of_part_mk(part: Part, told: bool) -> f64 {
-    let cases = Population::DrawnFingers.cases(1, 6);
+    let cases = Population::DrawnFingers.cases(1, 6).expect("cases");
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let work = |case: &thermal_campaigns::fidelity::PopulationCase| {
         let mut scene = case.scene(Way::AsItIs)?;

@@ -40,8 +40,8 @@ const TIM8: usize = 7;
 const TIM10: usize = 8;
 const TIM11: usize = 9;
 /// Modelled converters.
-const ADC1: usize = 0;
-const ADC2: usize = 1;
+pub(super) const ADC1: usize = 0;
+pub(super) const ADC2: usize = 1;
 /// Pins that are outputs of the modelled timers (DS10693, table 11): port, bit, alternate function, timer, channel.
 const TIMER_PINS: [(u8, u8, u8, usize, usize); 10] = [
     (0, 8, 1, TIM1, 0),

@@ -1,6 +1,7 @@
 //! Injection of faults into the running machine, each at its present cycle.
 //!
 //! A flip changes one stored bit, as radiation does. Flips that cannot be modelled faithfully are refused.
+use super::chip::{ADC1, ADC2};
 use super::elf::{RAM_BASE, RAM_SIZE};
 use super::halt::Halt;
 use super::mcu::{Machine, emulator};
@@ -262,7 +263,13 @@ impl<W: Wiring + 'static> Machine<W> {
     /// No conversion of ADC1 ends until it is reset.
     pub fn stop_adc(&mut self) {
         let now = self.now();
-        self.chip_mut().stop_adc(now);
+        self.chip_mut().stop_adc(ADC1, now);
+    }
+
+    /// No conversion of ADC2 ends until it is reset.
+    pub fn stop_adc2(&mut self) {
+        let now = self.now();
+        self.chip_mut().stop_adc(ADC2, now);
     }
 
     /// Ends a DMA stream (controller 1 or 2, stream 0 to 7) by a bus error: disabled, transfer-error flag set.

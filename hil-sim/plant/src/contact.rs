@@ -2,7 +2,7 @@
 
 use contact_model::material::{SKIN_MICROHARDNESS_PA, Surface};
 use contact_model::pressure::contact_area_m2;
-use contact_model::reference::{Real, mean_conductance};
+use contact_model::reference::{Real, conductance_at_hardness};
 
 /// Contact conductance by Eq. 6-8 and contact area by section 6.4.2 with parameters of the plant's own, and in parallel the
 /// conductance of the gap, which the thesis does not model.
@@ -37,7 +37,7 @@ impl ContactLaw {
         let relative = force_n / area_m2 / self.hardness_pa;
         // `Real::powf` in place of `f64::powf`, because it has the same result on every host.
         let spots_w_m2k =
-            mean_conductance::<f64>(skin, other) * Real::powf(relative, self.exponent);
+            conductance_at_hardness::<f64>(skin, other) * Real::powf(relative, self.exponent);
         Some(SkinContact {
             area_m2,
             resistance_m2k_w: 1.0 / (spots_w_m2k + self.gap_w_m2k),

@@ -8,6 +8,7 @@ mod defects;
 pub mod energy;
 pub mod finger;
 pub mod infrared;
+pub mod lone_finger;
 pub mod object;
 pub mod parameters;
 pub mod reference;

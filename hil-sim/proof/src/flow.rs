@@ -104,13 +104,27 @@ impl Walk<'_> {
         }
     }
 
+    /// End of the code around an address: of this function, or of what the compiler has taken out of it.
+    fn end(&self, at: u32) -> u32 {
+        if (self.function.start..self.function.end).contains(&at) {
+            self.function.end
+        } else {
+            self.image.outlined(at).map_or(0, |outlined| outlined.end)
+        }
+    }
+
+    /// Adds the edge to the instruction that follows.
+    fn go_on(&mut self, from: u32, last: u32, to: u32, depth: i32) {
+        if to < self.end(last) {
+            self.reach(Some(from), to, depth);
+        } else {
+            self.trouble(to, "control runs out of the code");
+        }
+    }
+
     fn step(&mut self, at: u32) {
         let depth = self.depths[&at];
-        let Some(instruction) = self
-            .image
-            .instruction(at)
-            .filter(|_| at < self.function.end)
-        else {
+        let Some(instruction) = self.image.instruction(at) else {
             return self.trouble(at, "control runs out of the code");
         };
         let next = at + instruction.length;
@@ -119,7 +133,7 @@ impl Walk<'_> {
                 self.block(at, next, depth, same, count, first_runs);
             }
         } else if let Some(depth) = self.run(at, depth) {
-            self.reach(Some(at), next, depth);
+            self.go_on(at, at, next, depth);
         }
     }
 
@@ -145,7 +159,7 @@ impl Walk<'_> {
             }
             at += instruction.length;
         }
-        self.reach(Some(start), at, depth);
+        self.go_on(start, start, at, depth);
     }
 
     /// Follows one instruction and returns the depth after it, if control continues there.
@@ -204,9 +218,10 @@ impl Walk<'_> {
         self.flow.calls.insert(at, Call { target, stack });
     }
 
-    /// A jump within the function, or a tail call.
+    /// A jump within the function, also to an end that it shares with others, or a tail call.
     fn jump(&mut self, at: u32, to: u32, depth: i32) {
-        if (self.function.start..self.function.end).contains(&to) {
+        let is_inside = (self.function.start..self.function.end).contains(&to);
+        if is_inside || self.image.outlined(to).is_some() {
             return self.reach(Some(at), to, depth);
         }
         self.call(at, Target::Function(to), depth);

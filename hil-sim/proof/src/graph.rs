@@ -31,9 +31,22 @@ impl Graph {
                 graph.flows.insert(function.start, flow);
             }
             if graph.returns.len() == known {
+                graph.leave_out_shared_ends(image);
                 return graph;
             }
         }
+    }
+
+    /// Leaves out what is only jumped to from functions that it ends: it was followed with each of them.
+    fn leave_out_shared_ends(&mut self, image: &Image) {
+        let calls = self.flows.values().flat_map(|flow| flow.calls.values());
+        let called: BTreeSet<u32> = (calls.map(|call| call.target))
+            .filter_map(|target| match target {
+                Target::Function(start) => Some(start),
+                Target::Register => None,
+            })
+            .collect();
+        (self.flows).retain(|start, _| image.outlined(*start).is_none() || called.contains(start));
     }
 
     /// Analysis of the function that begins at an address.

@@ -253,6 +253,14 @@ impl Image {
         self.functions.get(&start)
     }
 
+    /// The function around an address, if the compiler has taken it out of others that end alike or have a part in common. It may
+    /// take what those have put on the stack.
+    pub fn outlined(&self, address: u32) -> Option<&Function> {
+        let (_, function) = self.functions.range(..=address).next_back()?;
+        let is_inside = address < function.end;
+        (is_inside && function.name.starts_with("OUTLINED_FUNCTION_")).then_some(function)
+    }
+
     /// The name of the function that begins at an address.
     pub fn name(&self, start: u32) -> &str {
         self.function(start).map_or("?", |function| &function.name)

@@ -140,8 +140,8 @@ impl CoreRegister {
 /// fingers.
 ///
 /// Its text, both ways: `ram-bit=0x20000010.3`, `core-bit=r4.7` (r0 to r12, sp, lr, pc, psr, s0 to s31, fpscr),
-/// `register-bit=0x40010044.15`, `hung-core`, `debugger-halt`, `hse-stopped`, `hse-started`, `adc-stopped`, `dma-stopped=2.0` (controller, stream),
-/// `brown-out`, `power-cycle=1` (seed of the noise in RAM), `reset-pin`, `software-reset`, `stack-overflow`,
+/// `register-bit=0x40010044.15`, `hung-core`, `debugger-halt`, `hse-stopped`, `hse-started`, `adc-stopped`, `adc2-stopped`,
+/// `dma-stopped=2.0` (controller, stream), `brown-out`, `power-cycle=1` (seed of the noise in RAM), `reset-pin`, `software-reset`, `stack-overflow`,
 /// `select-line-stuck=0.1` (line, level), `select-line-open=0` (line).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MachineFault {
@@ -176,6 +176,8 @@ pub enum MachineFault {
     HseStarted,
     /// The converter completes no conversion until a reset.
     AdcStopped,
+    /// The converter of the heat-flux sensor completes no conversion until a reset.
+    Adc2Stopped,
     /// A bus error ends a DMA stream.
     DmaStopped {
         /// 1 or 2.
@@ -254,6 +256,7 @@ impl fmt::Display for MachineFault {
             Self::HseStopped => f.write_str("hse-stopped"),
             Self::HseStarted => f.write_str("hse-started"),
             Self::AdcStopped => f.write_str("adc-stopped"),
+            Self::Adc2Stopped => f.write_str("adc2-stopped"),
             Self::DmaStopped { controller, stream } => {
                 write!(f, "dma-stopped={controller}.{stream}")
             }
@@ -272,8 +275,8 @@ impl fmt::Display for MachineFault {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is no fault of the machine; allowed are ram-bit=ADDRESS.BIT, core-bit=REGISTER.BIT, \
-     register-bit=ADDRESS.BIT, hung-core, debugger-halt, hse-stopped, hse-started, adc-stopped, dma-stopped=CONTROLLER.STREAM, brown-out, \
-     power-cycle=SEED, reset-pin, software-reset, stack-overflow, select-line-stuck=LINE.LEVEL, select-line-open=LINE with \
+     register-bit=ADDRESS.BIT, hung-core, debugger-halt, hse-stopped, hse-started, adc-stopped, adc2-stopped, \
+     dma-stopped=CONTROLLER.STREAM, brown-out, power-cycle=SEED, reset-pin, software-reset, stack-overflow, select-line-stuck=LINE.LEVEL, select-line-open=LINE with \
      lines 0 to 2 and levels 0 and 1"
 )]
 pub struct ParseMachineFaultError(String);
@@ -324,6 +327,7 @@ fn parse(text: &str) -> Option<MachineFault> {
         "hse-stopped" => MachineFault::HseStopped,
         "hse-started" => MachineFault::HseStarted,
         "adc-stopped" => MachineFault::AdcStopped,
+        "adc2-stopped" => MachineFault::Adc2Stopped,
         "brown-out" => MachineFault::BrownOut,
         "reset-pin" => MachineFault::ResetPin,
         "software-reset" => MachineFault::SoftwareReset,
@@ -376,6 +380,7 @@ mod tests {
             "hse-stopped",
             "hse-started",
             "adc-stopped",
+            "adc2-stopped",
             "dma-stopped=2.0",
             "brown-out",
             "power-cycle=18446744073709551615",

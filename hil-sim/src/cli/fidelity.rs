@@ -7,8 +7,9 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
 use thermal_campaigns::fidelity::{
-    self, BoxReport, DrawResult, FidelityCase, FidelityRow, ImageSample, PlantDraw, Population,
-    PopulationCase, PopulationReport, PopulationResult, RemovedLimit, Scenario, Way,
+    self, BoundResult, BoxReport, DrawResult, FidelityCase, FidelityRow, ImageSample, PlantDraw,
+    Population, PopulationCase, PopulationReport, PopulationResult, Priors, RemovedLimit, Scenario,
+    Way,
 };
 use thermal_campaigns::parallel_map;
 use thermal_device::control::Law;
@@ -22,13 +23,16 @@ pub struct Arguments {
     /// What the finger does; several, or all [default: A, or none with --box]
     #[arg(long, num_args = 1.., value_parser = scenarios())]
     scenario: Vec<Chosen>,
-    /// Fingers, or contact laws, that are drawn in scenarios F, G and I
+    /// Fingers, or contact laws, that are drawn in scenarios F to I
     #[arg(long, value_name = "N", default_value_t = 36)]
     draws: u64,
-    /// Run so many cases of each of E, F, G and I only, evenly spread
+    /// Run so many cases of each of E to I only, evenly spread
     #[arg(long, value_name = "N")]
     sample: Option<usize>,
-    /// Run so many cases of each of E, F and I on the image, too; its traces must be the same
+    /// Compare what is learnt in scenario G with the bound of Cramér and Rao
+    #[arg(long)]
+    bound: bool,
+    /// Run so many cases of each of E to I on the image, too; its traces must be the same
     #[cfg(feature = "emulator")]
     #[arg(long, value_name = "N", default_value_t = 0)]
     image_sample: usize,
@@ -53,7 +57,7 @@ pub struct Arguments {
     /// Of the converter, and of the box
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: u64,
-    /// What runs the device's logic [default: image for A to D, native for E, F, G, I and the box]
+    /// What runs the device's logic [default: image for A to D, native for E to I and the box]
     #[arg(long, value_enum)]
     engine: Option<EngineKind>,
     /// Image to run instead of the one of the current sources
@@ -195,8 +199,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         laws: fidelity::statistics_by_law(&drawn),
     });
     let results = campaign.populations(&populations).map_err(Failure::run)?;
+    let bounds = campaign.bounds(&populations).map_err(Failure::run)?;
     let reports = campaign
-        .population_reports(&populations, &results, image.as_deref())
+        .population_reports(&populations, (&results, &bounds), image.as_deref())
         .map_err(Failure::run)?;
     if let Some(folder) = &arguments.out {
         let charts = write_populations(folder, &populations, &results, &reports);
@@ -255,14 +260,15 @@ fn cases(arguments: &Arguments) -> Result<(Vec<FidelityCase>, Vec<PopulationCase
         .filter_map(|chosen| chosen.scenario())
         .flat_map(Scenario::cases)
         .collect();
-    let mut populations: Vec<_> = (Population::ALL.into_iter())
-        .filter(|population| chosen.contains(&Chosen::Populations(population.scenario())))
-        .flat_map(|population| {
+    let mut populations = Vec::new();
+    for population in Population::ALL {
+        if chosen.contains(&Chosen::Populations(population.scenario())) {
             let cases = population.cases(arguments.seed, arguments.draws);
+            let cases = cases.map_err(Failure::run)?;
             let sample = arguments.sample.unwrap_or(cases.len());
-            fidelity::spread(&cases, sample)
-        })
-        .collect();
+            populations.extend(fidelity::spread(&cases, sample));
+        }
+    }
     let all = || {
         let populations = populations.iter();
         let populations =
@@ -361,11 +367,28 @@ impl Campaign<'_> {
         })
     }
 
+    /// Compares what is learnt in each case of scenario G with its bound, if that is wanted.
+    fn bounds(&self, cases: &[PopulationCase]) -> anyhow::Result<Vec<BoundResult>> {
+        let mut results = Vec::new();
+        for population in Population::ALL {
+            let own = cases.iter().filter(|case| case.population == population);
+            let own: Vec<_> = own.collect();
+            if self.arguments.bound && population.scenario() == "G" && !own.is_empty() {
+                let priors = Priors::of(population, self.arguments.seed)?;
+                results.extend(self.map("bound", &own, |case| {
+                    let result = BoundResult::run(case, &priors);
+                    result.with_context(|| context(case, Way::AsItIs))
+                })?);
+            }
+        }
+        Ok(results)
+    }
+
     /// Statistics of the populations; a sample of each is run on the image.
     fn population_reports(
         &self,
         cases: &[PopulationCase],
-        results: &[PopulationResult],
+        (results, bounds): (&[PopulationResult], &[BoundResult]),
         image: Option<&dyn SceneRunner>,
     ) -> anyhow::Result<Vec<PopulationReport>> {
         let device = self.device_of_draws();
@@ -384,7 +407,11 @@ impl Campaign<'_> {
                 sample = Some(ImageSample { identical });
             }
             let engine = device.name();
-            reports.extend(PopulationReport::new(population, results, engine, sample));
+            let report = PopulationReport::new(population, results, engine, sample);
+            reports.extend(report.map(|report| PopulationReport {
+                bound: fidelity::bound_rows(population, bounds),
+                ..report
+            }));
         }
         Ok(reports)
     }

@@ -4,17 +4,17 @@ use contact_model::contact_law::ContactLaw;
 use contact_model::finger::COMPONENT_MEANS;
 use contact_model::material::{SKIN, Surface};
 use contact_model::pressure::pressure_pa;
-use contact_model::reference::mean_conductance;
+use contact_model::reference::conductance_at_hardness;
 use nalgebra::{SMatrix, SVector};
 
-use crate::ramps::{FORCES_N, LEGS, leg_at};
+use crate::ramps::{FORCES_N, RAMPS, ramp_at};
 use crate::recording::{Recording, RecordingError};
 use crate::thermal_signals::{EQUATION_S, Equation, PROPERTIES, equations};
 
 /// Unknowns: the logarithm of the spots' conductance at [`MIDDLE_N`], the exponent, the gap's conductance over
 /// [`GAP_UNIT_W_M2K`], and the properties of the finger.
 const UNKNOWNS: usize = 3 + PROPERTIES;
-const SPOTS: usize = 0;
+const LOG_SPOT_CONDUCTANCE: usize = 0;
 const EXPONENT: usize = 1;
 const GAP: usize = 2;
 
@@ -34,13 +34,13 @@ const PRIOR: [(f64, f64); PROPERTIES] = [
 const EXPONENT_PRIOR: (f64, f64) = (0.95, 0.05);
 /// Time after landing from which on samples count, s.
 const FROM_S: f64 = 0.1;
-/// Standard deviation of what the model leaves out just after landing, K, the time in which it grows by as much again, s, since
-/// deep tissue and blood are modelled worse than the epidermis, and the time over which it is one error, s.
-const MODEL_K: f64 = 0.02;
-const MODEL_GROWS_S: f64 = 5.0;
-const MODEL_S: f64 = 0.5;
-/// Least fall of the weighted sum of squares for which the gap is taken.
-const GAP_IS_TAKEN_FROM: f64 = 9.0;
+/// Error of the model: its standard deviation just after landing, K; the time in which that doubles, s, because deep tissue and
+/// blood are modelled worse than the epidermis; and the time over which its values are correlated, s.
+const MODEL_ERROR_K: f64 = 0.02;
+const MODEL_ERROR_DOUBLED_S: f64 = 5.0;
+const MODEL_ERROR_CORRELATION_S: f64 = 0.5;
+/// Least reduction of the weighted sum of squares for which the gap is kept.
+const GAP_CHI2_REDUCTION_MIN: f64 = 9.0;
 /// Largest number of iterations, and the relative fall of the sum of squares at which they end.
 const ITERATIONS_MAX: usize = 100;
 const CONVERGED: f64 = 1e-10;
@@ -69,8 +69,8 @@ pub struct Fit {
     pub exponent_interval: Interval,
     /// Interval of the gap's conductance, W/(m² K); zero if there is none.
     pub gap_interval_w_m2k: Interval,
-    /// By how much the gap lets the weighted sum of squares fall; it is taken from 9 on.
-    pub fall_by_gap: f64,
+    /// Weighted sum of squares without a gap less that with one. The gap is kept if this is more than 9.
+    pub chi2_reduction_by_gap: f64,
     /// Root of the mean square of what is left, K.
     pub residual_k: f64,
 }
@@ -87,13 +87,13 @@ struct Solution {
     squares: f64,
 }
 
-/// Conductance of the spots under a force over that at [`MIDDLE_N`], as a logarithm, per unit of exponent.
+/// `ln(P / P_middle)`: natural logarithm of the pressure under a force over that under [`MIDDLE_N`].
 fn log_pressure(force_n: f64) -> f64 {
     (pressure_pa(force_n) / pressure_pa(MIDDLE_N)).ln()
 }
 
 fn conductance_w_m2k(unknowns: &Unknowns, log_pressure: f64) -> (f64, f64) {
-    let spots = (unknowns[SPOTS] + unknowns[EXPONENT] * log_pressure).exp();
+    let spots = (unknowns[LOG_SPOT_CONDUCTANCE] + unknowns[EXPONENT] * log_pressure).exp();
     (spots, GAP_UNIT_W_M2K * unknowns[GAP])
 }
 
@@ -105,9 +105,9 @@ fn resistance_m2k_w(unknowns: &Unknowns, force_n: f64) -> f64 {
 impl Problem {
     fn new(recording: &Recording) -> Self {
         let counted = equations(recording).into_iter().filter_map(|equation| {
-            let leg = leg_at(equation.since_s)?;
+            let ramp = ramp_at(equation.since_s)?;
             (equation.since_s >= FROM_S)
-                .then(|| (equation, leg, log_pressure(equation.log_force.exp())))
+                .then(|| (equation, ramp, log_pressure(equation.log_force.exp())))
         });
         Self {
             equations: counted.collect(),
@@ -118,16 +118,16 @@ impl Problem {
     fn normal(
         &self,
         unknowns: &Unknowns,
-        times: &[f64; LEGS],
+        times: &[f64; RAMPS],
     ) -> (SMatrix<f64, UNKNOWNS, UNKNOWNS>, Unknowns, f64) {
         let mut matrix = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
         let (mut gradient, mut squares) = (Unknowns::zeros(), 0.0);
-        for (equation, leg, log_pressure) in &self.equations {
+        for (equation, ramp, log_pressure) in &self.equations {
             let (spots, gap) = conductance_w_m2k(unknowns, *log_pressure);
             let resistance = 1.0 / (spots + gap);
             let per_spots = resistance * resistance * equation.flux_w_m2;
             let mut slopes = Unknowns::zeros();
-            slopes[SPOTS] = per_spots * spots;
+            slopes[LOG_SPOT_CONDUCTANCE] = per_spots * spots;
             slopes[EXPONENT] = per_spots * spots * log_pressure;
             slopes[GAP] = per_spots * GAP_UNIT_W_M2K;
             let mut left = equation.difference_k - resistance * equation.flux_w_m2;
@@ -135,8 +135,9 @@ impl Problem {
                 slopes[3 + of] = *slope;
                 left += slope * unknowns[3 + of];
             }
-            let model_k = MODEL_K * (1.0 + equation.since_s / MODEL_GROWS_S);
-            let weight = times[*leg] * EQUATION_S / MODEL_S / (model_k * model_k);
+            let model_k = MODEL_ERROR_K * (1.0 + equation.since_s / MODEL_ERROR_DOUBLED_S);
+            let weight =
+                times[*ramp] * EQUATION_S / MODEL_ERROR_CORRELATION_S / (model_k * model_k);
             squares += weight * left * left;
             matrix.syger(weight, &slopes, &slopes, 1.0);
             gradient.axpy(weight * left, &slopes, 1.0);
@@ -156,7 +157,7 @@ impl Problem {
     }
 
     /// The unknowns of the least sum of squares, by Gauss's and Newton's method with the damping of Levenberg and Marquardt.
-    fn solve(&self, start: &Unknowns, times: &[f64; LEGS], has_gap: bool) -> Solution {
+    fn solve(&self, start: &Unknowns, times: &[f64; RAMPS], has_gap: bool) -> Solution {
         let mut unknowns = *start;
         let (mut matrix, mut gradient, mut squares) = self.normal(&unknowns, times);
         let mut damping = 1e-3;
@@ -211,16 +212,16 @@ impl Problem {
 }
 
 /// How often each of the ramps counts in each resample of four out of four, and how likely the resample is.
-fn resamples() -> impl Iterator<Item = ([f64; LEGS], f64)> {
+fn resamples() -> impl Iterator<Item = ([f64; RAMPS], f64)> {
     let factorial = |n: usize| (1..=n).product::<usize>() as f64;
-    (0..(LEGS + 1).pow(LEGS as u32)).filter_map(move |code| {
-        let times: [usize; LEGS] =
-            std::array::from_fn(|leg| code / (LEGS + 1).pow(leg as u32) % (LEGS + 1));
-        (times.iter().sum::<usize>() == LEGS).then(|| {
-            let ways = factorial(LEGS) / times.iter().map(|n| factorial(*n)).product::<f64>();
+    (0..(RAMPS + 1).pow(RAMPS as u32)).filter_map(move |code| {
+        let times: [usize; RAMPS] =
+            std::array::from_fn(|ramp| code / (RAMPS + 1).pow(ramp as u32) % (RAMPS + 1));
+        (times.iter().sum::<usize>() == RAMPS).then(|| {
+            let ways = factorial(RAMPS) / times.iter().map(|n| factorial(*n)).product::<f64>();
             (
                 times.map(|n| n as f64),
-                ways / (LEGS as f64).powi(LEGS as i32),
+                ways / (RAMPS as f64).powi(RAMPS as i32),
             )
         })
     })
@@ -229,12 +230,12 @@ fn resamples() -> impl Iterator<Item = ([f64; LEGS], f64)> {
 /// Mean and standard deviation of weighted values become an interval around the fitted one.
 fn interval(fitted: f64, values: impl Iterator<Item = (f64, f64)> + Clone) -> Interval {
     /// Two-sided 95 % of Student's t with three degrees of freedom, and the loss of one of four by the mean.
-    const SPREADS: f64 = 3.182 * 1.1547;
+    const HALF_WIDTH_PER_DEVIATION: f64 = 3.182 * 1.1547;
     let mean: f64 = values.clone().map(|(value, weight)| weight * value).sum();
     let variance: f64 = values
         .map(|(value, weight)| weight * (value - mean).powi(2))
         .sum();
-    let half = SPREADS * variance.sqrt();
+    let half = HALF_WIDTH_PER_DEVIATION * variance.sqrt();
     Interval {
         low: fitted - half,
         high: fitted + half,
@@ -242,8 +243,8 @@ fn interval(fitted: f64, values: impl Iterator<Item = (f64, f64)> + Clone) -> In
 }
 
 /// Mean conductance of the thesis's skin on a surface, W/(m² K).
-fn mean_w_m2k(display: &Surface) -> f64 {
-    mean_conductance::<f64>(&SKIN.surface, display)
+fn at_hardness_w_m2k(display: &Surface) -> f64 {
+    conductance_at_hardness::<f64>(&SKIN.surface, display)
 }
 
 /// Fits contact law and tissue of one finger to a recording.
@@ -253,19 +254,19 @@ fn mean_w_m2k(display: &Surface) -> f64 {
 pub fn fit(recording: &Recording) -> Result<Fit, RecordingError> {
     recording.check()?;
     let problem = Problem::new(recording);
-    let mean_w_m2k = mean_w_m2k(&recording.display);
+    let at_hardness_w_m2k = at_hardness_w_m2k(&recording.display);
     let nominal = ContactLaw::NOMINAL;
-    let middle = nominal.conductance_w_m2k(mean_w_m2k, pressure_pa(MIDDLE_N));
+    let middle = nominal.conductance_w_m2k(at_hardness_w_m2k, pressure_pa(MIDDLE_N));
     let mut start = Unknowns::zeros();
-    (start[SPOTS], start[EXPONENT]) = (middle.ln(), nominal.exponent);
+    (start[LOG_SPOT_CONDUCTANCE], start[EXPONENT]) = (middle.ln(), nominal.exponent);
     for (of, (mean, _)) in PRIOR.iter().enumerate() {
         start[3 + of] = *mean;
     }
-    let once = [1.0; LEGS];
+    let once = [1.0; RAMPS];
     let without = problem.solve(&start, &once, false);
     let with = problem.solve(&without.unknowns, &once, true);
-    let fall_by_gap = without.squares - with.squares;
-    let has_gap = fall_by_gap > GAP_IS_TAKEN_FROM;
+    let chi2_reduction_by_gap = without.squares - with.squares;
+    let has_gap = chi2_reduction_by_gap > GAP_CHI2_REDUCTION_MIN;
     let best = if has_gap { with } else { without }.unknowns;
 
     let again: Vec<(Unknowns, f64)> = resamples()
@@ -287,7 +288,7 @@ pub fn fit(recording: &Recording) -> Result<Fit, RecordingError> {
     };
     let exponent = best[EXPONENT];
     // The microhardness at which the spots have their conductance at the middle force.
-    let relative = (best[SPOTS].exp() / mean_w_m2k).powf(1.0 / exponent);
+    let relative = (best[LOG_SPOT_CONDUCTANCE].exp() / at_hardness_w_m2k).powf(1.0 / exponent);
     let gap_interval = of(&|unknowns| GAP_UNIT_W_M2K * unknowns[GAP]);
     Ok(Fit {
         law: ContactLaw {
@@ -302,7 +303,7 @@ pub fn fit(recording: &Recording) -> Result<Fit, RecordingError> {
             low: gap_interval.low.max(0.0),
             ..gap_interval
         },
-        fall_by_gap,
+        chi2_reduction_by_gap,
         residual_k: problem.residual_k(&best),
     })
 }

@@ -4,9 +4,9 @@ use std::cell::Cell;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use contact_model::material::Surface;
 use thermal_client::client::{
-    Client, ClientError, PlainCommand, QueryFlux, QueryState, ReceivedTelemetry,
+    Client, ClientError, PlainCommand, QueryDisplaySurface, QueryFlux, QueryState,
+    ReceivedTelemetry,
 };
 use thermal_client::commissioning::{CommissionError, arm};
 use thermal_client::link::{Link, LinkError};
@@ -14,8 +14,8 @@ use thermal_device::events::DeviceEventKind;
 use thermal_device::learning::FingerKnowledge;
 use thermal_device::{StateName, TelemetryFields};
 
-use crate::following::{Following, FollowingError};
-use crate::ramps::{RAMPS_S, force_n};
+use crate::force_tracking::{ForceTracking, ForceTrackingError};
+use crate::ramps::{TOTAL_S, force_n};
 use crate::recording::{Recording, RecordingError, STEP_S, Sample};
 
 /// Temperature at which the display is held, °C.
@@ -28,13 +28,12 @@ const FIELDS: [&str; 6] = ["skin", "room", "force", "flux", "surface", "finger"]
 const LINE_TIMEOUT: Duration = Duration::from_millis(500);
 /// Longest time in which the finger must be lifted, and the display reach its temperature.
 const WAIT_MAX: Duration = Duration::from_secs(120);
-/// Force below which a finger counts as lifted, N, and for how many lines.
-const LIFTED_N: f64 = 0.01;
+/// For how many lines the finger must be lifted.
 const LIFTED_LINES: u32 = 100;
 /// Distance of the display's surface from the held temperature within which it is there, K, and for how many lines.
 const SETTLED_K: f64 = 0.1;
 const SETTLED_LINES: u32 = 100;
-/// Longest time in which the finger must land: the skin may have to recover for minutes.
+/// Longest time until the finger must land. It is long because the skin may have to recover for minutes first.
 const REST_MAX: Duration = Duration::from_secs(900);
 /// Lines that are kept until the landing: the skin's and the room's temperature are means over those before it.
 const RECENT_LINES: usize = 100;
@@ -66,20 +65,18 @@ impl Step {
         match self {
             Self::Lift | Self::Wait(_) | Self::End => 0.0,
             Self::Land => force_n(0.0).unwrap_or(0.0),
-            Self::Follow { since_s, .. } => force_n(since_s.min(RAMPS_S)).unwrap_or(0.0),
+            Self::Follow { since_s, .. } => force_n(since_s.min(TOTAL_S)).unwrap_or(0.0),
         }
     }
 }
 
 /// How a contact law is measured.
 #[derive(Clone, Copy, Debug)]
-pub struct Order {
+pub struct MeasurementOptions {
     /// The finger of a device with several.
     pub finger: Option<u8>,
     /// Whether the heat-flux sensor's zero is taken before.
     pub takes_zero: bool,
-    /// Surface of the display.
-    pub display: Surface,
 }
 
 /// A recording, and how well the force followed the ramps.
@@ -88,7 +85,7 @@ pub struct Measurement {
     /// The recording.
     pub recording: Recording,
     /// How well the force followed.
-    pub following: Following,
+    pub force_tracking: ForceTracking,
 }
 
 /// Why there is no recording. The bridge is off, unless the link is gone.
@@ -137,7 +134,7 @@ pub enum MeasurementError {
         since_s: f64,
     },
     /// The finger has lifted.
-    #[error("the finger has lifted {since_s:.2} s after landing; the ramps take {RAMPS_S} s")]
+    #[error("the finger has lifted {since_s:.2} s after landing; the ramps take {TOTAL_S} s")]
     Lifted {
         /// Time since landing, s.
         since_s: f64,
@@ -152,7 +149,7 @@ pub enum MeasurementError {
     },
     /// The force did not follow the ramps.
     #[error(transparent)]
-    NotFollowed(#[from] FollowingError),
+    NotFollowed(#[from] ForceTrackingError),
     /// The recording does not pass its check.
     #[error(transparent)]
     Recording(#[from] RecordingError),
@@ -172,26 +169,27 @@ impl From<LinkError> for MeasurementError {
 /// the force did not follow.
 pub fn measure<L: Link>(
     client: &mut Client<L>,
-    order: &Order,
+    options: &MeasurementOptions,
     guide: &mut dyn FnMut(&mut Client<L>, &Step),
 ) -> Result<Measurement, MeasurementError> {
     let recorded = Session {
         client,
-        finger: order.finger,
+        finger: options.finger,
         guide,
         recent: VecDeque::new(),
     }
-    .record(order);
+    .record(options);
     // Also after a failure: the bridge may be driven.
-    let off = client.ask_finger(order.finger, &PlainCommand::Abort);
-    let quiet = client.ask_finger(order.finger, &PlainCommand::stream(0));
+    let off = client.ask_finger(options.finger, &PlainCommand::Abort);
+    let no_stream = client.ask_finger(options.finger, &PlainCommand::stream(0));
+    let no_events = client.ask_finger(options.finger, &PlainCommand::Events(false));
     let recording = recorded?;
-    off.and(quiet)?;
+    off.and(no_stream).and(no_events)?;
     recording.check()?;
-    let following = Following::of(&recording)?;
+    let force_tracking = ForceTracking::of(&recording)?;
     Ok(Measurement {
         recording,
-        following,
+        force_tracking,
     })
 }
 
@@ -204,7 +202,7 @@ struct Session<'a, L> {
 }
 
 impl<L: Link> Session<'_, L> {
-    fn record(&mut self, order: &Order) -> Result<Recording, MeasurementError> {
+    fn record(&mut self, options: &MeasurementOptions) -> Result<Recording, MeasurementError> {
         let finger = self.finger;
         let sensor = self.client.ask_finger(finger, &QueryFlux);
         let sensor = match sensor {
@@ -213,6 +211,7 @@ impl<L: Link> Session<'_, L> {
             answer => answer?,
         };
         let sensor = sensor.ok_or(MeasurementError::NoSensor)?;
+        let display = self.client.ask_finger(finger, &QueryDisplaySurface)?;
         let state = self.client.ask_finger(finger, &QueryState)?.state;
         if let Some(fault) = state.fault() {
             return Err(MeasurementError::Tripped(fault.name()));
@@ -225,7 +224,7 @@ impl<L: Link> Session<'_, L> {
         self.client
             .ask_finger(finger, &PlainCommand::Events(true))?;
         self.wait_for_lifting()?;
-        if order.takes_zero {
+        if options.takes_zero {
             self.client.ask_finger(finger, &PlainCommand::FluxZero)?;
         }
         arm(self.client, finger)?;
@@ -236,7 +235,7 @@ impl<L: Link> Session<'_, L> {
         Ok(Recording {
             skin_c,
             room_c,
-            display: order.display,
+            display: *display.surface(),
             layer_m2k_w: 1e-6 * sensor.resistance_mm2k_w,
             samples,
         })
@@ -290,7 +289,8 @@ impl<L: Link> Session<'_, L> {
                 if line.telemetry.finger == Some(FingerKnowledge::SensorFault) {
                     return Err(MeasurementError::SensorFault(None));
                 }
-                lifted = if is_lifted(line) { lifted + 1 } else { 0 };
+                let is_lifted = line.telemetry.is_lifted() == Some(true);
+                lifted = if is_lifted { lifted + 1 } else { 0 };
                 Ok(lifted >= LIFTED_LINES)
             },
         )
@@ -308,7 +308,8 @@ impl<L: Link> Session<'_, L> {
             |_, line| {
                 surface_c.set(line.telemetry.surface_c);
                 let is_there = (surface_c.get()).is_some_and(|c| (c - HELD_C).abs() < SETTLED_K);
-                settled = if is_there && is_lifted(line) {
+                let is_lifted = line.telemetry.is_lifted() == Some(true);
+                settled = if is_there && is_lifted {
                     settled + 1
                 } else {
                     0
@@ -371,7 +372,7 @@ impl<L: Link> Session<'_, L> {
             if since_s <= 0.0 {
                 continue;
             }
-            if since_s > RAMPS_S {
+            if since_s > TOTAL_S {
                 (self.guide)(self.client, &Step::End);
                 return Ok((temperatures_c, samples));
             }
@@ -393,10 +394,6 @@ impl<L: Link> Session<'_, L> {
         }
         None
     }
-}
-
-fn is_lifted(line: &ReceivedTelemetry) -> bool {
-    (line.telemetry.force_n).is_some_and(|force_n| force_n < LIFTED_N)
 }
 
 /// The sample of a line.

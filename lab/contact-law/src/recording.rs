@@ -16,7 +16,7 @@ pub struct Sample {
     pub since_s: f64,
     /// Heat flux out of the skin, W/m².
     pub flux_w_m2: f64,
-    /// Temperature of the display's face under the heat-flux sensor, °C.
+    /// The tile's face below the heat-flux sensor, °C, as the device estimates it.
     pub surface_c: f64,
     /// Force, N.
     pub force_n: f64,
@@ -73,7 +73,7 @@ impl Recording {
     /// # Errors
     /// It is too short, samples are missing, or a value is not finite or out of its range.
     pub fn check(&self) -> Result<(), RecordingError> {
-        let is_degree = |value: f64| (-40.0..=125.0).contains(&value);
+        let is_plausible_c = |value: f64| (-40.0..=125.0).contains(&value);
         let mut before_s: Option<f64> = None;
         for sample in &self.samples {
             let &Sample {
@@ -102,7 +102,7 @@ impl Recording {
             if !(-1e5..=1e5).contains(&flux_w_m2) {
                 return value("the flux, W/m2,", flux_w_m2, "-1e5 to 1e5");
             }
-            if !is_degree(surface_c) {
+            if !is_plausible_c(surface_c) {
                 return value("the display's surface, C,", surface_c, "-40 to 125");
             }
             if !(0.003..=20.0).contains(&force_n) {
@@ -110,7 +110,7 @@ impl Recording {
             }
         }
         for (what, value) in [("the skin, C,", self.skin_c), ("the room, C,", self.room_c)] {
-            if !is_degree(value) {
+            if !is_plausible_c(value) {
                 return Err(RecordingError::Value {
                     what,
                     value,

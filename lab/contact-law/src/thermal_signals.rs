@@ -5,8 +5,8 @@ use contact_model::impedance::Relaxation;
 
 use crate::recording::{Recording, STEP_S, Sample};
 
-/// One sample as an equation: the temperature difference across the contact, K, were the finger the mean one, and by how much
-/// it is larger per unit of each property in which the finger differs.
+/// One or several samples as an equation: temperature difference across the contact, K, for the mean finger, and its change per
+/// unit of each property of the finger.
 #[derive(Clone, Copy, Debug)]
 pub struct Equation {
     /// Difference under the mean finger, K.
@@ -24,8 +24,8 @@ pub struct Equation {
 
 /// Number of properties of the finger.
 pub const PROPERTIES: usize = 4;
-/// Samples that make one equation, 0.1 s: the noise of a single flux times the resistance, which is itself unknown, would make
-/// a small resistance look better.
+/// Samples whose mean is one equation, 0.1 s. Single samples would bias the fit: the noise of the flux is multiplied by the
+/// resistance, so that a smaller resistance leaves smaller errors.
 const SAMPLES_PER_EQUATION: usize = 10;
 /// Time of one equation, s.
 pub const EQUATION_S: f64 = SAMPLES_PER_EQUATION as f64 * STEP_S;
@@ -46,7 +46,7 @@ impl Equation {
     }
 }
 
-/// A relaxation driven by a flux that is linear between samples.
+/// The relaxations of the mean finger, driven by a flux that is linear between samples.
 struct Bank {
     states: Vec<f64>,
     flux_w_m2: f64,

@@ -5,8 +5,12 @@ mod deviations;
 use std::path::Path;
 use std::time::Duration;
 
-use contact_law_fit::{Measurement, MeasurementError, Order, Step, fit, force_n, measure};
-use contact_model::material::REFERENCE_DISPLAY;
+use contact_law_fit::{
+    FORCES_N, Measurement, MeasurementError, MeasurementOptions, Step, fit, force_n, measure,
+};
+use contact_model::material::SKIN;
+use contact_model::pressure::pressure_pa;
+use contact_model::reference::conductance_at_hardness;
 use thermal_client::client::{Client, QueryState};
 use thermal_device::StateName;
 use thermal_plant::Params;
@@ -20,10 +24,9 @@ use deviations::{Deviations, Exact};
 
 type Device<'a> = Client<SimulatedLink<'a, NativeEngine>>;
 
-const ORDER: Order = Order {
+const OPTIONS: MeasurementOptions = MeasurementOptions {
     finger: None,
     takes_zero: false,
-    display: REFERENCE_DISPLAY,
 };
 
 /// Fingers of each kind.
@@ -90,19 +93,19 @@ fn assert_measured(kind: &str, keys: &str, has_gap: bool) {
     for seed in 0..FINGERS {
         let scene = scene(seed, keys);
         let (measured, state) = with_device(&scene, |client| {
-            let measured = measure(client, &ORDER, &mut |client, step| {
+            let measured = measure(client, &OPTIONS, &mut |client, step| {
                 press(client, persons_force_n(step));
             });
             (measured, client.ask(&QueryState).expect("a state").state)
         });
         let Measurement {
             recording,
-            following,
+            force_tracking,
         } = measured.expect("a recording");
         assert_eq!(state, StateName::Ready);
         // 0.2 s of a ramp of ln 20 in 4 s and in 6 s, and the trembling, are 13 %.
-        let percent = following.deviation_percent;
-        assert!((10.0..16.0).contains(&percent), "{following:?}");
+        let percent = force_tracking.deviation_percent;
+        assert!((10.0..16.0).contains(&percent), "{force_tracking:?}");
         let fit = fit(&recording).expect("a fit");
         deviations.add(&fit, &Exact::of(&scene.params));
     }
@@ -119,15 +122,37 @@ fn fingers_with_a_gap_are_measured_at_a_device() {
     assert_measured("gap", "", true);
 }
 
+/// A display of glazed ceramic, of which the device was told: the law must give the plant's resistance on that surface.
+#[test]
+fn law_is_relative_to_the_surface_that_the_device_was_told_of() {
+    let glazed = "contact.gap_w_m2k = 0.0\ndisplay.conductivity_w_mk = 1.0\ndisplay.roughness_um = 1.0\ndisplay.slope_rad = 0.138\n";
+    let scene = scene(0, glazed);
+    let recording = with_device(&scene, |client| {
+        client.command("surface set 1 1 0.138").expect("a surface");
+        let measured = measure(client, &OPTIONS, &mut |client, step| {
+            press(client, persons_force_n(step));
+        });
+        measured.expect("a recording").recording
+    });
+    let law = fit(&recording).expect("a fit").law;
+    let plant = &scene.params;
+    let at_hardness = conductance_at_hardness::<f64>(&SKIN.surface, &plant.display);
+    for (force_n, exact) in FORCES_N.iter().zip(Exact::of(plant).resistances_m2k_w) {
+        let told = 1.0 / law.conductance_w_m2k(at_hardness, pressure_pa(*force_n));
+        let percent = 100.0 * (told / exact - 1.0);
+        assert!(percent.abs() < 6.0, "{force_n} N: {percent} %");
+    }
+}
+
 /// What a measurement with this finger ends in; the bridge must be off then.
 #[track_caller]
 fn refused(
-    order: &Order,
+    options: &MeasurementOptions,
     scene: &Scene,
     mut finger: impl FnMut(&mut Device<'_>, &Step),
 ) -> MeasurementError {
     with_device(scene, |client| {
-        let refused = measure(client, order, &mut finger).expect_err("refused");
+        let refused = measure(client, options, &mut finger).expect_err("refused");
         let state = client.ask(&QueryState).expect("a state").state;
         let is_off = matches!(
             state,
@@ -141,7 +166,7 @@ fn refused(
 #[test]
 fn a_finger_that_lifts_or_does_not_follow_is_told_and_the_bridge_is_off() {
     let scene = scene(0, "");
-    let error = refused(&ORDER, &scene, |client, step| {
+    let error = refused(&OPTIONS, &scene, |client, step| {
         let lifted = since_landing_s(step) > 3.0;
         press(client, if lifted { 0.0 } else { persons_force_n(step) });
     });
@@ -149,7 +174,7 @@ fn a_finger_that_lifts_or_does_not_follow_is_told_and_the_bridge_is_off() {
         panic!("{error}");
     };
     assert!((3.0..3.2).contains(&since_s), "{since_s} s");
-    let error = refused(&ORDER, &scene, |client, step| {
+    let error = refused(&OPTIONS, &scene, |client, step| {
         press(client, persons_force_n(step).min(0.5));
     });
     let text = error.to_string();
@@ -158,14 +183,14 @@ fn a_finger_that_lifts_or_does_not_follow_is_told_and_the_bridge_is_off() {
         " N; it must go below 0.2 and above 1 N",
     );
     assert!(text.starts_with(start) && text.ends_with(end), "{text}");
-    let error = refused(&ORDER, &scene, |client, step| {
+    let error = refused(&OPTIONS, &scene, |client, step| {
         let target_n = persons_force_n(step);
         press(client, if target_n < 0.18 { target_n } else { 2.0 });
     });
     let text = error.to_string();
     assert!(text.contains("typically off its target by"), "{text}");
     let mut swallowed = false;
-    let error = refused(&ORDER, &scene, |client, step| {
+    let error = refused(&OPTIONS, &scene, |client, step| {
         press(client, persons_force_n(step));
         if since_landing_s(step) > 3.0 && !swallowed {
             swallowed = true;
@@ -179,12 +204,12 @@ fn a_finger_that_lifts_or_does_not_follow_is_told_and_the_bridge_is_off() {
         text.starts_with("the sample 3.0") && text.ends_with(end),
         "{text}"
     );
-    let pressed = refused(&ORDER, &scene, |client, _| press(client, 1.0));
+    let pressed = refused(&OPTIONS, &scene, |client, _| press(client, 1.0));
     assert_eq!(
         pressed.to_string(),
         "the finger was not lifted within 120 s"
     );
-    let absent = refused(&ORDER, &scene, |client, _| press(client, 0.0));
+    let absent = refused(&OPTIONS, &scene, |client, _| press(client, 0.0));
     assert_eq!(absent.to_string(), "the finger did not land within 900 s");
 }
 
@@ -192,12 +217,12 @@ fn a_finger_that_lifts_or_does_not_follow_is_told_and_the_bridge_is_off() {
 fn a_device_that_trips_is_told_at_any_time() {
     let scene = scene(0, "");
     let tripped = MeasurementError::Tripped("emergency-stop");
-    let error = refused(&ORDER, &scene, |client, step| match step {
+    let error = refused(&OPTIONS, &scene, |client, step| match step {
         Step::Wait(_) => stop(client),
         step => press(client, persons_force_n(step)),
     });
     assert_eq!(error, tripped);
-    let error = refused(&ORDER, &scene, |client, step| {
+    let error = refused(&OPTIONS, &scene, |client, step| {
         if since_landing_s(step) > 5.0 {
             stop(client);
         } else {
@@ -218,11 +243,11 @@ fn a_device_without_a_sound_sensor_is_told() {
         ..with
     };
     let follow = |client: &mut Device<'_>, step: &Step| press(client, persons_force_n(step));
-    let error = refused(&ORDER, &scene, follow);
+    let error = refused(&OPTIONS, &scene, follow);
     assert_eq!(error, MeasurementError::NoSensor);
     let error = with_device(&scene, |client| {
         client.command("flux set 0.1192 2048 5 30").expect("ok");
-        measure(client, &ORDER, &mut { follow })
+        measure(client, &OPTIONS, &mut { follow })
     });
     assert_eq!(error, Err(MeasurementError::SensorFault(None)));
 }

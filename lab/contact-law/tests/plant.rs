@@ -2,10 +2,10 @@
 
 mod deviations;
 
-use contact_law_fit::{FORCES_N, RAMPS_S, Recording, Sample, fit, force_n};
+use contact_law_fit::{FORCES_N, Recording, Sample, TOTAL_S, fit, force_n};
 use contact_model::material::{SKIN, find};
 use contact_model::pressure::pressure_pa;
-use contact_model::reference::mean_conductance;
+use contact_model::reference::conductance_at_hardness;
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::finger::FingerParams;
 use thermal_plant::object::ObjectConfig;
@@ -43,7 +43,7 @@ fn record(params: &Params, seed: u64) -> Recording {
         object: ObjectConfig::half_space(*find("granite").expect("a material"), 24.0),
         start_s: 0.0,
         appears_s: 1000.0,
-        duration_s: RAMPS_S,
+        duration_s: TOTAL_S,
         seed,
         params: params.clone(),
     };
@@ -51,7 +51,7 @@ fn record(params: &Params, seed: u64) -> Recording {
     plant.connect_supply();
     let mut samples = Vec::new();
     let mut integral = 0.0;
-    for step in 0..(RAMPS_S / STEP_S) as usize {
+    for step in 0..(TOTAL_S / STEP_S) as usize {
         let since_s = step as f64 * STEP_S;
         let force = force_n(since_s).expect("a ramp");
         plant.set_force(force);
@@ -90,9 +90,9 @@ fn assert_fits(kind: &str, sensor: fn(FluxParams) -> FluxParams, has_gap: bool, 
         let params = params(seed, sensor, has_gap);
         let fit = fit(&record(&params, seed)).expect("a good recording");
         // The law that a device is told has the resistances that are reported.
-        let mean_w_m2k = mean_conductance::<f64>(&SKIN.surface, &params.display);
+        let at_hardness_w_m2k = conductance_at_hardness::<f64>(&SKIN.surface, &params.display);
         for (force_n, fitted) in FORCES_N.iter().zip(fit.resistances_m2k_w) {
-            let told_w_m2k = (fit.law).conductance_w_m2k(mean_w_m2k, pressure_pa(*force_n));
+            let told_w_m2k = (fit.law).conductance_w_m2k(at_hardness_w_m2k, pressure_pa(*force_n));
             assert!((fitted * told_w_m2k - 1.0).abs() < 1e-9);
         }
         deviations.add(&fit, &Exact::of(&params));

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use thermal_client::client::Client;
 use thermal_client::commissioning::{
-    BenchRequest, CommissioningEvent, Part, Surroundings, SurroundingsError, SurroundingsRequest,
+    BenchRequest, CommissioningEvent, Part, PhantomPlace, Surroundings, SurroundingsError,
+    SurroundingsRequest,
 };
 use thermal_client::link::Link;
 use thermal_device::safety::ThermistorId;
@@ -126,6 +127,16 @@ impl<L: AskSurroundings + Link> Surroundings<L> for EmulatedBench<'_> {
         bath_c: f64,
     ) -> Result<(), SurroundingsError> {
         let request = SurroundingsRequest::Bath(thermistor, bath_c);
+        let answer = client.link().ask_surroundings(&request);
+        answer.map(drop).map_err(SurroundingsError::Failed)
+    }
+
+    fn move_phantom(
+        &mut self,
+        client: &mut Client<L>,
+        place: PhantomPlace,
+    ) -> Result<(), SurroundingsError> {
+        let request = SurroundingsRequest::Phantom(place);
         let answer = client.link().ask_surroundings(&request);
         answer.map(drop).map_err(SurroundingsError::Failed)
     }

@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use thermal_client::client::Client;
-use thermal_client::commissioning::{CommissioningEvent, Surroundings, SurroundingsError};
+use thermal_client::commissioning::{
+    CommissioningEvent, PhantomPlace, Surroundings, SurroundingsError,
+};
 use thermal_client::link::Link;
 use thermal_device::safety::ThermistorId;
 
@@ -11,7 +13,7 @@ use super::bench::{Bench, BenchError, Measurement};
 use super::check::{ManualStep, Stage};
 use super::report::Record;
 use super::unit::Unit;
-use crate::person::Person;
+use crate::bench_operator::BenchOperator;
 
 /// Interval at which the device is looked at while the person turns a resistor.
 const TURN_LOOK: Duration = Duration::from_millis(50);
@@ -21,12 +23,12 @@ const SAME: f64 = 0.02;
 /// A person who is told what to do, and types what instruments show. Every answer may be `?`, which explains, or `abort`,
 /// which ends the procedure with the bridge off.
 pub struct Terminal<'a> {
-    person: Person<'a>,
+    person: BenchOperator<'a>,
 }
 
 impl<'a> Terminal<'a> {
     /// The bench of this person.
-    pub const fn new(person: Person<'a>) -> Self {
+    pub const fn new(person: BenchOperator<'a>) -> Self {
         Self { person }
     }
 
@@ -205,6 +207,14 @@ impl<L: Link> Surroundings<L> for Terminal<'_> {
         bath_c: f64,
     ) -> Result<(), SurroundingsError> {
         self.person.put_into_bath(client, thermistor, bath_c)
+    }
+
+    fn move_phantom(
+        &mut self,
+        client: &mut Client<L>,
+        place: PhantomPlace,
+    ) -> Result<(), SurroundingsError> {
+        self.person.move_phantom(client, place)
     }
 
     fn reads_again(&mut self, why: &str) -> bool {

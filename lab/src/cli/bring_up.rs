@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use thermal_client::client::Client;
+use thermal_lab::bench_operator::{BenchOperator, lines};
 use thermal_lab::bring_up::{
     EmulatedBench, Report, STAGES, SimulatedBoard, Stage, Terminal, bring_up, page,
 };
 use thermal_lab::link::ServedLink;
-use thermal_lab::person::{Person, lines};
 use thermal_settings::CRC_32;
 use thermal_sim::board::{BROKEN_BOARDS, Board, BoardBench, LossyLine, SOUND};
 use thermal_sim::engine::NativeEngine;
@@ -194,7 +194,7 @@ fn by_a_person(
     saved: &mut dyn FnMut(&Report),
 ) -> Result<Report, Failure> {
     let mut screen = stderr();
-    let mut terminal = Terminal::new(Person::new(
+    let mut terminal = Terminal::new(BenchOperator::new(
         None,
         lines(BufReader::new(stdin())),
         &mut screen,

@@ -4,11 +4,17 @@ use std::io::{BufReader, Write, stderr, stdin};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
+use serde::Serialize;
 use thermal_client::client::{Client, PlainCommand};
-use thermal_client::commissioning::{CommissioningEvent, CommissioningRecord};
-use thermal_lab::commissioning::{clear_calibration, commission};
-use thermal_lab::link::{ServedLink, ServedOperator};
-use thermal_lab::person::{Person, WATCHED_STREAM_MS, lines};
+use thermal_client::commissioning::{
+    CommissionError, CommissioningEvent, CommissioningRecord, FluxCalibration, Surroundings,
+};
+use thermal_client::link::Link;
+use thermal_lab::bench_operator::{BenchOperator, WATCHED_STREAM_MS, lines};
+use thermal_lab::commissioning::{clear_calibration, commission, commission_flux_sensor};
+use thermal_lab::link::{ServedLink, ServedOperator, SimulatedLink};
+use thermal_settings::FluxSensor;
+use thermal_sim::commissioning::{SimulatedOperator, SimulatedSurroundings};
 use thermal_sim::engine::NativeEngine;
 
 use super::{Failure, Target, print};
@@ -22,9 +28,47 @@ pub struct Arguments {
     /// simulated there, and nobody is asked
     #[arg(long, value_name = "ADDR")]
     surroundings: Option<String>,
-    /// Print one JSON object: points, tile with margins, settings
+    /// Calibrate only the heat-flux sensor, with a phantom: of a device that is commissioned otherwise and was told of it
+    #[arg(long)]
+    only_flux_sensor: bool,
+    /// Print one JSON object: points, tile with margins, heat-flux sensor, settings
     #[arg(long)]
     json: bool,
+}
+
+/// What was found.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Record {
+    All(CommissioningRecord),
+    FluxSensor {
+        flux: FluxCalibration,
+        settings: Vec<String>,
+    },
+}
+
+impl Record {
+    fn settings(&self) -> &[String] {
+        match self {
+            Self::All(record) => &record.settings,
+            Self::FluxSensor { settings, .. } => settings,
+        }
+    }
+}
+
+impl Arguments {
+    /// Commissions the device, or its heat-flux sensor only.
+    fn commission<L: Link>(
+        &self,
+        client: &mut Client<L>,
+        surroundings: &mut dyn Surroundings<L>,
+    ) -> Result<Record, CommissionError> {
+        if self.only_flux_sensor {
+            let (flux, settings) = commission_flux_sensor(client, self.finger, surroundings)?;
+            return Ok(Record::FluxSensor { flux, settings });
+        }
+        commission(client, self.finger, surroundings).map(Record::All)
+    }
 }
 
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
@@ -35,38 +79,41 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
                 "--surroundings is for a device that is served at --tcp ADDR"
             )));
         }
-        _ if target.simulated => simulated(target)?,
+        _ if target.simulated && arguments.only_flux_sensor => {
+            return Err(Failure::input(anyhow!(
+                "--only-flux-sensor is for a device that is commissioned; that of --simulated is not"
+            )));
+        }
+        _ if target.simulated => simulated(target, arguments)?,
         _ => by_a_person(target, arguments)?,
     };
     if arguments.json {
         let text = serde_json::to_string(&record).map_err(Failure::run)?;
         return print(&text);
     }
-    print(&record.settings.join("\n"))
+    print(&record.settings().join("\n"))
 }
 
 /// On a device at a bench.
-fn by_a_person(target: &Target, arguments: &Arguments) -> Result<CommissioningRecord, Failure> {
+fn by_a_person(target: &Target, arguments: &Arguments) -> Result<Record, Failure> {
     let mut screen = stderr();
-    let mut person = Person::new(
+    let mut person = BenchOperator::new(
         arguments.finger,
         lines(BufReader::new(stdin())),
         &mut screen,
     );
     target.with_client(|client| {
-        clear_calibration(client, arguments.finger).map_err(Failure::run)?;
+        if !arguments.only_flux_sensor {
+            clear_calibration(client, arguments.finger).map_err(Failure::run)?;
+        }
         (client.ask_finger(arguments.finger, &PlainCommand::stream(WATCHED_STREAM_MS)))
             .map_err(Failure::run)?;
-        commission(client, arguments.finger, &mut person).map_err(Failure::run)
+        (arguments.commission(client, &mut person)).map_err(Failure::run)
     })
 }
 
 /// On a device that another program serves with its surroundings.
-fn served(
-    device: &str,
-    surroundings: &str,
-    arguments: &Arguments,
-) -> Result<CommissioningRecord, Failure> {
+fn served(device: &str, surroundings: &str, arguments: &Arguments) -> Result<Record, Failure> {
     let link = ServedLink::connect(device, surroundings)
         .with_context(|| format!("--tcp {device} --surroundings {surroundings}"))
         .map_err(Failure::input)?;
@@ -74,15 +121,23 @@ fn served(
     let mut operator = ServedOperator {
         watch: &mut print_event,
     };
-    commission(&mut client, arguments.finger, &mut operator).map_err(Failure::run)
+    (arguments.commission(&mut client, &mut operator)).map_err(Failure::run)
 }
 
-/// On a device that is simulated here.
-fn simulated(target: &Target) -> Result<CommissioningRecord, Failure> {
+/// On a device that is simulated here. It is told of the heat-flux sensor of its scene.
+fn simulated(target: &Target, arguments: &Arguments) -> Result<Record, Failure> {
     let setup = target.simulated_setup()?;
     let mut engine = NativeEngine::new(setup.in_use().map_err(Failure::input)?);
-    thermal_sim::commissioning::commission(&setup, &mut engine, &mut print_event)
-        .map_err(Failure::run)
+    let mut client = Client::new(SimulatedLink::new(&mut engine));
+    if setup.params().flux.is_some() {
+        let sensor = PlainCommand::FluxSensor(Some(FluxSensor::DESIGNED));
+        client.ask(&sensor).map_err(Failure::run)?;
+    }
+    let mut operator = SimulatedOperator {
+        surroundings: SimulatedSurroundings::new(&setup),
+        watch: &mut print_event,
+    };
+    (arguments.commission(&mut client, &mut operator)).map_err(Failure::run)
 }
 
 /// Prints an event on standard error, which may be closed.

@@ -3,26 +3,16 @@
 use std::fs;
 use std::io::stderr;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use clap::Args;
-use contact_law_fit::{Measurement, Order, Sample, Step, fit, force_n, measure};
-use contact_model::material::REFERENCE_DISPLAY;
+use contact_law_fit::{Measurement, MeasurementOptions, Sample, Step, fit, force_n, measure};
 use thermal_client::client::{Client, PlainCommand};
 use thermal_client::link::Link;
 use thermal_lab::contact::{Report, Screen};
 use thermal_settings::PersonCode;
-use thermal_sim::World;
-use thermal_sim::commissioning::settings_for_scene;
-use thermal_sim::engine::NativeEngine;
-use thermal_sim::scene::Scene;
-use thermal_sim::simulated_link::SimulatedLink;
 
 use super::{Failure, Target, enrol, print_text};
-
-/// Time after power-up before the first line to a simulated device.
-const START: Duration = Duration::from_millis(10);
 
 #[derive(Args)]
 pub struct Arguments {
@@ -47,35 +37,16 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let mut out = stderr();
     let mut screen = Screen::new(&mut out);
     if target.simulated {
-        return simulated(target, arguments, &mut screen);
+        // The simulated finger follows the ramps exactly.
+        return target.with_device_of_scene("contact", |client| {
+            at_device(client, arguments, &mut |client, step| {
+                screen.show(step);
+                let world = client.link().world();
+                world.set_force_and_faults(step.target_n(), std::iter::empty());
+            })
+        });
     }
     target.with_client(|client| at_device(client, arguments, &mut |_, step| screen.show(step)))
-}
-
-/// At a simulated device, whose finger follows the ramps exactly.
-fn simulated(
-    target: &Target,
-    arguments: &Arguments,
-    screen: &mut Screen<'_>,
-) -> Result<(), Failure> {
-    let Some(path) = &target.scene else {
-        return Err(Failure::input(anyhow!(
-            "contact --simulated needs --scene FILE, of a device with flux_sensor = true"
-        )));
-    };
-    let scene = Scene::read(path).map_err(Failure::input)?;
-    let settings = settings_for_scene(&scene).map_err(Failure::run)?;
-    let mut engine = NativeEngine::new(World::new(&scene).map_err(Failure::input)?);
-    let mut client = Client::new(SimulatedLink::new(&mut engine));
-    client.wait(START).map_err(Failure::run)?;
-    for line in &settings {
-        client.command(line).map_err(Failure::run)?;
-    }
-    at_device(&mut client, arguments, &mut |client, step| {
-        screen.show(step);
-        let world = client.link().world();
-        world.set_force_and_faults(step.target_n(), std::iter::empty());
-    })
 }
 
 fn at_device<L: Link>(
@@ -83,12 +54,11 @@ fn at_device<L: Link>(
     arguments: &Arguments,
     guide: &mut dyn FnMut(&mut Client<L>, &Step),
 ) -> Result<(), Failure> {
-    let order = Order {
+    let options = MeasurementOptions {
         finger: arguments.finger,
         takes_zero: arguments.zero,
-        display: REFERENCE_DISPLAY,
     };
-    let measurement = measure(client, &order, guide).map_err(Failure::run)?;
+    let measurement = measure(client, &options, guide).map_err(Failure::run)?;
     let path = match &arguments.out {
         Some(path) => path.clone(),
         None => format!("contact-{}", arguments.code).into(),

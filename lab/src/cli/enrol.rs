@@ -3,25 +3,18 @@
 use std::fs;
 use std::io::stderr;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
 use serde::{Deserialize, Serialize};
-use thermal_client::client::{Client, PlainCommand, QueryBoard, person_data, read_person_data};
+use thermal_client::client::{Client, PlainCommand, QueryBoard, QueryDisplaySurface, person_data};
 use thermal_client::link::Link;
-use thermal_lab::enrolment::{Order, Screen, Step, enrol};
+use thermal_lab::enrolment::{EnrolmentOptions, Screen, Step, enrol};
 use thermal_settings::{Person, PersonCode};
-use thermal_sim::World;
-use thermal_sim::commissioning::settings_for_scene;
-use thermal_sim::engine::NativeEngine;
-use thermal_sim::scene::Scene;
-use thermal_sim::simulated_link::SimulatedLink;
 
 use super::{Failure, Target, print_text};
 
-/// Time after power-up before the first line to a simulated device.
-const START: Duration = Duration::from_millis(10);
 /// Force of a simulated finger, N.
 const SIMULATED_N: f64 = 2.0;
 
@@ -67,6 +60,10 @@ struct PersonFile {
     device: Option<String>,
     #[serde(default)]
     objects: Vec<String>,
+    /// Surface of the display that the device was told of, as on the line `surface set`: the factor on the contact resistance was
+    /// learnt with it.
+    #[serde(default)]
+    display_surface: Option<String>,
 }
 
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
@@ -80,39 +77,20 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let mut out = stderr();
     let mut screen = Screen::new(&mut out);
     if target.simulated {
-        return simulated(target, arguments, &mut screen);
+        // The simulated finger does what is asked.
+        return target.with_device_of_scene("enrol", |client| {
+            at_device(client, arguments, &mut |client, step| {
+                screen.show(step);
+                let force_n = match step {
+                    Step::Rest(_) => 0.0,
+                    Step::Touch(_) | Step::Press(..) => SIMULATED_N,
+                };
+                let world = client.link().world();
+                world.set_force_and_faults(force_n, std::iter::empty());
+            })
+        });
     }
     target.with_client(|client| at_device(client, arguments, &mut |_, step| screen.show(step)))
-}
-
-/// At a simulated device, whose finger does what is asked.
-fn simulated(
-    target: &Target,
-    arguments: &Arguments,
-    screen: &mut Screen<'_>,
-) -> Result<(), Failure> {
-    let Some(path) = &target.scene else {
-        return Err(Failure::input(anyhow!(
-            "enrol --simulated needs --scene FILE, of a device with flux_sensor = true"
-        )));
-    };
-    let scene = Scene::read(path).map_err(Failure::input)?;
-    let settings = settings_for_scene(&scene).map_err(Failure::run)?;
-    let mut engine = NativeEngine::new(World::new(&scene).map_err(Failure::input)?);
-    let mut client = Client::new(SimulatedLink::new(&mut engine));
-    client.wait(START).map_err(Failure::run)?;
-    for line in &settings {
-        client.command(line).map_err(Failure::run)?;
-    }
-    at_device(&mut client, arguments, &mut |client, step| {
-        screen.show(step);
-        let force_n = match step {
-            Step::Rest(_) => 0.0,
-            Step::Touch(_) | Step::Press(..) => SIMULATED_N,
-        };
-        let world = client.link().world();
-        world.set_force_and_faults(force_n, std::iter::empty());
-    })
 }
 
 fn at_device<L: Link>(
@@ -136,24 +114,30 @@ fn at_device<L: Link>(
         }
         return Ok(());
     }
-    let order = Order {
+    let options = EnrolmentOptions {
         code,
         finger,
         takes_zero: arguments.zero,
         objects: arguments.objects.clone(),
     };
-    let report = enrol(client, &order, guide).map_err(Failure::run)?;
+    let report = enrol(client, &options, guide).map_err(Failure::run)?;
     let person = report.person.filter(|person| person.code == code);
     let person =
         person.ok_or_else(|| Failure::run(anyhow!("the device has enrolled somebody else")))?;
     let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
     let board = client.ask(&QueryBoard).ok();
+    let surface = client.ask_finger(finger, &QueryDisplaySurface);
+    let surface = *surface.map_err(Failure::run)?.surface();
     let file = PersonFile {
         code: code.to_string(),
         data: person_data(&person),
         enrolled_unix_s: since_1970.map_or(0, |time| time.as_secs()),
         device: board.and_then(|board| board.uid),
-        objects: order.objects,
+        objects: options.objects,
+        display_surface: Some(format!(
+            "{} {} {}",
+            surface.conductivity_w_mk, surface.roughness_um, surface.slope_rad
+        )),
     };
     let path = match &arguments.out {
         Some(path) => path.clone(),
@@ -182,7 +166,7 @@ fn read(path: &Path, code: PersonCode) -> anyhow::Result<Person> {
             file.code
         );
     }
-    let finger = read_person_data(&file.data).with_context(|| {
+    let finger = Person::read_finger(&file.data).with_context(|| {
         format!(
             "--restore {}: data {:?} is not 40 hexadecimal digits",
             path.display(),

@@ -8,7 +8,7 @@ use anyhow::{Context, anyhow};
 use clap::Args;
 use serde_json::json;
 use thermal_client::client::ClientError;
-use thermal_lab::person::lines;
+use thermal_lab::bench_operator::lines;
 
 use super::target::AnyClient;
 use super::{Failure, Target, print};

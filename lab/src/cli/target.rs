@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use anyhow::{Context, anyhow};
 use clap::Args;
@@ -10,7 +11,8 @@ use thermal_client::client::{Client, PlainCommand};
 use thermal_client::link::{Interruptible, Link};
 use thermal_lab::link::{self, LazyLink, SimulatedLink};
 use thermal_plant::Params;
-use thermal_sim::commissioning::CommissioningSetup;
+use thermal_sim::World;
+use thermal_sim::commissioning::{CommissioningSetup, settings_for_scene};
 use thermal_sim::engine::NativeEngine;
 use thermal_sim::scene::Scene;
 use thermal_window::StopFlag;
@@ -20,6 +22,8 @@ use super::Failure;
 /// Room of the simulated device, C, and the seed of its noise, unless a scene says them.
 const ROOM_C: f64 = 24.0;
 const SEED: u64 = 0;
+/// Time after power-up before the first line to the device of a scene.
+const START: Duration = Duration::from_millis(10);
 
 // The device: exactly one of the three, for all commands but `ports`.
 #[derive(Args)]
@@ -65,6 +69,29 @@ impl Target {
             let _ignored = client.ask(&PlainCommand::Abort);
         }
         done
+    }
+
+    /// Does something with the simulated device of the scene, which has the scene's settings. `command` is the subcommand that
+    /// needs it.
+    pub fn with_device_of_scene<T>(
+        &self,
+        command: &str,
+        work: impl FnOnce(&mut Client<SimulatedLink<'_, NativeEngine>>) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        let path = self.scene.as_ref().ok_or_else(|| {
+            Failure::input(anyhow!(
+                "{command} --simulated needs --scene FILE, of a device with flux_sensor = true"
+            ))
+        })?;
+        let scene = Scene::read(path).map_err(Failure::input)?;
+        let settings = settings_for_scene(&scene).map_err(Failure::run)?;
+        let mut engine = NativeEngine::new(World::new(&scene).map_err(Failure::input)?);
+        let mut client = Client::new(SimulatedLink::new(&mut engine));
+        client.wait(START).map_err(Failure::run)?;
+        for line in &settings {
+            client.command(line).map_err(Failure::run)?;
+        }
+        work(&mut client)
     }
 
     /// Does something with a client of a device that may not be there yet: the line is opened when the first command is

@@ -4,7 +4,7 @@ use contact_law_fit::{Fit, Recording};
 use contact_model::contact_law::ContactLaw;
 use contact_model::material::SKIN;
 use contact_model::pressure::pressure_pa;
-use contact_model::reference::mean_conductance;
+use contact_model::reference::conductance_at_hardness;
 use plotters::prelude::*;
 
 use super::Report;
@@ -24,12 +24,12 @@ impl Report {
     /// # Errors
     /// The chart cannot be drawn.
     pub fn chart(&self, recording: &Recording, fit: &Fit) -> anyhow::Result<String> {
-        let mean_w_m2k = mean_conductance::<f64>(&SKIN.surface, &recording.display);
+        let at_hardness_w_m2k = conductance_at_hardness::<f64>(&SKIN.surface, &recording.display);
         let curve = |law: ContactLaw| -> Vec<(f64, f64)> {
             let ratio = FORCES_N.end / FORCES_N.start;
             let point = |i: usize| {
                 let force_n = FORCES_N.start * ratio.powf(i as f64 / (POINTS - 1) as f64);
-                let conductance = law.conductance_w_m2k(mean_w_m2k, pressure_pa(force_n));
+                let conductance = law.conductance_w_m2k(at_hardness_w_m2k, pressure_pa(force_n));
                 (force_n, 1e6 / conductance)
             };
             (0..POINTS).map(point).collect()

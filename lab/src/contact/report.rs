@@ -4,7 +4,7 @@ use contact_law_fit::{FORCES_N, Fit, Interval, Measurement};
 use contact_model::contact_law::ContactLaw;
 use contact_model::material::SKIN;
 use contact_model::pressure::pressure_pa;
-use contact_model::reference::mean_conductance;
+use contact_model::reference::conductance_at_hardness;
 use serde::Serialize;
 use thermal_client::client::PlainCommand;
 
@@ -55,11 +55,11 @@ impl Report {
     #[must_use]
     pub fn new(code: &str, measurement: &Measurement, fit: &Fit) -> Self {
         let recording = &measurement.recording;
-        let mean_w_m2k = mean_conductance::<f64>(&SKIN.surface, &recording.display);
+        let at_hardness_w_m2k = conductance_at_hardness::<f64>(&SKIN.surface, &recording.display);
         let resistance = |index: usize| {
             let force_n = FORCES_N[index];
             let conductance =
-                ContactLaw::NOMINAL.conductance_w_m2k(mean_w_m2k, pressure_pa(force_n));
+                ContactLaw::NOMINAL.conductance_w_m2k(at_hardness_w_m2k, pressure_pa(force_n));
             let m2k_w = fit.resistances_m2k_w[index];
             Resistance {
                 force_n,
@@ -79,7 +79,7 @@ impl Report {
             gap_95_w_m2k: ends(&fit.gap_interval_w_m2k),
             skin_c: recording.skin_c,
             room_c: recording.room_c,
-            force_deviation_percent: measurement.following.deviation_percent,
+            force_deviation_percent: measurement.force_tracking.deviation_percent,
             residual_k: fit.residual_k,
             resistance: (0..FORCES_N.len()).map(resistance).collect(),
         }

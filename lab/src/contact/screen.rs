@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use contact_law_fit::{RAMPS_S, Step};
+use contact_law_fit::{Step, TOTAL_S};
 
 /// Places of the bar, and the forces at its ends, N.
 const PLACES: usize = 48;
@@ -54,7 +54,7 @@ impl<'a> Screen<'a> {
                 let force = force_n.map_or("    -".into(), |force_n| format!("{force_n:5.2}"));
                 let bar = bar(target_n, *force_n);
                 self.tell(&format!(
-                    "\r {since_s:5.1} of {RAMPS_S:.0} s  {target_n:5.2} N asked, {force} N  {bar}"
+                    "\r {since_s:5.1} of {TOTAL_S:.0} s  {target_n:5.2} N asked, {force} N  {bar}"
                 ));
             }
             _ => {}

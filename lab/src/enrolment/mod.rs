@@ -4,8 +4,10 @@ mod screen;
 
 use std::time::Duration;
 
+use contact_model::contact_law::ContactLaw;
 use thermal_client::client::{
-    Client, ClientError, EnrolPerson, PersonReport, PlainCommand, QueryFlux, ReceivedTelemetry,
+    Client, ClientError, EnrolPerson, PersonReport, PlainCommand, QueryContactLaw, QueryFlux,
+    ReceivedTelemetry,
 };
 use thermal_client::commissioning::{CommissionError, arm};
 use thermal_client::link::{Link, LinkError};
@@ -28,8 +30,6 @@ const LINE_TIMEOUT: Duration = Duration::from_millis(500);
 const WAIT_MAX: Duration = Duration::from_secs(120);
 /// The device's word about a finger that it has learnt.
 const TRUSTED: &str = "trusted";
-/// Force below which a finger counts as lifted, N.
-const LIFTED_N: f64 = 0.01;
 
 /// What the finger does next.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub enum Step {
 
 /// Who is enrolled, and how.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Order {
+pub struct EnrolmentOptions {
     /// Stands for the person.
     pub code: PersonCode,
     /// The finger of a device with several.
@@ -67,6 +67,11 @@ pub enum EnrolmentError {
     /// There is no heat-flux sensor.
     #[error("the device has no heat-flux sensor, or was not told of it (`flux set`)")]
     NoSensor,
+    /// The device was told of a measured contact law.
+    #[error(
+        "the device was told of a contact law; what is learnt of a person holds with the nominal one only (`contact nominal`)"
+    )]
+    OtherContactLaw,
     /// Telemetry does not come.
     #[error("no telemetry within {} s", LINE_TIMEOUT.as_secs_f64())]
     Silent,
@@ -114,16 +119,16 @@ impl From<LinkError> for EnrolmentError {
 /// The device has no sensor, refuses a line, trips, or does not trust the finger; the finger does not land or lifts too soon.
 pub fn enrol<L: Link>(
     client: &mut Client<L>,
-    order: &Order,
+    options: &EnrolmentOptions,
     guide: &mut dyn FnMut(&mut Client<L>, &Step),
 ) -> Result<PersonReport, EnrolmentError> {
-    let finger = order.finger;
+    let finger = options.finger;
     let done = Session {
         client,
         finger,
         guide,
     }
-    .enrol(order);
+    .enrol(options);
     // Also after a failure: the bridge may be driven.
     let off = client.ask_finger(finger, &PlainCommand::Abort);
     let quiet = client.ask_finger(finger, &PlainCommand::stream(0));
@@ -143,7 +148,7 @@ impl<L: Link> Session<'_, L> {
         Ok(self.client.ask_finger(self.finger, command)?)
     }
 
-    fn enrol(&mut self, order: &Order) -> Result<PersonReport, EnrolmentError> {
+    fn enrol(&mut self, options: &EnrolmentOptions) -> Result<PersonReport, EnrolmentError> {
         let sensor = self.client.ask_finger(self.finger, &QueryFlux);
         let sensor = match sensor {
             // Firmware from before there was a sensor.
@@ -151,16 +156,19 @@ impl<L: Link> Session<'_, L> {
             answer => answer?,
         };
         sensor.ok_or(EnrolmentError::NoSensor)?;
+        if self.client.ask_finger(self.finger, &QueryContactLaw)? != ContactLaw::NOMINAL {
+            return Err(EnrolmentError::OtherContactLaw);
+        }
         let fields = TelemetryFields::NAMES.iter().enumerate();
         let fields = fields.filter(|(_, name)| FIELDS.contains(name));
         let fields = fields.fold(TelemetryFields::NONE, |set, (index, _)| set.with(index));
         self.send(&PlainCommand::Stream(STREAM_MS, fields))?;
         self.rest()?;
-        if order.takes_zero {
+        if options.takes_zero {
             self.send(&PlainCommand::FluxZero)?;
         }
         self.send(&PlainCommand::ChoosePerson(None))?;
-        for (number, object) in order.objects.iter().enumerate() {
+        for (number, object) in options.objects.iter().enumerate() {
             self.send(&PlainCommand::Material(object.clone()))?;
             if number == 0 {
                 arm(self.client, self.finger)?;
@@ -169,7 +177,7 @@ impl<L: Link> Session<'_, L> {
             self.touch(object)?;
             self.rest()?;
         }
-        Ok((self.client).ask_finger(self.finger, &EnrolPerson(order.code))?)
+        Ok((self.client).ask_finger(self.finger, &EnrolPerson(options.code))?)
     }
 
     /// The next line of telemetry, after the guide has been called.
@@ -205,14 +213,16 @@ impl<L: Link> Session<'_, L> {
                 });
             }
             let line = self.next(&Step::Rest(REST_S - rested_s))?;
-            lifted_at = lifted_at.or(Some(now)).filter(|_| is_lifted(&line));
+            let is_lifted = line.telemetry.is_lifted() == Some(true);
+            lifted_at = lifted_at.or(Some(now)).filter(|_| is_lifted);
         }
     }
 
     /// Waits for a landing on the object and for the contact's length.
     fn touch(&mut self, object: &str) -> Result<(), EnrolmentError> {
         let begun = self.client.link().now();
-        while is_lifted(&self.next(&Step::Touch(object.into()))?) {
+        let step = Step::Touch(object.into());
+        while self.next(&step)?.telemetry.is_lifted() != Some(false) {
             if self.client.link().now() > begun + WAIT_MAX {
                 return Err(EnrolmentError::TooLong { what: "land" });
             }
@@ -228,7 +238,7 @@ impl<L: Link> Session<'_, L> {
                 .as_secs_f64();
             let line = self.next(&Step::Press(CONTACT_S - since_s, force_n))?;
             force_n = line.telemetry.force_n;
-            if is_lifted(&line) {
+            if line.telemetry.is_lifted() == Some(true) {
                 let object = object.into();
                 return Err(EnrolmentError::Lifted { object, since_s });
             }
@@ -242,8 +252,4 @@ impl<L: Link> Session<'_, L> {
             }
         }
     }
-}
-
-fn is_lifted(line: &ReceivedTelemetry) -> bool {
-    (line.telemetry.force_n).is_none_or(|force_n| force_n < LIFTED_N)
 }

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use thermal_client::client::Client;
 use thermal_client::commissioning::{
-    CommissioningEvent, Surroundings, SurroundingsError, SurroundingsRequest,
+    CommissioningEvent, PhantomPlace, Surroundings, SurroundingsError, SurroundingsRequest,
 };
 use thermal_client::link::{LineSplitter, Link, LinkError, ReceivedLine};
 use thermal_device::safety::ThermistorId;
@@ -164,6 +164,15 @@ impl Surroundings<ServedLink> for ServedOperator<'_> {
         bath_c: f64,
     ) -> Result<(), SurroundingsError> {
         let request = SurroundingsRequest::Bath(thermistor, bath_c);
+        client.link().request(&request).map(drop).map_err(failed)
+    }
+
+    fn move_phantom(
+        &mut self,
+        client: &mut Client<ServedLink>,
+        place: PhantomPlace,
+    ) -> Result<(), SurroundingsError> {
+        let request = SurroundingsRequest::Phantom(place);
         client.link().request(&request).map(drop).map_err(failed)
     }
 

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use thermal_client::client::Client;
 use thermal_client::link::{Link, LinkError, ReceivedLine};
+use thermal_lab::bench_operator::{BenchOperator, lines};
 use thermal_lab::bring_up::{Bench, BenchError, Measurement, Terminal, Unit};
-use thermal_lab::person::{Person, lines};
 
 /// A line to nobody, whose time passes.
 struct NoDevice(Duration);
@@ -38,7 +38,7 @@ const PULL_DOWN: Measurement = Measurement {
 /// What the procedure gets from a person who types these lines, and what the screen shows.
 fn typed(text: &'static str) -> (Result<f64, BenchError>, String) {
     let mut screen = Vec::new();
-    let person = Person::new(None, lines(Cursor::new(text)), &mut screen);
+    let person = BenchOperator::new(None, lines(Cursor::new(text)), &mut screen);
     let mut client = Client::new(NoDevice(Duration::ZERO));
     let value = Terminal::new(person).read(&mut client, &PULL_DOWN);
     (value, String::from_utf8_lossy(&screen).into_owned())
@@ -104,7 +104,7 @@ fn a_reader_that_fails_is_reported() {
         }
     }
     let mut screen = Vec::new();
-    let person = Person::new(None, lines(io::BufReader::new(Broken)), &mut screen);
+    let person = BenchOperator::new(None, lines(io::BufReader::new(Broken)), &mut screen);
     let mut client = Client::new(NoDevice(Duration::ZERO));
     let value = Terminal::new(person).read(&mut client, &PULL_DOWN);
     assert_eq!(value, Err(BenchError::Failed("unplugged".into())));

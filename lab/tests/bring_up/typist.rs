@@ -9,12 +9,12 @@ use thermal_client::client::{Client, QueryState};
 use thermal_client::commissioning::{CommissioningEvent, Surroundings, SurroundingsError};
 use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
+use thermal_lab::bench_operator::BenchOperator;
 use thermal_lab::bring_up::{
     AskSurroundings, Bench, BenchError, EmulatedBench, ManualStep, Measurement, Record, Report,
     SimulatedBoard, Stage, Terminal, bring_up,
 };
 use thermal_lab::link::Link;
-use thermal_lab::person::Person;
 use thermal_sim::board::{Board, SOUND};
 
 use super::on_the_bench;
@@ -169,7 +169,7 @@ pub fn typed(end: Option<End>) -> Typed {
         shown: Rc::clone(&shown),
     };
     let mut typist = Typist {
-        terminal: Terminal::new(Person::new(None, lines, &mut screen)),
+        terminal: Terminal::new(BenchOperator::new(None, lines, &mut screen)),
         hands: EmulatedBench { watch: &mut |_| () },
         answer,
         stage: "",

@@ -3,6 +3,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+use thermal_lab::client::Client;
+use thermal_lab::enrolment::{EnrolmentError, EnrolmentOptions, enrol as enrol_at};
+use thermal_lab::link::SimulatedLink;
+use thermal_settings::PersonCode;
+
+use crate::simulated_device::device;
 
 fn enrol(words: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_thermal-lab"))
@@ -53,6 +61,7 @@ fn a_simulated_person_is_enrolled_and_restored() {
         data.len() == 40 && data.bytes().all(|byte| byte.is_ascii_hexdigit()),
         "{data}"
     );
+    assert_eq!(written["display_surface"].as_str(), Some("36 1 0.138"));
 
     let restored = enrol(&[&simulated[..], &["--restore", out]].concat());
     assert!(restored.status.success(), "{}", text(&restored.stderr));
@@ -80,4 +89,22 @@ fn names_single_objects_and_devices_without_a_sensor_are_refused() {
             text(&refused.stderr)
         );
     }
+}
+
+#[test]
+fn nobody_is_enrolled_with_a_measured_contact_law() {
+    let mut engine = device();
+    let mut client = Client::new(SimulatedLink::new(&mut engine));
+    client.wait(Duration::from_millis(600)).unwrap();
+    for line in ["flux set 0.1192 2048 5 30", "contact 0.9 100000 20"] {
+        client.command(line).unwrap();
+    }
+    let options = EnrolmentOptions {
+        code: PersonCode::new("P7").unwrap(),
+        finger: None,
+        takes_zero: false,
+        objects: vec!["copper".into(), "abs".into()],
+    };
+    let refused = enrol_at(&mut client, &options, &mut |_, _| ());
+    assert_eq!(refused, Err(EnrolmentError::OtherContactLaw));
 }

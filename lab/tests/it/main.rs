@@ -1,8 +1,8 @@
 //! Lines to real and simulated devices, and the person at the bench.
 
+mod bench_operator;
 mod contact;
 mod enrol;
-mod person;
 mod program;
 mod simulated_device;
 mod tcp;

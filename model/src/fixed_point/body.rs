@@ -290,10 +290,22 @@ const _: () = {
     }
 };
 
+/// `e^x - 1` within some units of the last place (Higham, Accuracy and Stability of Numerical Algorithms, section 1.14.1): where
+/// cancellation makes `e^x - 1` wrong, the logarithm is wrong by the same factor. `libm::expm1` would be 1.4 KB of code.
+#[inline(never)]
+fn expm1(x: f64) -> f64 {
+    let exponential = libm::exp(x);
+    if exponential == 1.0 {
+        x
+    } else {
+        (exponential - 1.0) * x / libm::log(exponential)
+    }
+}
+
 /// Response of a relaxation of rate `r` per tick to a unit flux of one tick, over its gain: `(1 - e^-r) / r`.
 #[inline(never)]
 fn mean_decay(r: f64) -> f64 {
-    if r > 0.0 { -libm::expm1(-r) / r } else { 1.0 }
+    if r > 0.0 { -expm1(-r) / r } else { 1.0 }
 }
 
 impl Body {
@@ -302,7 +314,7 @@ impl Body {
     ///
     /// # Errors
     /// A rate or gain outside its range, or too many of them.
-    #[inline(never)]
+    #[inline]
     pub fn new(impedance: &Impedance<'_>, effusivity: f64, tick_s: f64) -> Result<Self, BodyError> {
         // A scaled flux of 1 K for one tick, J/m².
         let dose_j_m2 = effusivity * libm::sqrt(tick_s);
@@ -323,7 +335,7 @@ impl Body {
             }
             // The gain of a state is below a half, and no flux takes a fast state out of its range.
             let fast_factor = if one.rate_1_s * tick_s >= FAST_RATE_PER_TICK {
-                let decay = -libm::expm1(-one.rate_1_s * tick_s);
+                let decay = -expm1(-one.rate_1_s * tick_s);
                 SCALED_FLUX_MAX_K / FAST_STATE_MAX_K / decay
             } else {
                 0.0
@@ -370,7 +382,7 @@ impl Body {
                     .get_mut(count)
                     .ok_or(BodyError::TooManyFast(count + 1))? = FastRelaxation {
                     input_gain: scaled(gain),
-                    change: to_fixed(libm::expm1(-r)),
+                    change: to_fixed(expm1(-r)),
                     horizon_factor: to_fixed::<I1F31>(libm::exp(-(ticks - 1.0) * r)),
                 };
                 body.fast_count += 1;
@@ -378,7 +390,7 @@ impl Body {
                 let window = f64::from(WINDOW);
                 // Mean of e^(r j) for j from 0 to 7.
                 let mean = if r > 0.0 {
-                    libm::expm1(r * window) / libm::expm1(r) / window
+                    expm1(r * window) / expm1(r) / window
                 } else {
                     1.0
                 };
@@ -388,7 +400,7 @@ impl Body {
                     .get_mut(count)
                     .ok_or(BodyError::TooManySlow(count + 1))? = SlowRelaxation {
                     input_gain: scaled(gain * mean),
-                    decay: to_fixed(-libm::expm1(-r * window)),
+                    decay: to_fixed(-expm1(-r * window)),
                 };
                 body.slow_count += 1;
                 slow_input_gain += gain * libm::exp(-r);

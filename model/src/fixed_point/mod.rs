@@ -33,7 +33,10 @@ pub use logarithm::{Log2, exp2, log2};
 pub use mantissa_exponent::MantissaExponent;
 pub use own_contact_law::OwnContactLaw;
 pub use pressure::{Area, Force, contact_area, log2_relative_pressure};
-pub use product::{Word, product, saturated, saturating_product, to_fixed};
+pub use product::{
+    Word, product, rounded_units, saturated, saturating_product, to_fixed, truncated_units,
+    units_to_f64,
+};
 pub use properties::ContactPairError;
 pub use relaxation_bank::{
     FastRelaxation, MATCH_HORIZON_TICKS, RelaxationBank, Relaxations, SlowRelaxation, StateFactors,

@@ -85,7 +85,7 @@ mod tests {
     };
     use crate::material::{MATERIALS, REFERENCE_DISPLAY};
     use crate::pressure::pressure_pa;
-    use crate::reference::mean_conductance;
+    use crate::reference::conductance_at_hardness;
 
     const TICK_S: f64 = 1e-3;
     /// Resolution of a resistance, m² K/W.
@@ -109,7 +109,7 @@ mod tests {
                 ContactPair::new(&SKIN, material, &REFERENCE_DISPLAY, TICK_S).expect("a pair");
             let contact = own.contact(&pair, pressure);
             let exact = |surface| {
-                let mean = mean_conductance::<f64>(&SKIN.surface, surface);
+                let mean = conductance_at_hardness::<f64>(&SKIN.surface, surface);
                 let with_gap = law.conductance_w_m2k(mean, pressure_pa(force_n));
                 let fits = with_gap - law.gap_w_m2k > 1.0 / RESISTANCE_MAX_M2K_W;
                 fits.then_some(1.0 / with_gap)

@@ -18,10 +18,12 @@ pub trait Word: Copy {
     fn wrapped(units: i64) -> Self;
     /// Limits to the range of the type.
     fn limited(units: i64) -> Self;
+    /// As [`to_fixed`].
+    fn rounded(value: f64) -> Self;
 }
 
 macro_rules! word {
-    ($fixed:ident, $bits:ty) => {
+    ($fixed:ident, $bits:ident, $rounded:ident) => {
         impl<Frac: LeEqU32> Word for $fixed<Frac> {
             const PLACES: u32 = Self::FRAC_NBITS;
             #[inline]
@@ -45,11 +47,22 @@ macro_rules! word {
                     <$bits>::MAX
                 })
             }
+            #[inline]
+            fn rounded(value: f64) -> Self {
+                Self::from_bits($rounded(value, Self::PLACES))
+            }
+        }
+
+        /// `value` in units of `2^-places`, rounded and limited. Not inlined, because set-up calls it a hundred times.
+        #[inline(never)]
+        fn $rounded(value: f64, places: u32) -> $bits {
+            let units = rounded_units(value, places);
+            units.clamp($bits::MIN.into(), $bits::MAX.into()) as $bits
         }
     };
 }
-word!(FixedI32, i32);
-word!(FixedU32, u32);
+word!(FixedI32, i32, rounded_i32);
+word!(FixedU32, u32, rounded_u32);
 
 /// `a b` in units of the resolution of `Out`, rounded down; exact before the shift, as one factor is signed.
 #[inline]
@@ -92,13 +105,28 @@ pub fn saturated<Out: Word, Frac: LeEqU64>(wide: FixedI64<Frac>) -> Out {
 /// the ends of `Out`. NaN gives 0.
 #[must_use]
 pub fn to_fixed<Out: Word>(value: f64) -> Out {
-    Out::limited(rounded_units(value, Out::PLACES))
+    Out::rounded(value)
 }
 
-/// `value` in units of `2^-places`, rounded. Not inlined, because set-up calls it a hundred times.
+/// `value` in units of `2^-places`, rounded.
+#[must_use]
 #[inline(never)]
-fn rounded_units(value: f64, places: u32) -> i64 {
+pub fn rounded_units(value: f64, places: u32) -> i64 {
     libm::round(libm::ldexp(value, places as i32)) as i64
+}
+
+/// `value` in units of `2^-places`, of which there are at most 63, rounded towards 0 and limited to 32 bits. Not inlined, as above.
+#[must_use]
+#[inline(never)]
+pub const fn truncated_units(value: f64, places: u32) -> i32 {
+    (value * (1u64 << places) as f64) as i32
+}
+
+/// The number with this number of units of `2^-places`. The conversions of `fixed`, which give the same, have 1.5 KB of code.
+#[must_use]
+#[inline(never)]
+pub fn units_to_f64(units: i64, places: u32) -> f64 {
+    libm::ldexp(units as f64, -(places as i32))
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Checks of material properties before they are converted to fixed point.
 
+use core::f64::consts::LOG2_E;
 use core::fmt;
 
 use super::MantissaExponent;
@@ -34,7 +35,7 @@ impl fmt::Display for ContactPairError {
                 write!(f, "R_display / R_object is {value}; it must be below 16")
             }
             Self::OutOfRange(value) => {
-                let exponent = Rounded(libm::log2(*value), 2);
+                let exponent = Rounded(libm::log(*value) * LOG2_E, 2);
                 write!(
                     f,
                     "the contact's rate is 2^{exponent}; it must be within 2^-100 to 2^100"
@@ -84,7 +85,8 @@ fn is_positive_and_finite(value: f64) -> bool {
 
 /// Refuses values outside 2^-100 to 2^100, so that their products stay within `f64` and [`MantissaExponent`].
 pub(super) fn moderate(value: f64) -> Result<f64, ContactPairError> {
-    if libm::log2(value).abs() <= 100.0 {
+    const LARGEST: f64 = (1u128 << 100) as f64;
+    if (1.0 / LARGEST..=LARGEST).contains(&value) {
         Ok(value)
     } else {
         Err(ContactPairError::OutOfRange(value))

@@ -6,7 +6,7 @@ use crate::material::{Material, SKIN_MICROHARDNESS_PA, Surface};
 /// Contact conductance `1.25 k_s da / R_q` of two surfaces where the pressure equals the microhardness, W/(m² K)
 /// (Eq. 6-8 to 6-11), for positive properties; relative error of a few roundings of `F`.
 #[must_use]
-pub fn mean_conductance<F: Real>(a: &Surface, b: &Surface) -> F {
+pub fn conductance_at_hardness<F: Real>(a: &Surface, b: &Surface) -> F {
     let (ka, kb) = (
         F::from_f64(a.conductivity_w_mk),
         F::from_f64(b.conductivity_w_mk),
@@ -26,7 +26,8 @@ pub fn mean_conductance<F: Real>(a: &Surface, b: &Surface) -> F {
 #[must_use]
 pub fn contact_resistance<F: Real>(skin: &Surface, other: &Surface, pressure_pa: F) -> F {
     let relative = pressure_pa / F::from_f64(SKIN_MICROHARDNESS_PA);
-    F::from_f64(1.0) / (mean_conductance::<F>(skin, other) * relative.powf(F::from_f64(0.95)))
+    F::from_f64(1.0)
+        / (conductance_at_hardness::<F>(skin, other) * relative.powf(F::from_f64(0.95)))
 }
 
 /// A finger in contact with an object, and the display that reproduces the object.
@@ -85,8 +86,8 @@ impl<F: Real> Contact<F> {
             skin_c,
             object_c,
             resistance_m2k_w,
-            ratio: mean_conductance::<F>(&skin.surface, &object.surface)
-                / mean_conductance::<F>(&skin.surface, display),
+            ratio: conductance_at_hardness::<F>(&skin.surface, &object.surface)
+                / conductance_at_hardness::<F>(&skin.surface, display),
             weight: eo / (eo + es),
             rate_per_s: b * b,
         }

@@ -7,7 +7,7 @@ mod erfcx;
 mod real;
 mod semi_infinite;
 
-pub use contact::{Contact, Response, contact_resistance, mean_conductance};
+pub use contact::{Contact, Response, conductance_at_hardness, contact_resistance};
 pub use erfcx::erfcx;
 pub use real::Real;
 pub use semi_infinite::{SemiInfinite, fourier_number, interface_temperature};

@@ -163,7 +163,7 @@ fn swept(ratio: Option<f64>) -> impl Iterator<Item = Compared> {
         let (skin_c, object_c) = skin_and_object(skin, step);
 
         // Eq. 6-8 solved for the pressure.
-        let mean = reference::mean_conductance::<f64>(&SKIN.surface, &object.surface);
+        let mean = reference::conductance_at_hardness::<f64>(&SKIN.surface, &object.surface);
         let log2_pressure = Log2::from_num(-(mean * r_m2k_w).log2() / 0.95);
         let pressure_pa = log2_pressure.to_num::<f64>().exp2() * SKIN_MICROHARDNESS_PA;
         let mut fixed = contact_pair(object, tick_s).at_pressure(log2_pressure);

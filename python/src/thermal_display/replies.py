@@ -191,6 +191,8 @@ class SelfTestReport:
     """Fall of the second one, K."""
     result: str
     """`passed`, `running`, `none`, or the fault."""
+    flux: str | None
+    """Heat-flux sensor: `ok`, `no-code`, `sensor-range`, `zero` or `touched`; `None` without one, and before a self-test has passed."""
 
     @classmethod
     def read(cls, reply: Fields) -> SelfTestReport:
@@ -209,6 +211,7 @@ class SelfTestReport:
             display_k=reply.real_or_none("display_k"),
             check_k=reply.real_or_none("check_k"),
             result=reply.word("result"),
+            flux=reply.optional("flux"),
         )
 
 

@@ -52,7 +52,7 @@ def is_answer(content: str) -> bool:
 
 
 _QUESTIONS = frozenset(
-    ("id", "state", "cause", "board", "raw", "self-test", "law", "finger", "margins", "settings", "flux", "surface")
+    "id state cause board raw self-test law finger contact margins settings flux surface person persons".split()
 )
 
 

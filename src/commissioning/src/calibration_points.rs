@@ -1,6 +1,6 @@
 //! Calibration points: pairs of a converter reading and the temperature of a reference thermometer.
 
-use contact_model::fixed_point::Celsius;
+use contact_model::fixed_point::{Celsius, to_fixed};
 use heapless::Vec;
 
 use thermal_device::sense::{THERMISTOR_COUNT, ThermistorAverage};
@@ -99,7 +99,7 @@ impl CalibrationPoints {
             return Err(PointError::AtBorder);
         }
         if libm::fabs(reading_c - reference_c) > REFERENCE_DIFFERENCE_MAX_K {
-            return Err(PointError::TooFar(Celsius::saturating_from_num(reading_c)));
+            return Err(PointError::TooFar(to_fixed(reading_c)));
         }
         let point = CalibrationPoint {
             sum: average.mean_sum(),

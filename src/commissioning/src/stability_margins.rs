@@ -38,14 +38,15 @@ impl StabilityMargins {
     pub fn new(tile: &Tile, gains: &PiGains) -> Self {
         let magnitude = |w: f64| {
             let loop_gain = gains.proportional_a_k * tile.gain_k_s_a;
-            let integral = libm::hypot(1.0, 1.0 / (gains.integral_s * w));
-            loop_gain * integral
-                / (libm::hypot(w, tile.leak_1_s) * libm::hypot(1.0, tile.sensor_lag_s * w))
+            let squares = |a: f64, b: f64| a * a + b * b;
+            let integral = squares(1.0, 1.0 / (gains.integral_s * w));
+            let plate = squares(w, tile.leak_1_s) * squares(1.0, tile.sensor_lag_s * w);
+            loop_gain * libm::sqrt(integral / plate)
         };
         // Phase above -180 degrees, rad.
         let phase = |w: f64| {
             let controller = libm::atan(gains.integral_s * w) - 0.5 * PI;
-            let plate = -libm::atan2(w, tile.leak_1_s);
+            let plate = -libm::atan(w / tile.leak_1_s);
             PI + controller + plate - libm::atan(tile.sensor_lag_s * w) - tile.dead_time_s * w
         };
         let gain_crossover = bisect_frequency(|w| magnitude(w) > 1.0, SEARCH_FREQUENCY_MIN_RAD_S);

@@ -16,7 +16,7 @@ use thermal_settings::Person;
 use crate::control::{ControlParameters, Law};
 use crate::events::EventKinds;
 use crate::identification::{AbortReason, NormalEquationRow};
-use crate::learning::{FingerKnowledge, FluxParameters, PersonState, RestingCode};
+use crate::learning::{FingerKnowledge, FluxParameters, NoContactCodeSum, PersonState};
 use crate::reference::ContactModel;
 use crate::safety::{Fault, PredictedDose, SelfTestReport, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, Samples, ThermistorAverage};
@@ -275,10 +275,12 @@ pub enum Command<'a> {
     /// feel the change.
     DisplaySurface(ContactPair),
     /// Begin to learn the finger of this person, or of an unknown one for `None`. A finger that touches begins a new contact.
-    /// Refused without a heat-flux sensor, and for the thesis's finger.
+    /// Refused without a heat-flux sensor, for the thesis's finger, and a person with another contact law than the nominal one.
     ChoosePerson(Option<Person>),
     /// Report the chosen person, and what was learnt of the finger. Refused without a heat-flux sensor.
     Person,
+    /// The same, to store what was learnt. Refused also with another contact law than the nominal one.
+    LearntPerson,
     /// Report the flux, and what is known of the finger by it. Never refused.
     Flux,
     /// Report the mean code of the heat-flux sensor over half a second without flux. Refused while an object is presented, without
@@ -324,7 +326,7 @@ pub enum Reply {
     /// Answer to [`Command::Person`].
     Person(PersonState),
     /// Answer to [`Command::FluxZero`].
-    FluxZero(RestingCode),
+    FluxZero(NoContactCodeSum),
     /// Answer to [`Command::NormalEquation`]: one row of the normal equations of the tile's identification.
     NormalEquation(NormalEquationRow),
 }
@@ -342,7 +344,7 @@ pub struct FluxState {
 
 /// Why a station refuses a command. A refused command changes nothing, except for a `clear` that finds a second fault
 /// ([`Self::StillFaulty`]).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refused {
     /// `start` was sent in the state off or ready, in which the bridge is off: `arm` must come first.
     NotArmed,
@@ -353,6 +355,9 @@ pub enum Refused {
     NoMaterial,
     /// The command with this name, `contact` or `person`, was sent, and the assumed finger is the thesis's.
     NeedsLayeredFinger(&'static str),
+    /// A person was to be chosen or enrolled, and this contact law was told. The factor on the contact resistance that is stored of
+    /// a person is relative to the nominal law.
+    OtherContactLaw(ContactLaw),
     /// `start` was sent while an object is already presented.
     AlreadyStarted,
     /// The command with this name, `hold` or `play`, was sent in a state that does not drive the display (in tripped the reply is

@@ -6,7 +6,6 @@ use core::borrow::BorrowMut;
 use crate::command::{Command, Refused, Reply, WithSourceFinger};
 use crate::drive::BoardOutputs;
 use crate::events::UnsolicitedReport;
-use crate::learning::FingerKnowledge;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
@@ -118,12 +117,6 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     /// Takes the learner's answer, to be given before the tenth tick after its input was taken. It is applied in that tick.
     pub fn put_learner_output(&mut self, finger: FingerIndex<FINGERS>, output: &LearnerOutput) {
         self.station_mut(finger).put_learner_output(output);
-    }
-
-    /// What is known of the finger that touches.
-    #[must_use]
-    pub fn finger_knowledge(&self, finger: FingerIndex<FINGERS>) -> FingerKnowledge {
-        self.station(finger).finger_knowledge()
     }
 
     /// Trips the stations of all fingers by a fault that the board has found outside of a control tick, such as an

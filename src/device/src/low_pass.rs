@@ -1,6 +1,6 @@
 //! A first-order low-pass filter whose state is fine enough for the smallest change of the input.
 
-use contact_model::fixed_point::Celsius;
+use contact_model::fixed_point::{Celsius, truncated_units};
 use fixed::types::{I0F32, I10F54};
 
 use crate::TICK_HZ;
@@ -17,9 +17,10 @@ impl Coefficient {
     #[must_use]
     pub fn from_time_constant_s(time_constant_s: f64) -> Self {
         let part = 1.0 - libm::exp(-1.0 / (time_constant_s * f64::from(TICK_HZ)));
-        Self(I0F32::from_bits(
-            libm::ldexp(part.clamp(0.0, 0.499), 32) as i32
-        ))
+        Self(I0F32::from_bits(truncated_units(
+            part.clamp(0.0, 0.499),
+            32,
+        )))
     }
 }
 

@@ -1,6 +1,6 @@
 //! A proportional-integral controller from temperature error to current, with limited output and anti-windup.
 
-use contact_model::fixed_point::{Celsius, Word};
+use contact_model::fixed_point::{Celsius, Word, truncated_units};
 use fixed::types::{I2F30, I12F52, I16F16};
 use thermal_settings::PiGains;
 
@@ -49,13 +49,15 @@ impl PiCoefficients {
     /// gain saturates at 32768 A/K, the integral gain at 2 A/K per update, where their fixed-point types end. Computed
     /// in `f64`, so it is for start-up and the task that serves the host, not for the tick.
     #[must_use]
-    pub fn new(gains: &PiGains, period: UpdatePeriod) -> Self {
-        let per_update = gains.proportional_a_k * f64::from(period.period_ticks())
-            / (gains.integral_s * f64::from(TICK_HZ));
-        let bits = |value: f64, places: u32| libm::ldexp(value, places as i32) as i32;
+    pub const fn new(gains: &PiGains, period: UpdatePeriod) -> Self {
+        let per_update = gains.proportional_a_k * period.period_ticks() as f64
+            / (gains.integral_s * TICK_HZ as f64);
         Self {
-            proportional: I16F16::from_bits(bits(gains.proportional_a_k, I16F16::FRAC_NBITS)),
-            integral: I2F30::from_bits(bits(per_update, I2F30::FRAC_NBITS)),
+            proportional: I16F16::from_bits(truncated_units(
+                gains.proportional_a_k,
+                I16F16::FRAC_NBITS,
+            )),
+            integral: I2F30::from_bits(truncated_units(per_update, I2F30::FRAC_NBITS)),
             period,
         }
     }

@@ -9,8 +9,8 @@ pub struct WindowDecay {
     pub remaining: f64,
     /// Mean of the decaying state over the window, over its value at the start: `(1 - e^-x) / x`.
     pub mean: f64,
-    /// `(1 - mean) / x`: mean of the response over the window to a unit dose within it.
-    pub mean_of_dose: f64,
+    /// Mean, over the window, of the response to an input that is constant in it and has the integral 1: `(1 - mean) / x`.
+    pub mean_of_input_response: f64,
 }
 
 /// Terms of the series, which for `x` up to a half are exact to the resolution of `f64`.
@@ -38,7 +38,7 @@ impl WindowDecay {
             return Self {
                 remaining: 1.0 - x * mean,
                 mean,
-                mean_of_dose: sum,
+                mean_of_input_response: sum,
             };
         }
         let mut remaining = 1.0 - part * (1.0 - part * sum);
@@ -50,7 +50,7 @@ impl WindowDecay {
         Self {
             remaining,
             mean,
-            mean_of_dose: (1.0 - mean) / x,
+            mean_of_input_response: (1.0 - mean) / x,
         }
     }
 }
@@ -76,7 +76,7 @@ mod tests {
                 ((1.0 - mean) / x, 1e-10)
             };
             assert!(
-                (decay.mean_of_dose - expected).abs() < error,
+                (decay.mean_of_input_response - expected).abs() < error,
                 "{rate_1_s}: {decay:?}"
             );
         }

@@ -1,6 +1,6 @@
 //! Recursive least squares: parameters and their covariance.
 
-use crate::parameters::{PARAMETERS, PRIOR, Parameters, Scale, clamped};
+use crate::parameters::{PARAMETERS, PRIOR, Parameters, RESISTANCE, Scale, clamped};
 use crate::regressors::Measurement;
 use crate::signals::dot;
 
@@ -9,8 +9,9 @@ pub const VARIANCE_MAX: f32 = 1.25;
 /// Added to each variance by an update: forgets slowly, and is a hundred times the rounding of an update, so that the
 /// covariance stays positive.
 const VARIANCE_ADDED: f32 = 1e-5;
-/// Deviations by which the parameters may differ from contact to contact: components, relative, K, relative, relative.
-const BETWEEN_CONTACTS: Parameters = [0.05, 0.05, 0.1, 0.02, 0.07, 0.01];
+/// Standard deviations by which a finger changes from one contact to the next: components (1), air (relative), skin (K), resistance
+/// (relative), lag (relative).
+const DEVIATIONS_BETWEEN_CONTACTS: Parameters = [0.05, 0.05, 0.1, 0.02, 0.07, 0.01];
 
 /// Parameters and covariance, in prior deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,11 +48,17 @@ impl Estimate {
 
     /// Raises the variances by what may have changed since the last contact.
     pub fn widen(&mut self, scale: &Scale) {
-        let deviations = BETWEEN_CONTACTS.iter().zip(&scale.deviations);
+        let deviations = DEVIATIONS_BETWEEN_CONTACTS.iter().zip(&scale.deviations);
         for (i, (row, (change, prior))) in self.covariance.iter_mut().zip(deviations).enumerate() {
             let deviation = change / prior;
             row[i] = with_added(row[i], deviation * deviation);
         }
+    }
+
+    /// Raises the variance of the contact resistance, in prior variances.
+    pub fn widen_resistance(&mut self, added: f32) {
+        let variance = &mut self.covariance[RESISTANCE][RESISTANCE];
+        *variance = with_added(*variance, added);
     }
 
     /// Updates by a measurement whose error has this variance, K². Returns the squared innovation over its variance; none if

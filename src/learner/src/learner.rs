@@ -6,37 +6,58 @@ use crate::estimate::Estimate;
 use crate::output::LearnerOutput;
 use crate::parameters::{Place, RESISTANCE, Scale, relative_weights};
 use crate::person::PersonPrior;
-use crate::regressors::{Lagged, Signals};
+use crate::recent::Recent;
+use crate::regressors::{Lagged, Signals, to_float};
 use crate::sensor::FluxSensor;
 use crate::signals::BankOutput;
 use crate::trust::{Distrust, Judge, Trust};
-use crate::window::{Contact, LearnerInput, Resistance, Restart};
+use crate::window::{Contact, LearnerInput, Resistance, Restart, WINDOW_TICKS};
 
 /// Ticks after landing from which a contact is learnt from.
 const LEARNT_FROM_TICKS: u32 = 10;
 /// Ticks after landing from which the display's surface and the sensor have settled.
 const SETTLED_TICKS: u32 = 20;
-/// Error of the model before that, K: small enough to show a contact resistance of half or twice the nominal one. No innovation is
-/// judged by it.
+/// Error of the model before that, K: small enough that the contact resistance shows already. Innovations then count as 0 in [`Judge`],
+/// so that they cannot cause a distrust.
 const UNSETTLED_ERROR_K: f32 = 0.3;
-/// Up to these ticks after landing every window, every second one, and every fourth is learnt from; later every eighth.
-const EVERY_WINDOW_TICKS: u32 = 300;
-const EVERY_SECOND_TICKS: u32 = 1000;
-const EVERY_FOURTH_TICKS: u32 = 3000;
+/// Up to these ticks after landing every window, every second one, and every fourth is learnt from; later every eighth. One in
+/// place of two has half of the variance; later the error of the model changes so slowly that a window is worth no more than one.
+const ALL_WINDOWS_UNTIL_TICKS: u32 = 300;
+const ONE_IN_TWO_UNTIL_TICKS: u32 = 1000;
+const ONE_IN_FOUR_UNTIL_TICKS: u32 = 3000;
 /// Error of the model at landing, K. Its square grows in proportion to the time, so that each octave of time weighs alike.
 const MODEL_ERROR_K: f32 = 20e-3;
-/// Ticks in which the model's squared error at landing is added once more.
-const MODEL_ERROR_TICKS: f32 = 50.0;
+/// Ticks after landing at which the variance of the model's error is twice that at landing. It grows linearly.
+const MODEL_VARIANCE_DOUBLED_TICKS: f32 = 50.0;
 /// Error of the surface of the display, K.
 const SURFACE_ERROR_K: f32 = 1.5e-3;
+/// Part of the display's change of the last second by which its surface may be off: what the model of the plate has wrong is seen
+/// by the thermistor of the display later.
+const DISPLAY_CHANGE_ERROR: f32 = 0.05;
+/// Shares per window of the low-passes from which display and contact resistance have changed: in 1 s, and in 20 ms, which are
+/// the lags of force and sensor.
+const DISPLAY_SHARE: f32 = 0.01;
+const RESISTANCE_SHARE: f32 = 0.5;
+/// Part of a change of the nominal resistance by which the factor on it may become another one: the force has an error.
+const FACTOR_CHANGE: f32 = 0.2;
 /// Error of the sensor's zero, W/m²: two of its deviations.
 const ZERO_ERROR_W_M2: f32 = 7.0;
 /// Ticks of a contact after which the finger is well enough known to be stored.
 const STORED_FROM_TICKS: u32 = 8000;
-/// Part of the parameters that remains per window once the finger is distrusted.
-const REMAINING_IF_DISTRUSTED: f32 = 0.75;
+/// Factor by which the parameters shrink in each window after a distrust: towards 0, the mean finger.
+const DECAY_PER_WINDOW_IF_DISTRUSTED: f32 = 0.75;
 /// Unit of [`Resistance`], m² K/W.
 const M2K_W_PER_BIT: f32 = 1e-6 / (1u32 << Resistance::FRAC_NBITS) as f32;
+
+/// So many ticks after landing one window of so many is learnt from.
+const fn windows_per_update(ticks: u32) -> u8 {
+    match ticks {
+        ..ALL_WINDOWS_UNTIL_TICKS => 1,
+        ALL_WINDOWS_UNTIL_TICKS..ONE_IN_TWO_UNTIL_TICKS => 2,
+        ONE_IN_TWO_UNTIL_TICKS..ONE_IN_FOUR_UNTIL_TICKS => 4,
+        ONE_IN_FOUR_UNTIL_TICKS.. => 8,
+    }
+}
 
 /// Learns a finger from the flux into the display. All methods are total, take bounded time and do not panic.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +69,11 @@ pub struct Learner {
     signals: Signals,
     pub(crate) estimate: Estimate,
     judge: Judge,
+    /// Skin before contact above the display's surface, K, and nominal contact resistance, m² K/W, in the present contact.
+    above_display: Recent,
+    resistance: Recent,
+    /// The resistance at which the finger was last learnt from; 0 before.
+    learnt_resistance_m2k_w: f32,
     /// Of the present contact, modulo 256.
     windows_in_contact: Option<u8>,
     /// Ticks of the last contact.
@@ -71,10 +97,7 @@ impl Learner {
     /// A learner for an input with a [`Restart`], which must be its first.
     #[must_use]
     pub const fn new() -> Self {
-        Self::of_unknown_finger(Place::Air, FluxSensor::UNKNOWN)
-    }
-
-    const fn of_unknown_finger(place: Place, sensor: FluxSensor) -> Self {
+        let (place, sensor) = (Place::Air, FluxSensor::UNKNOWN);
         Self {
             scale: Scale::new(place, sensor.lag_deviation()),
             place,
@@ -83,6 +106,9 @@ impl Learner {
             signals: Signals::NEW,
             estimate: Estimate::PRIOR,
             judge: Judge::NEW,
+            above_display: Recent::NEW,
+            resistance: Recent::NEW,
+            learnt_resistance_m2k_w: 0.0,
             windows_in_contact: None,
             ticks_since_landing: 0,
             stored_contacts: 0,
@@ -92,12 +118,27 @@ impl Learner {
         }
     }
 
-    pub(crate) fn begin(restart: Restart) -> Self {
-        let mut learner = Self::of_unknown_finger(restart.place, restart.sensor);
-        learner.person = restart.person;
-        learner.estimate = learner.prior();
-        learner.weights = relative_weights(&learner.estimate.parameters);
-        learner
+    /// Begins anew with these place, sensor and person. Their copy is no reference, which would keep all of an input in memory.
+    #[inline(always)]
+    pub(crate) fn restart(&mut self, restart: Restart) {
+        self.place = restart.place;
+        self.sensor = restart.sensor;
+        self.person = restart.person;
+        self.begin();
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn begin(&mut self) {
+        self.scale = Scale::new(self.place, self.sensor.lag_deviation());
+        self.signals = Signals::NEW;
+        self.estimate = self.prior();
+        self.weights = relative_weights(&self.estimate.parameters);
+        self.judge = Judge::NEW;
+        self.windows_in_contact = None;
+        self.ticks_since_landing = 0;
+        self.stored_contacts = 0;
+        self.has_changed = true;
     }
 
     /// What is known of the finger before its contacts.
@@ -110,19 +151,19 @@ impl Learner {
     /// Takes one window's measurements, and returns what is known of the finger after it.
     pub fn advance(&mut self, input: &LearnerInput) -> &LearnerOutput {
         if let Some(restart) = input.restart {
-            *self = Self {
-                output: self.output,
-                ..Self::begin(restart)
-            };
+            self.restart(restart);
         }
-        let lagged = self.signals.advance(input, &self.sensor);
         let mut person = None;
+        // Of how many windows one is learnt from, if this is one.
+        let mut every = None;
         match &input.contact {
             Some(contact) => {
-                if self.windows_in_contact.is_none() {
+                let lands = self.windows_in_contact.is_none();
+                if lands {
                     self.land();
                     self.ticks_since_landing = 0;
                 }
+                self.follow(contact, lands);
                 let windows = self
                     .windows_in_contact
                     .map_or(1, |windows| windows.wrapping_add(1));
@@ -136,7 +177,8 @@ impl Learner {
                 let is_learnt_from =
                     contact.is_steady && contact.ticks_since_landing >= LEARNT_FROM_TICKS;
                 if is_learnt_from && !matches!(self.judge.trust(), Trust::Mean(_)) {
-                    self.learn(contact, windows, &lagged);
+                    every = Some(windows_per_update(contact.ticks_since_landing))
+                        .filter(|every| windows.is_multiple_of(*every));
                 }
             }
             None => {
@@ -147,6 +189,12 @@ impl Learner {
                 }
             }
         }
+        let drive = self.signals.drive(input, &self.sensor);
+        if let (Some(contact), Some(every)) = (&input.contact, every) {
+            let lagged = self.signals.lagged(&drive, &self.sensor);
+            self.learn(contact, every, &lagged);
+        }
+        self.signals.advance(&drive, &self.sensor);
         if let Trust::Mean(why) = self.judge.trust() {
             self.approach_mean(why);
             self.stored_contacts = 0;
@@ -161,6 +209,15 @@ impl Learner {
         }
     }
 
+    /// Follows display and force.
+    fn follow(&mut self, contact: &Contact, lands: bool) {
+        let touching = f32::from(contact.touching_ticks.max(1)) / WINDOW_TICKS as f32;
+        let above_k = to_float(contact.skin_above_display_k) / touching;
+        let share = |share: f32| if lands { 1.0 } else { share };
+        (self.above_display).advance(above_k, share(DISPLAY_SHARE));
+        (self.resistance).advance(resistance_m2k_w(contact), share(RESISTANCE_SHARE));
+    }
+
     /// What to store of the finger after a contact, if that was trusted and long enough.
     fn person_after_contact(&mut self) -> Option<PersonPrior> {
         let is_stored =
@@ -171,18 +228,10 @@ impl Learner {
         })
     }
 
-    fn learn(&mut self, contact: &Contact, windows: u8, lagged: &Lagged) {
+    /// Learns from one window of so many.
+    fn learn(&mut self, contact: &Contact, every: u8, lagged: &Lagged) {
         let ticks = contact.ticks_since_landing;
-        let every = match ticks {
-            ..EVERY_WINDOW_TICKS => 1,
-            EVERY_WINDOW_TICKS..EVERY_SECOND_TICKS => 2,
-            EVERY_SECOND_TICKS..EVERY_FOURTH_TICKS => 4,
-            EVERY_FOURTH_TICKS.. => 8,
-        };
-        if !windows.is_multiple_of(every) {
-            return;
-        }
-        let resistance_m2k_w = contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT;
+        let resistance_m2k_w = resistance_m2k_w(contact);
         let parameters = self.estimate.parameters;
         if self.has_changed {
             self.weights = relative_weights(&parameters);
@@ -190,31 +239,58 @@ impl Learner {
         let measurement =
             lagged.measurement(resistance_m2k_w, &self.sensor, &self.scale, &self.weights);
 
-        let mut model_k2 = MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_ERROR_TICKS);
+        let mut model_k2 =
+            MODEL_ERROR_K * MODEL_ERROR_K * (1.0 + ticks as f32 / MODEL_VARIANCE_DOUBLED_TICKS);
         let is_settled = ticks >= SETTLED_TICKS;
         if !is_settled {
             model_k2 += UNSETTLED_ERROR_K * UNSETTLED_ERROR_K;
         }
         let factor = 1.0 + parameters[RESISTANCE] * self.scale.deviations[RESISTANCE];
         let zero_k = factor * resistance_m2k_w * ZERO_ERROR_W_M2;
-        let variance_k2 =
-            (model_k2 + zero_k * zero_k + SURFACE_ERROR_K * SURFACE_ERROR_K) / f32::from(every);
+        let error_k2 = model_k2 + zero_k * zero_k + SURFACE_ERROR_K * SURFACE_ERROR_K;
+        let display_k = DISPLAY_CHANGE_ERROR * self.above_display.change();
+        let force_k = self.resistance.change() * lagged.flux_w_m2;
+        let changes_k2 = display_k * display_k + force_k * force_k;
         self.has_changed = true;
+        self.widen_factor(resistance_m2k_w);
+        let skipped = if ticks < ONE_IN_TWO_UNTIL_TICKS {
+            every
+        } else {
+            1
+        };
+        let variance_k2 = (error_k2 + changes_k2) / f32::from(skipped);
         let innovation = self.estimate.update(&measurement, variance_k2, &self.scale);
         let innovation = innovation.map(|innovation| if is_settled { innovation } else { 0.0 });
         let parameters = &self.estimate.parameters;
-        let state = (resistance_m2k_w, ticks);
+        let state = (resistance_m2k_w, ticks, error_k2);
         self.judge
             .judge(innovation, &measurement, state, parameters, &self.scale);
     }
 
-    /// Takes the parameters towards those of the mean finger, in some 100 ms so that set-points do not jump. That the contact
-    /// is better than usual is kept.
+    /// Raises the variance of the factor on the contact resistance, because the nominal resistance has changed.
+    fn widen_factor(&mut self, resistance_m2k_w: f32) {
+        let before_m2k_w = self.learnt_resistance_m2k_w;
+        self.learnt_resistance_m2k_w = resistance_m2k_w;
+        if before_m2k_w > 0.0 {
+            let change_m2k_w = resistance_m2k_w - before_m2k_w;
+            let larger_m2k_w = if change_m2k_w > 0.0 {
+                resistance_m2k_w
+            } else {
+                before_m2k_w
+            };
+            let relative = change_m2k_w / larger_m2k_w;
+            let deviation = FACTOR_CHANGE * relative / self.scale.deviations[RESISTANCE];
+            self.estimate.widen_resistance(deviation * deviation);
+        }
+    }
+
+    /// Takes the parameters to those of the mean finger, in some 100 ms so that set-points do not jump. After [`Distrust::Wet`] the
+    /// contact resistance stays.
     fn approach_mean(&mut self, why: Distrust) {
         self.has_changed = true;
         for (index, parameter) in self.estimate.parameters.iter_mut().enumerate() {
             if index != RESISTANCE || why != Distrust::Wet {
-                *parameter *= REMAINING_IF_DISTRUSTED;
+                *parameter *= DECAY_PER_WINDOW_IF_DISTRUSTED;
             }
         }
     }
@@ -230,4 +306,9 @@ impl Learner {
         self.output.person = person;
         &self.output
     }
+}
+
+/// The nominal contact resistance, m² K/W.
+fn resistance_m2k_w(contact: &Contact) -> f32 {
+    contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT
 }

@@ -11,6 +11,7 @@ mod learner;
 mod output;
 mod parameters;
 mod person;
+mod recent;
 mod regressors;
 mod sensor;
 mod signals;

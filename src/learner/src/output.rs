@@ -25,8 +25,8 @@ pub struct LearnerOutput {
     pub revision: u16,
     /// Weights of the tissue over those of the mean finger, 0.4 to 2, for `TissueWeights`.
     pub weights: [I2F30; WEIGHTS],
-    /// Relative change of the flux that the air took before contact, -1 to 1.5.
-    pub air_change: I4F28,
+    /// Flux that the air took before contact over that from the assumed finger, less 1; -2.5 to 2.5.
+    pub air_flux_deviation: I4F28,
     /// Skin before contact less what its thermistor says, -0.3 to 0.3 K.
     pub skin_offset_k: Celsius,
     /// Factor on the nominal contact resistance, 0.4 to 2.5.
@@ -61,7 +61,7 @@ impl LearnerOutput {
         sequence: 0,
         revision: 0,
         weights: [I2F30::ONE; WEIGHTS],
-        air_change: I4F28::ZERO,
+        air_flux_deviation: I4F28::ZERO,
         skin_offset_k: Celsius::ZERO,
         resistance_factor: I4F28::ONE,
         trust: Trust::Learning,
@@ -78,7 +78,7 @@ impl LearnerOutput {
             sequence: 0,
             revision,
             weights: all_to_fixed(weights),
-            air_change: to_fixed(change(AIR)),
+            air_flux_deviation: to_fixed(change(AIR)),
             skin_offset_k: to_fixed(change(SKIN)),
             resistance_factor: to_fixed(1.0 + change(RESISTANCE)),
             trust: Trust::Learning,
@@ -94,20 +94,20 @@ impl LearnerOutput {
         let weights = self.weights.iter().zip(&other.weights);
         weights.fold(true, |near, (own, other)| {
             near & (own.abs_diff(*other) <= WEIGHT_TOLERANCE)
-        }) && self.air_change.abs_diff(other.air_change) <= AIR_TOLERANCE
+        }) && self.air_flux_deviation.abs_diff(other.air_flux_deviation) <= AIR_TOLERANCE
             && self.skin_offset_k.abs_diff(other.skin_offset_k) <= SKIN_TOLERANCE_K
             && self.resistance_factor.abs_diff(other.resistance_factor) <= RESISTANCE_TOLERANCE
     }
 
-    /// Goes a step on the way to the mean finger, as if the learner did not answer: to a twentieth in ten windows, as the learner
-    /// itself goes there. Returns whether something has changed.
+    /// Goes one step towards the mean finger, for a window without an answer of the learner: to a twentieth in ten windows, as the
+    /// learner goes there after a distrust. Returns whether anything has changed.
     pub fn approach_mean(&mut self) -> bool {
         let mut has_changed = false;
         for weight in &mut self.weights {
             has_changed |= approach(weight, I2F30::ONE);
         }
         has_changed
-            | approach(&mut self.air_change, I4F28::ZERO)
+            | approach(&mut self.air_flux_deviation, I4F28::ZERO)
             | approach(&mut self.skin_offset_k, Celsius::ZERO)
             | approach(&mut self.resistance_factor, I4F28::ONE)
     }

@@ -5,7 +5,7 @@ use contact_model::fixed_point::{TissueWeights, WEIGHTS};
 use contact_model::impedance::Relaxation;
 use fixed::types::I2F30;
 
-use crate::signals::{BankOutput, RATES};
+use crate::signals::{BankOutput, RELAXATION_COUNT};
 
 /// Number of parameters: two components of the tissue, film of air, skin temperature, contact resistance, and last the sensor's
 /// lag.
@@ -27,7 +27,7 @@ pub const RESISTANCE: usize = 4;
 /// The mean finger's relaxations with a rate. Its integrator is left out: it adds 1.4 mK per kW/m² and 10 s.
 pub const RELAXATIONS: &[Relaxation] = {
     let (integrator, others) = MEAN.impedance.relaxations.split_at(1);
-    assert!(integrator[0].rate_1_s == 0.0 && others.len() == RATES);
+    assert!(integrator[0].rate_1_s == 0.0 && others.len() == RELAXATION_COUNT);
     others
 };
 
@@ -35,7 +35,7 @@ pub const RELAXATIONS: &[Relaxation] = {
 pub const MEAN_WEIGHTS: BankOutput = {
     let mut weights = [MEAN.impedance.direct_m2k_w as f32; WEIGHTS];
     let mut k = 0;
-    while k < RATES {
+    while k < RELAXATION_COUNT {
         weights[k] = RELAXATIONS[k].gain_m2k_j as f32;
         k += 1;
     }
@@ -54,7 +54,7 @@ pub const RELATIVE_COMPONENTS: [BankOutput; 2] = {
     all
 };
 
-/// Parameters of an average finger, in prior deviations; all zero is the mean finger.
+/// Parameters before anything is learnt, in prior deviations: the mean of the simulated fingers. All zero is the mean finger.
 pub const PRIOR: Parameters = [
     COMPONENT_MEANS[0] as f32,
     COMPONENT_MEANS[1] as f32,
@@ -64,7 +64,7 @@ pub const PRIOR: Parameters = [
     0.0,
 ];
 
-/// Where the finger is before its contacts.
+/// Whether the finger is in air or on an insulating pad before its contacts, which decides how much heat its skin loses there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// In air.
@@ -85,12 +85,12 @@ pub struct Scale {
 }
 
 /// Limits of the components (the second one takes strong perfusion of the dermis, too: 5.6 in a finger of scenario G), of the
-/// relative change of the air's flux, of the skin's temperature, K, of the factor on the contact resistance, and of the relative
+/// relative change of the air's flux (below -1 for a finger on a pad whose blood the force stops), of the skin's temperature, K, of the factor on the contact resistance, and of the relative
 /// change of the lag.
 const LIMITS: [(f32, f32); PARAMETERS] = [
     (-3.5, 3.5),
     (-7.0, 7.0),
-    (-1.0, 1.5),
+    (-2.5, 2.5),
     (-0.3, 0.3),
     (0.4 - 1.0, 2.5 - 1.0),
     (-0.3, 0.3),

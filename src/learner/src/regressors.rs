@@ -20,10 +20,30 @@ pub struct Signals {
     by_air: Bank,
 }
 
+/// What drives lags and banks in a window: measured flux, skin above display, flux of the air before contact and touching, the
+/// second and the third also after the sensor's lag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    flux_w_m2: f32,
+    above_k: f32,
+    lagged_above_k: f32,
+    air: f32,
+    lagged_air: f32,
+    touching: f32,
+}
+
+impl Drive {
+    /// Fluxes into the banks.
+    fn fluxes_w_m2(&self) -> [f32; 2] {
+        [self.flux_w_m2 - self.lagged_air, self.lagged_air]
+    }
+}
+
 /// Signals of one window with contact, after the sensor's lag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lagged {
-    flux_w_m2: f32,
+    /// The measured flux.
+    pub flux_w_m2: f32,
     /// Skin before contact above the display's surface, K; and with the lag applied twice.
     above_k: f32,
     above_twice_k: f32,
@@ -34,7 +54,7 @@ pub struct Lagged {
 }
 
 /// A measurement as a float.
-fn to_float<T: Fixed<Bits = i32>>(value: T) -> f32 {
+pub fn to_float<T: Fixed<Bits = i32>>(value: T) -> f32 {
     value.to_bits() as f32 / (1u32 << T::FRAC_NBITS) as f32
 }
 
@@ -49,27 +69,49 @@ impl Signals {
         by_air: Bank::ZERO,
     };
 
-    /// Advances by a window.
-    pub fn advance(&mut self, input: &LearnerInput, sensor: &FluxSensor) -> Lagged {
-        let (above, air, touching) = input.contact.as_ref().map_or((0.0, 0.0, 0.0), |contact| {
-            let share = f32::from(contact.touching_ticks) / WINDOW_TICKS as f32;
-            let touching = clamped(share, 0.0, 1.0);
-            let air = to_float(contact.air_flux_w_m2) * touching;
-            (to_float(contact.skin_above_display_k), air, touching)
-        });
-        let flux_w_m2 = input.flux_w_m2.map_or(0.0, to_float);
-        let above_k = self.skin_above_display.advance(above, sensor);
-        let air_w_m2 = self.air.advance(air, sensor);
-        let banks = [&mut self.by_flux, &mut self.by_air];
-        let [by_flux, by_air] = Bank::advance_both(banks, [flux_w_m2 - air_w_m2, air_w_m2]);
-        Lagged {
-            flux_w_m2,
+    /// What drives lags and banks in a window.
+    #[inline(always)]
+    pub fn drive(&self, input: &LearnerInput, sensor: &FluxSensor) -> Drive {
+        let (above_k, air, touching) =
+            (input.contact.as_ref()).map_or((0.0, 0.0, 0.0), |contact| {
+                let share = f32::from(contact.touching_ticks) / WINDOW_TICKS as f32;
+                let touching = clamped(share, 0.0, 1.0);
+                let air = to_float(contact.air_flux_w_m2) * touching;
+                (to_float(contact.skin_above_display_k), air, touching)
+            });
+        Drive {
+            flux_w_m2: input.flux_w_m2.map_or(0.0, to_float),
             above_k,
-            above_twice_k: self.skin_above_display_twice.advance(above_k, sensor),
-            touching: self.touching.advance(touching, sensor),
-            by_flux,
-            by_air,
+            lagged_above_k: self.skin_above_display.mean(above_k, sensor),
+            air,
+            lagged_air: self.air.mean(air, sensor),
+            touching,
         }
+    }
+
+    /// The signals of the window that is driven so, which [`Self::advance`] has not ended yet.
+    #[inline(always)]
+    pub fn lagged(&self, drive: &Drive, sensor: &FluxSensor) -> Lagged {
+        let above_k = drive.lagged_above_k;
+        let [flux_beyond_air, air] = drive.fluxes_w_m2();
+        Lagged {
+            flux_w_m2: drive.flux_w_m2,
+            above_k,
+            above_twice_k: self.skin_above_display_twice.mean(above_k, sensor),
+            touching: self.touching.mean(drive.touching, sensor),
+            by_flux: self.by_flux.output(flux_beyond_air),
+            by_air: self.by_air.output(air),
+        }
+    }
+
+    /// Advances by the window that is driven so.
+    #[inline(always)]
+    pub fn advance(&mut self, drive: &Drive, sensor: &FluxSensor) {
+        (self.skin_above_display).advance(drive.above_k, sensor);
+        (self.skin_above_display_twice).advance(drive.lagged_above_k, sensor);
+        self.air.advance(drive.air, sensor);
+        self.touching.advance(drive.touching, sensor);
+        Bank::advance_both([&mut self.by_flux, &mut self.by_air], drive.fluxes_w_m2());
     }
 }
 
@@ -80,8 +122,8 @@ pub struct Measurement {
     pub residual_k: f32,
     /// Change of the residual per prior deviation of each parameter, K.
     pub regressors: Parameters,
-    /// Temperature difference across tissue and contact, K: the skin that would be without contact, above the display.
-    pub drop_k: f32,
+    /// Skin as it would be if no heat flowed into the display (its open-circuit temperature), less the display's surface, K.
+    pub open_circuit_difference_k: f32,
 }
 
 /// Sum of a bank's output with the mean finger's weights times relative ones, K.
@@ -122,7 +164,7 @@ impl Lagged {
         Measurement {
             residual_k,
             regressors,
-            drop_k: self.above_k + dot(&self.by_air, &MEAN_WEIGHTS),
+            open_circuit_difference_k: self.above_k + dot(&self.by_air, &MEAN_WEIGHTS),
         }
     }
 }

@@ -13,9 +13,9 @@ const LAG_MIN_S: f64 = 1e-4;
 pub struct FluxSensor {
     /// Part of the lag's state that remains at a window's end.
     remaining: U0F32,
-    /// Mean of that part over the window.
+    /// Mean over a window of what remains of the lag's state, 1 at the window's start.
     mean: U0F32,
-    /// Prior deviation of the lag, relative: 10 % and 1 ms.
+    /// Prior deviation of the lag, over the lag: 0.1 plus 1 ms over the lag.
     lag_deviation: U16F16,
     resistance_mm2k_w: Resistance,
 }

@@ -7,8 +7,8 @@ use crate::parameters::RELAXATIONS;
 use crate::sensor::FluxSensor;
 use crate::window::WINDOW_S;
 
-/// Number of relaxations with a rate.
-pub const RATES: usize = WEIGHTS - 1;
+/// Number of relaxations in a bank: those of the mean finger without its integrator.
+pub const RELAXATION_COUNT: usize = WEIGHTS - 1;
 
 /// The flux sensor's lag, applied to another signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,11 +17,16 @@ pub struct Lag(f32);
 impl Lag {
     pub const ZERO: Self = Self(0.0);
 
-    /// Mean of the lagged signal over a window in which the signal is constant.
-    pub fn advance(&mut self, signal: f32, sensor: &FluxSensor) -> f32 {
-        let mean = signal + (self.0 - signal) * sensor.mean();
+    /// Mean of the lagged signal over the next window, in which the signal is constant.
+    #[inline(always)]
+    pub fn mean(&self, signal: f32, sensor: &FluxSensor) -> f32 {
+        signal + (self.0 - signal) * sensor.mean()
+    }
+
+    /// Advances by that window.
+    #[inline(always)]
+    pub fn advance(&mut self, signal: f32, sensor: &FluxSensor) {
         self.0 = signal + (self.0 - signal) * sensor.remaining();
-        mean
     }
 }
 
@@ -38,31 +43,21 @@ struct UnitRelaxation {
     mean_gain_s: f32,
 }
 
-impl UnitRelaxation {
-    /// Mean of the state over a window with this mean input.
-    #[inline(always)]
-    fn advance(&self, state: &mut f32, input: f32) -> f32 {
-        let mean = self.mean * *state + self.mean_gain_s * input;
-        *state = self.remaining * *state + self.gain_s * input;
-        mean
-    }
-}
-
-const UNIT_RELAXATIONS: [UnitRelaxation; RATES] = {
+const UNIT_RELAXATIONS: [UnitRelaxation; RELAXATION_COUNT] = {
     let mut all = [UnitRelaxation {
         remaining: 0.0,
         gain_s: 0.0,
         mean: 0.0,
         mean_gain_s: 0.0,
-    }; RATES];
+    }; RELAXATION_COUNT];
     let mut k = 0;
-    while k < RATES {
+    while k < RELAXATION_COUNT {
         let decay = WindowDecay::new(RELAXATIONS[k].rate_1_s);
         all[k] = UnitRelaxation {
             remaining: decay.remaining as f32,
             gain_s: (decay.mean * WINDOW_S) as f32,
             mean: decay.mean as f32,
-            mean_gain_s: (decay.mean_of_dose * WINDOW_S) as f32,
+            mean_gain_s: (decay.mean_of_input_response * WINDOW_S) as f32,
         };
         k += 1;
     }
@@ -71,26 +66,32 @@ const UNIT_RELAXATIONS: [UnitRelaxation; RATES] = {
 
 /// Unit relaxations of the mean finger's rates, all driven by one flux.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bank([f32; RATES]);
+pub struct Bank([f32; RELAXATION_COUNT]);
 
 /// Window means of a bank's states, J/m², and the flux itself, W/m²: with the weights of a finger their sum is the rise of its
 /// surface, K.
 pub type BankOutput = [f32; WEIGHTS];
 
 impl Bank {
-    pub const ZERO: Self = Self([0.0; RATES]);
+    pub const ZERO: Self = Self([0.0; RELAXATION_COUNT]);
 
-    /// Outputs of two banks in a window with these mean fluxes, W/m². In one loop, because of the coefficients.
-    pub fn advance_both(banks: [&mut Self; 2], fluxes_w_m2: [f32; 2]) -> [BankOutput; 2] {
-        let mut outputs = fluxes_w_m2.map(|flux_w_m2| [flux_w_m2; WEIGHTS]);
-        let ([first, second], [of_first, of_second]) = (banks, &mut outputs);
-        let states = first.0.iter_mut().zip(&mut second.0);
-        let means = of_first.iter_mut().zip(of_second);
-        for ((states, means), one) in states.zip(means).zip(&UNIT_RELAXATIONS) {
-            *means.0 = one.advance(states.0, fluxes_w_m2[0]);
-            *means.1 = one.advance(states.1, fluxes_w_m2[1]);
+    /// Output in the next window, with this mean flux, W/m².
+    pub fn output(&self, flux_w_m2: f32) -> BankOutput {
+        let mut output = [flux_w_m2; WEIGHTS];
+        for ((mean, state), one) in output.iter_mut().zip(&self.0).zip(&UNIT_RELAXATIONS) {
+            *mean = one.mean * state + one.mean_gain_s * flux_w_m2;
         }
-        outputs
+        output
+    }
+
+    /// Advances two banks by a window with these mean fluxes, W/m². In one loop, because of the coefficients.
+    pub fn advance_both(banks: [&mut Self; 2], fluxes_w_m2: [f32; 2]) {
+        let [first, second] = banks;
+        let states = first.0.iter_mut().zip(&mut second.0);
+        for ((first, second), one) in states.zip(&UNIT_RELAXATIONS) {
+            *first = one.remaining * *first + one.gain_s * fluxes_w_m2[0];
+            *second = one.remaining * *second + one.gain_s * fluxes_w_m2[1];
+        }
     }
 }
 

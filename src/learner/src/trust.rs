@@ -24,7 +24,8 @@ pub enum Distrust {
 /// What the output is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trust {
-    /// Learnt from less than half a second of contact; before the first contact an average finger.
+    /// Learnt from less than half a second of a contact. Before the first contact the chosen person's finger, or without one the mean of
+    /// the simulated fingers.
     Learning,
     /// Learnt from half a second of contact or more.
     Trusted,
@@ -36,9 +37,9 @@ pub enum Trust {
 const TRUSTED_TICKS: u32 = 500;
 /// Time constant, in updates, of the filter of squared innovations over their variance.
 const INNOVATION_UPDATES: f32 = 8.0;
-/// Largest filtered innovation before and after [`TRUSTED_TICKS`]. Innovations are over a variance that includes the error of
-/// the model, so that those of fingers are far below 1.
-const INNOVATION_MAX: [f32; 2] = [3.0, 1.0];
+/// Largest filtered innovation. Innovations are over a variance that includes the error of the model, so that those of fingers
+/// are far below 1, but for a few.
+const INNOVATION_MAX: f32 = 4.0;
 /// The same under a light force, where the contact resistance hides the finger.
 const INNOVATION_MAX_LIGHT: f32 = 20.0;
 /// Nominal contact resistance, m² K/W, above which the force is light: that of 0.48 N on the reference display.
@@ -47,10 +48,13 @@ pub const LIGHT_RESISTANCE_M2K_W: f32 = 2.4e-3;
 const STRANGE_IN_A_ROW: u8 = 3;
 /// Updates in a row with a parameter at a limit that distrust needs.
 const AT_LIMIT_IN_A_ROW: u8 = 30;
+/// A parameter's limit counts if the square of what its prior deviation makes is above so many variances of the measurement's
+/// error in a quiet contact, and the force is not light: else the flux does not tell the parameter.
+const TELLING: f32 = 4.0;
 /// Temperature drop, K, from which it is asked how much of it the measured flux explains.
 const DROP_MIN_K: f32 = 1.0;
-/// Part of the drop that the measured flux makes in the mean finger, below which the flux is missing.
-const EXPLAINED_BY_NO_FLUX: f32 = 0.05;
+/// Least part of the temperature difference that the measured flux must make in the mean finger; below it the flux is missing.
+const EXPLAINED_PART_MIN: f32 = 0.05;
 
 /// Counts of what does not fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,12 +99,12 @@ impl Judge {
     }
 
     /// Judges an update: the squared innovation over its variance, at a nominal contact resistance, m² K/W, and so many ticks
-    /// after landing; and the parameters.
+    /// after landing, and the variance of the measurement's error in a quiet contact, K²; and the parameters.
     pub fn judge(
         &mut self,
         innovation: Option<f32>,
         measurement: &Measurement,
-        (resistance_m2k_w, ticks): (f32, u32),
+        (resistance_m2k_w, ticks, error_k2): (f32, u32, f32),
         parameters: &Parameters,
         scale: &Scale,
     ) {
@@ -108,14 +112,18 @@ impl Judge {
             return self.distrust(Distrust::Arithmetic);
         };
         self.filtered_innovation += (innovation - self.filtered_innovation) / INNOVATION_UPDATES;
-        let largest = if resistance_m2k_w > LIGHT_RESISTANCE_M2K_W {
+        let is_light = resistance_m2k_w > LIGHT_RESISTANCE_M2K_W;
+        let largest = if is_light {
             INNOVATION_MAX_LIGHT
         } else {
-            INNOVATION_MAX[usize::from(ticks >= TRUSTED_TICKS)]
+            INNOVATION_MAX
         };
         let is_strange = self.filtered_innovation > largest;
         let limit = |index: usize| {
-            if parameters[index] == scale.low[index] {
+            let regressor_k = measurement.regressors[index];
+            if is_light || regressor_k * regressor_k < TELLING * error_k2 {
+                None
+            } else if parameters[index] == scale.low[index] {
                 Some(Limit::Low)
             } else if parameters[index] == scale.high[index] {
                 Some(Limit::High)
@@ -143,7 +151,7 @@ impl Judge {
     fn cause(&self, explained: Option<f32>, ticks: u32, resistance: Option<Limit>) -> Distrust {
         let was_trusted = self.trust == Trust::Trusted && ticks >= TRUSTED_TICKS;
         match (explained, resistance) {
-            (Some(part), _) if part < EXPLAINED_BY_NO_FLUX => Distrust::Sensor,
+            (Some(part), _) if part < EXPLAINED_PART_MIN => Distrust::Sensor,
             _ if was_trusted => Distrust::Contact,
             (Some(part), Some(Limit::High)) if part < 1.0 => Distrust::Between,
             _ => Distrust::Unexplained,
@@ -161,9 +169,9 @@ enum Limit {
 /// Drop of temperature that the measured flux makes in the mean finger with its contact, over the drop that there is; none if
 /// that one is small.
 fn explained(measurement: &Measurement) -> Option<f32> {
-    let drop_k = measurement.drop_k;
-    (!(-DROP_MIN_K..=DROP_MIN_K).contains(&drop_k))
-        .then(|| (drop_k - measurement.residual_k) / drop_k)
+    let open_circuit_difference_k = measurement.open_circuit_difference_k;
+    (!(-DROP_MIN_K..=DROP_MIN_K).contains(&open_circuit_difference_k))
+        .then(|| (open_circuit_difference_k - measurement.residual_k) / open_circuit_difference_k)
 }
 
 /// Counts in a row.

@@ -51,7 +51,8 @@ pub struct Contact {
     pub skin_above_display_k: Celsius,
     /// Flux that the film of air has taken from the assumed finger's skin before contact.
     pub air_flux_w_m2: Flux,
-    /// Contact resistance between an average skin and the display at the window's mean force, without that of the flux sensor.
+    /// Thermal resistance between skin and display at the window's mean force by the finger's contact law, without the factor that is
+    /// learnt and without the layer of the flux sensor.
     pub resistance_mm2k_w: Resistance,
     /// Ticks since landing, at the window's end; 0 if the finger has lifted by then.
     pub ticks_since_landing: u32,

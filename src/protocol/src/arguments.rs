@@ -1,7 +1,10 @@
 //! Arguments of a command on a line from the host: words, and numbers within a range.
+//!
+//! In this crate a text is split at `['x']`, not at `'x'`, whose search checks an index in code that is optimised for size.
 
 use core::str::SplitAsciiWhitespace;
 
+use contact_model::fixed_point::{rounded_units, units_to_f64};
 use fixed::types::I32F32;
 use thermal_settings::Range;
 
@@ -64,11 +67,22 @@ pub fn read_fixed_point_in_range(
 ) -> Result<I32F32, Error> {
     let word = word_or_empty(words);
     let value = fixed_point_from_decimal(word).ok_or(Error::NotANumber(range, word.into()))?;
-    if (I32F32::from_num(range.min)..=I32F32::from_num(range.max)).contains(&value) {
+    let limit = |limit: f64| I32F32::from_bits(rounded_units(limit, I32F32::FRAC_NBITS));
+    if (limit(range.min)..=limit(range.max)).contains(&value) {
         Ok(value)
     } else {
         Err(Error::OutOfRange(range, word.into()))
     }
+}
+
+/// The same as a float.
+///
+/// # Errors
+/// Those of [`read_fixed_point_in_range`].
+#[inline(never)]
+pub fn read_number_in_range(words: &mut Words<'_>, range: &'static Range) -> Result<f64, Error> {
+    let value = read_fixed_point_in_range(words, range)?;
+    Ok(units_to_f64(value.to_bits(), I32F32::FRAC_NBITS))
 }
 
 /// Reads the next words of a line as decimal numbers, one for each of `ranges`, and returns them in this order. Each
@@ -90,7 +104,7 @@ fn read_into(
     values: &mut [f64],
 ) -> Result<(), Error> {
     for (value, range) in values.iter_mut().zip(ranges) {
-        *value = read_fixed_point_in_range(words, range)?.to_num();
+        *value = read_number_in_range(words, range)?;
     }
     Ok(())
 }
@@ -104,7 +118,7 @@ pub fn read_whole_number_in_range(
     let word = words.clone().next().unwrap_or_default();
     let value = read_fixed_point_in_range(words, range)?;
     if value.frac() == 0 {
-        Ok(value.to_num())
+        Ok((value.to_bits() >> I32F32::FRAC_NBITS) as usize)
     } else {
         Err(Error::OutOfRange(range, word.into()))
     }

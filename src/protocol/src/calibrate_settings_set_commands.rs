@@ -12,7 +12,7 @@ use thermal_settings::{
 
 use crate::Error;
 use crate::arguments::{
-    Words, read_fixed_point_in_range, read_numbers_in_ranges, read_whole_number_in_range,
+    Words, read_number_in_range, read_numbers_in_ranges, read_whole_number_in_range,
     skip_if_next_is, word_or_empty,
 };
 
@@ -62,12 +62,12 @@ pub fn parse_calibration_point_or_clear(words: &mut Words<'_>) -> Result<Session
     }
     Ok(SessionRequest::AddPoint {
         sensor,
-        reference_c: read_fixed_point_in_range(words, &REFERENCE_TEMPERATURE_RANGE)?.to_num(),
+        reference_c: read_number_in_range(words, &REFERENCE_TEMPERATURE_RANGE)?,
     })
 }
 
-/// Reads the argument of the command `settings`: a number from 1 to 9 requests the line of the settings with this
-/// number. Without an argument, the number of lines is requested.
+/// Reads the argument of the command `settings`: a number from 1 to [`SETTINGS_LINE_COUNT_MAX`], 10, requests the line of the settings
+/// with this number: there are 8, one more with a heat-flux sensor, and one more with a measured surface of the display. Without an argument, the number of lines is requested.
 pub fn parse_settings_query(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
     if words.clone().next().is_none() {
         return Ok(SessionRequest::CountSettingsLines);
@@ -91,7 +91,7 @@ pub fn parse_set_arguments(words: &mut Words<'_>) -> Result<Setting, Error> {
             let mut counts = heapless::Vec::new();
             // At least one step. Words that follow the last possible step are left to the caller, who reports them.
             while counts.is_empty() || counts.len() < room && words.clone().next().is_some() {
-                let step = read_fixed_point_in_range(words, &ADC_ERROR_STEP_RANGE)?.to_num();
+                let step = read_number_in_range(words, &ADC_ERROR_STEP_RANGE)?;
                 let _ = counts.push(round_to_decimals(
                     step,
                     Calibration::ADC_ERROR_STEP_DECIMALS,

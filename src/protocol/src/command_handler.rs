@@ -269,6 +269,10 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         let is_one = finger.is_some() || FINGERS == 1;
+        let finger = match request {
+            PersonRequest::Query if FINGERS > 1 => finger.or(Some(FingerIndex::FIRST)),
+            _ => finger,
+        };
         let answer = match request {
             PersonRequest::Choose(code) => match code.map(|code| (code, self.persons.get(code))) {
                 Some((code, None)) => Err(Error::UnknownPerson(code)),
@@ -283,14 +287,17 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             PersonRequest::Forget(code) if self.persons.remove(code) => Ok(Reply::DONE),
             PersonRequest::Forget(code) => Err(Error::UnknownPerson(code)),
             PersonRequest::Enrol(_) if !is_one => Err(Error::Missing("finger (as @0)")),
-            PersonRequest::Query => Self::person_state(finger, execute).map(|state| {
-                Reply::Person(PersonReply {
-                    person: state.chosen,
-                    contacts: state.contacts(),
+            PersonRequest::Query => {
+                Self::person_state(Command::Person, finger, execute).map(|state| {
+                    Reply::Person(PersonReply {
+                        person: state.chosen,
+                        contacts: state.contacts(),
+                    })
                 })
-            }),
+            }
             PersonRequest::Enrol(code) => {
-                Self::person_state(finger, execute).and_then(|state| self.enrol(code, &state))
+                Self::person_state(Command::LearntPerson, finger, execute)
+                    .and_then(|state| self.enrol(code, &state))
             }
         };
         let finger = finger.map(FingerIndex::index_u8);
@@ -300,12 +307,13 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// The chosen person of a finger, of the first one for `None`, and what was learnt of it.
+    /// The chosen person of a finger, of the first one for `None`, and what was learnt of it, by one of the two commands for that.
     fn person_state(
+        command: Command<'_>,
         finger: Option<FingerIndex<FINGERS>>,
         mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<PersonState, Error> {
-        match execute(Some(finger.unwrap_or(FingerIndex::FIRST)), Command::Person) {
+        match execute(Some(finger.unwrap_or(FingerIndex::FIRST)), command) {
             Ok(WithSourceFinger {
                 content: command::Reply::Person(state),
                 ..

@@ -14,7 +14,7 @@ pub fn fixed_point_from_decimal(word: &str) -> Option<I32F32> {
         Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
         None => (unsigned, 0),
     };
-    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let (whole, fraction) = mantissa.split_once(['.']).unwrap_or((mantissa, ""));
     let digits = whole.bytes().chain(fraction.bytes());
     let count = whole.len() + fraction.len();
     if count == 0 || digits.clone().any(|digit| !digit.is_ascii_digit()) {

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use contact_model::decimal::{Rounded, Shortest};
-use contact_model::fixed_point::{BodyError, Celsius, ContactPairError};
+use contact_model::fixed_point::{BodyError, Celsius, ContactPairError, units_to_f64};
 use contact_model::material::MATERIALS;
 
 use thermal_commissioning::{
@@ -28,6 +28,7 @@ use crate::events::NO_EVENTS_WORD;
 use crate::line_checksum::TwoHexDigits;
 use crate::object::{BACK_WORDS, OBJECT_ARGUMENTS};
 use crate::person::ENROL_CONTACTS;
+use crate::reply::write_contact_law;
 use crate::request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, SWITCH_WORDS};
 use crate::upload::UploadError;
 use crate::{ChecksumError, LINE_MAX_BYTES, LineError, Request};
@@ -497,6 +498,10 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
                 "{command} needs another finger than the thesis's; finger mean first"
             );
         }
+        Refused::OtherContactLaw(law) => {
+            f.write_str("person needs contact nominal first; told is ")?;
+            return write_contact_law(f, law);
+        }
         Refused::AlreadyStarted => "already started; arm takes the object away",
         Refused::NeedsDrivenDisplay(command) => {
             return write!(f, "{command} needs a driven display: arm first");
@@ -511,7 +516,7 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
             return write!(f, "{command} needs a heat-flux sensor; flux set first");
         }
         Refused::FluxSensorFault => {
-            "the code of the heat-flux sensor is at a rail or does not change; look at its wires"
+            "the heat-flux sensor has no code, or one at a rail or that does not change; look at its wires"
         }
         Refused::DisplayNotAtRoom { display, room } => {
             f.write_str("flux zero needs the display within 0.3 C of the room; they have ")?;
@@ -528,7 +533,7 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
         }
         Refused::CourseOutOfRange(celsius) => {
             let (min, max) = (Shortest(SETPOINT_MIN_C), Shortest(SETPOINT_MAX_C));
-            let celsius = Rounded(celsius.to_num(), 2);
+            let celsius = rounded_celsius(*celsius);
             return write!(
                 f,
                 "with the present skin the course reaches {celsius} C; {min} to {max} C are allowed"
@@ -542,9 +547,17 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
     })
 }
 
+/// A temperature with two decimals.
+fn rounded_celsius(celsius: Celsius) -> Rounded {
+    Rounded(
+        units_to_f64(celsius.to_bits().into(), Celsius::FRAC_NBITS),
+        2,
+    )
+}
+
 fn write_celsius_or_dash(f: &mut fmt::Formatter<'_>, value: Option<Celsius>) -> fmt::Result {
     match value {
-        Some(celsius) => write!(f, "{} C", Rounded(celsius.to_num(), 2)),
+        Some(celsius) => write!(f, "{} C", rounded_celsius(celsius)),
         None => f.write_str("-"),
     }
 }
@@ -596,7 +609,7 @@ fn write_calibration_point_error(f: &mut fmt::Formatter<'_>, error: &PointError)
         PointError::TooFar(reading) => write!(
             f,
             "the device reads {} C; allowed is within {} C of that",
-            Rounded(reading.to_num(), 2),
+            rounded_celsius(*reading),
             Shortest(REFERENCE_DIFFERENCE_MAX_K)
         ),
         PointError::Contradicts => {

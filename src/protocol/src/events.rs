@@ -27,7 +27,7 @@ pub fn parse_trigger_output(words: &mut Words<'_>) -> Result<EventKinds, Error> 
     if list == NO_EVENTS_WORD {
         return Ok(kinds);
     }
-    for word in list.split(',') {
+    for word in list.split([',']) {
         let kind = table_entry_for_word_or_none(&DeviceEventKind::PROTOCOL_WORDS, word);
         match kind {
             Some((_, kind)) if kind != DeviceEventKind::Trigger => kinds = kinds.with(kind),

@@ -21,7 +21,7 @@ pub fn split_address<const FINGERS: usize>(
     let Some(addressed) = line.strip_prefix('@') else {
         return Ok((None, line));
     };
-    let (number, rest) = addressed.split_once(' ').unwrap_or((addressed, ""));
+    let (number, rest) = addressed.split_once([' ']).unwrap_or((addressed, ""));
     let known = match number.as_bytes() {
         [digit @ b'0'..=b'9'] => FingerIndex::new(usize::from(digit - b'0')),
         _ => None,

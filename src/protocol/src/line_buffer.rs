@@ -1,7 +1,8 @@
 //! Fast formatting of lines to the host with words and decimal numbers.
 //!
 //! A telemetry line has ten numbers and is written up to a thousand times a second; the `Display` of the fixed-point
-//! types takes ten times as long.
+//! types takes ten times as long. What telemetry calls is `#[inline]`: it is then compiled in the package that sends it, whose code is
+//! not for the smallest size.
 
 use core::fmt;
 
@@ -22,6 +23,7 @@ pub(super) struct LineBuffer {
 }
 
 impl LineBuffer {
+    #[inline]
     pub(super) const fn new() -> Self {
         Self {
             bytes: [0; LINE_CAPACITY_BYTES],
@@ -29,129 +31,163 @@ impl LineBuffer {
         }
     }
 
-    fn push_byte_if_fits(&mut self, byte: u8) {
-        if let Some(place) = self.bytes.get_mut(self.length) {
-            *place = byte;
-            self.length += 1;
-        }
+    #[inline]
+    pub(super) fn push_str_if_fits(&mut self, ascii: &str) {
+        self.push_if_fits(ascii.as_bytes());
     }
 
-    pub(super) fn push_str_if_fits(&mut self, ascii: &str) {
+    #[inline]
+    fn push_if_fits(&mut self, ascii: &[u8]) {
         let end = self.length + ascii.len();
         if let Some(place) = self.bytes.get_mut(self.length..end) {
-            for (place, byte) in place.iter_mut().zip(ascii.bytes()) {
-                *place = byte;
+            // A call of `memcpy` would take longer than a word.
+            for (place, byte) in place.iter_mut().zip(ascii) {
+                *place = *byte;
             }
             self.length = end;
         }
     }
 
-    /// Appends a temperature in °C with `DIGITS` decimals, or `-` for `None`.
-    pub(super) fn push_celsius_or_dash<const DIGITS: usize>(&mut self, value: Option<Celsius>) {
-        match value {
-            Some(value) => self.push_fixed_point_bits::<22, DIGITS>(value.to_bits().into()),
-            None => self.push_byte_if_fits(b'-'),
-        }
+    /// Appends a temperature in °C with so many decimals, or `-` for `None`.
+    #[inline]
+    pub(super) fn push_celsius_or_dash(&mut self, digits: usize, value: Option<Celsius>) {
+        self.push_fixed_point_or_dash(
+            value.map(|value| value.to_bits().into()),
+            Celsius::FRAC_NBITS,
+            digits,
+        );
     }
 
     /// Appends a force in N with three decimals, or `-` for `None`.
+    #[inline]
     pub(super) fn push_force_or_dash(&mut self, value: Option<Force>) {
-        match value {
-            Some(value) => self.push_fixed_point_bits::<24, 3>(value.to_bits().into()),
-            None => self.push_byte_if_fits(b'-'),
-        }
+        self.push_fixed_point_or_dash(
+            value.map(|value| value.to_bits().into()),
+            Force::FRAC_NBITS,
+            3,
+        );
     }
 
     /// Appends a heat flux in W/m² with one decimal, or `-` for `None`.
+    #[inline]
     pub(super) fn push_flux_or_dash(&mut self, value: Option<Flux>) {
-        match value {
-            Some(value) => self.push_fixed_point_bits::<12, 1>(value.to_bits().into()),
-            None => self.push_byte_if_fits(b'-'),
-        }
+        self.push_fixed_point_or_dash(
+            value.map(|value| value.to_bits().into()),
+            Flux::FRAC_NBITS,
+            1,
+        );
     }
 
     /// Appends a current in A with three decimals, after a `-` if it is negative.
+    #[inline]
     pub(super) fn push_current(&mut self, value: Current) {
-        self.push_fixed_point_bits::<24, 3>(value.to_bits().into());
+        self.push_fixed_point_or_dash(Some(value.to_bits().into()), Current::FRAC_NBITS, 3);
     }
 
     /// Appends a current in A with two decimals, or `-` for `None`.
+    #[inline]
     pub(super) fn push_current_or_dash(&mut self, value: Option<Current>) {
-        match value {
-            Some(value) => self.push_fixed_point_bits::<24, 2>(value.to_bits().into()),
-            None => self.push_byte_if_fits(b'-'),
-        }
+        self.push_fixed_point_or_dash(
+            value.map(|value| value.to_bits().into()),
+            Current::FRAC_NBITS,
+            2,
+        );
     }
 
     /// Appends the bridge's supply in V with one decimal, or `-` for `None`.
+    #[inline]
     pub(super) fn push_supply_or_dash(&mut self, value: Option<SupplyVoltage>) {
         match value {
-            Some(value) => self.push_scaled_integer::<1>(value.decivolts()),
-            None => self.push_byte_if_fits(b'-'),
+            Some(value) => self.push_scaled_integer(value.decivolts(), 1),
+            None => self.push_str_if_fits("-"),
         }
     }
 
     /// Appends a number, or `-` for `None`.
+    #[inline]
     pub(super) fn push_integer_or_dash(&mut self, value: Option<u8>) {
         match value {
             Some(value) => self.push_integer(value.into()),
-            None => self.push_byte_if_fits(b'-'),
+            None => self.push_str_if_fits("-"),
         }
     }
 
     /// Appends a sum of 16 conversions as their mean with two decimals, 0.00 to 4095.94.
+    #[inline]
     pub(super) fn push_mean_of_16(&mut self, sum: u16) {
-        self.push_fixed_point_bits::<4, 2>(sum.into());
+        self.push_fixed_point_or_dash(Some(sum.into()), 4, 2);
     }
 
+    #[inline]
     pub(super) fn push_integer(&mut self, value: u32) {
-        self.push_scaled_integer::<0>(value);
+        self.push_scaled_integer(value, 0);
     }
 
-    /// Appends the fixed-point number `bits / 2^FRACTION` as a decimal number with `DIGITS` decimals, rounded to the
-    /// nearest.
-    fn push_fixed_point_bits<const FRACTION: u32, const DIGITS: usize>(&mut self, bits: i64) {
-        let scale = const { 10u64.pow(DIGITS as u32) };
-        let scaled = (bits.unsigned_abs() * scale + (1 << (FRACTION - 1))) >> FRACTION;
-        // Fixed-point types are below 2^10, so a `u32` holds five decimals; a flux is below 2^19 and has one.
-        let scaled = u32::try_from(scaled).unwrap_or(u32::MAX);
+    /// Appends the fixed-point number `bits / 2^fraction` as a decimal number with so many decimals, five at most, rounded to the
+    /// nearest, or `-` for `None`. The bits are those of an `i32` or `u32`, and the fraction has 1 to 31 of them.
+    #[inline]
+    fn push_fixed_point_or_dash(&mut self, bits: Option<i64>, fraction: u32, digits: usize) {
+        let (Some(bits), Some(scale)) = (bits, POWERS_OF_TEN.get(digits)) else {
+            return self.push_str_if_fits("-");
+        };
+        let product = u64::from(bits.unsigned_abs() as u32) * u64::from(*scale);
+        let rounded = product + u64::from(1u32 << (fraction - 1));
+        // A shift of 64 bits by a variable would be a call. Fixed-point types are below 2^10, so a `u32` holds five decimals; a
+        // flux is below 2^19 and has one.
+        let (high, low) = ((rounded >> 32) as u32, rounded as u32);
+        let scaled = (high << (32 - fraction)) | (low >> fraction);
         if bits < 0 && scaled != 0 {
-            self.push_byte_if_fits(b'-');
+            self.push_str_if_fits("-");
         }
-        self.push_scaled_integer::<DIGITS>(scaled);
+        self.push_scaled_integer(scaled, digits);
     }
 
-    /// Appends the number `value / 10^DIGITS` with a decimal point and `DIGITS` decimals, or without a point if
-    /// `DIGITS` is 0.
-    fn push_scaled_integer<const DIGITS: usize>(&mut self, mut value: u32) {
-        // Digits before the decimal point: at least one, and at most ten digits altogether, those of a `u32`.
-        let mut whole = 1;
-        let mut bound = const { 10u32.pow(DIGITS as u32 + 1) };
-        while value >= bound && whole + DIGITS < 10 {
-            whole += 1;
-            bound = bound.saturating_mul(10);
-        }
-        let end = self.length + whole + if DIGITS == 0 { 0 } else { 1 + DIGITS };
+    /// Appends the number `value / 10^digits` with a decimal point and so many decimals, or without a point if there are none.
+    #[inline]
+    fn push_scaled_integer(&mut self, value: u32, digits: usize) {
+        // At least one digit stands before the point.
+        let larger = POWERS_OF_TEN.iter().skip(digits + 1);
+        let whole = 1 + larger.take_while(|power| value >= **power).count();
+        let end = self.length + whole + if digits == 0 { 0 } else { 1 + digits };
         let place = self.bytes.get_mut(self.length..end);
         let Some((whole, rest)) = place.and_then(|place| place.split_at_mut_checked(whole)) else {
             return;
         };
-        let mut put = |places: &mut [u8]| {
-            for place in places.iter_mut().rev() {
-                *place = b'0' + (value % 10) as u8;
-                value /= 10;
-            }
-        };
+        let mut value = value;
         if let Some((point, decimals)) = rest.split_first_mut() {
             *point = b'.';
-            put(decimals);
+            value = put_digits(value, decimals);
         }
-        put(whole);
+        put_digits(value, whole);
         self.length = end;
     }
 }
 
+/// Powers of ten that a `u32` holds.
+const POWERS_OF_TEN: [u32; 10] = {
+    let mut powers = [1; 10];
+    let mut k = 1;
+    while k < powers.len() {
+        powers[k] = 10 * powers[k - 1];
+        k += 1;
+    }
+    powers
+};
+
+/// Writes the last digits of a number, and returns the others.
+#[inline]
+fn put_digits(mut value: u32, places: &mut [u8]) -> u32 {
+    for place in places.iter_mut().rev() {
+        // A tenth, exact for each `u32`: code that is optimised for size would divide.
+        let tenth = ((u64::from(value) * 0xcccc_cccd) >> 35) as u32;
+        *place = b'0' + (value - 10 * tenth) as u8;
+        value = tenth;
+    }
+    value
+}
+
 impl fmt::Display for LineBuffer {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let written = self.bytes.get(..self.length).unwrap_or_default();
         // Only ASCII is ever appended.
@@ -177,7 +213,7 @@ mod tests {
             .chain([i32::MIN, -1, 0, 1, i32::MAX])
         {
             let exact = f64::from(bits) / f64::from(1 << 22);
-            let text = text(|text| text.push_celsius_or_dash::<5>(Some(Celsius::from_bits(bits))));
+            let text = text(|text| text.push_celsius_or_dash(5, Some(Celsius::from_bits(bits))));
             let value: f64 = text.parse().expect("a number");
             assert!(
                 (value - exact).abs() <= 0.5e-5 + 1e-12,
@@ -190,7 +226,7 @@ mod tests {
             );
             assert_ne!(text, "-0.00000");
         }
-        assert_eq!(text(|text| text.push_celsius_or_dash::<2>(None)), "-");
+        assert_eq!(text(|text| text.push_celsius_or_dash(2, None)), "-");
         assert_eq!(
             text(|text| text.push_force_or_dash(Some(Force::MAX))),
             "256.000"

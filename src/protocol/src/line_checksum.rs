@@ -1,16 +1,61 @@
 //! Checksum at the end of a line: `*` and two hexadecimal digits, as in `state*77`, the form of NMEA 0183.
 
 use core::fmt::{self, Write as _};
-
-use heapless::Vec;
+use core::ops::Deref;
 
 use crate::{ANSWER_MAX_BYTES, QuotedWordExcerpt};
 
 /// Bytes of the longest line to the host: address of a finger, longest answer, checksum and line feed.
 const OUTGOING_LINE_MAX_BYTES: usize = "@0 ".len() + ANSWER_MAX_BYTES + "*00".len() + 1;
 
-/// A line to the host with its line feed.
-pub type OutgoingLine = Vec<u8, OUTGOING_LINE_MAX_BYTES>;
+/// A line to the host with its line feed; dereferences to its bytes.
+#[derive(Clone, Debug)]
+pub struct OutgoingLine {
+    bytes: [u8; OUTGOING_LINE_MAX_BYTES],
+    length: usize,
+}
+
+impl OutgoingLine {
+    /// An empty line.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            bytes: [0; OUTGOING_LINE_MAX_BYTES],
+            length: 0,
+        }
+    }
+
+    /// Appends bytes, if there is room for all of them.
+    #[inline]
+    fn push(&mut self, bytes: &[u8]) -> fmt::Result {
+        let end = self.length + bytes.len();
+        let place = self.bytes.get_mut(self.length..end).ok_or(fmt::Error)?;
+        place.copy_from_slice(bytes);
+        self.length = end;
+        Ok(())
+    }
+}
+
+impl Default for OutgoingLine {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Deref for OutgoingLine {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        self.bytes.get(..self.length).unwrap_or_default()
+    }
+}
+
+impl fmt::Write for OutgoingLine {
+    #[inline]
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.push(text.as_bytes())
+    }
+}
 
 /// Why a line is rejected for its checksum. It is not executed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,7 +80,7 @@ pub fn line_checksum(line: &[u8]) -> u8 {
 /// The checksum is wrong, or what follows `*` is none.
 #[inline(never)]
 pub fn strip_checksum(line: &str) -> Result<&str, ChecksumError> {
-    let Some((content, digits)) = line.split_once('*') else {
+    let Some((content, digits)) = line.split_once(['*']) else {
         return Ok(line);
     };
     // `from_str_radix` accepts a leading `+`.
@@ -66,15 +111,15 @@ impl fmt::Display for TwoHexDigits {
 }
 
 /// Replaces `line` by this content, a checksum if it shall have one, and a line feed.
-#[inline(never)]
+#[inline]
 pub fn write_line(line: &mut OutgoingLine, content: &dyn fmt::Display, with_checksum: bool) {
-    line.clear();
-    // All lines of the protocol fit; a longer one would be truncated.
+    line.length = 0;
+    // All lines of the protocol fit; of a longer one the part that does not fit is left out.
     let _ = write!(line, "{content}");
     if with_checksum {
         let checksum = line_checksum(line);
         let _ = write!(line, "*{}", TwoHexDigits(checksum));
     }
-    line.truncate(OUTGOING_LINE_MAX_BYTES - 1);
-    let _ = line.push(b'\n');
+    line.length = line.length.min(OUTGOING_LINE_MAX_BYTES - 1);
+    let _ = line.push(b"\n");
 }

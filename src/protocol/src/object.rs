@@ -1,11 +1,13 @@
 //! The arguments of `object`: temperature before contact, half-space, or slab with its back.
 
+use contact_model::fixed_point::saturated;
 use contact_model::slab::Back;
-use fixed::types::I32F32;
 use thermal_device::command::{Command, ObjectBody};
 use thermal_settings::Range;
 
-use crate::arguments::{Words, read_fixed_point_in_range, skip_if_next_is, word_or_empty};
+use crate::arguments::{
+    Words, read_fixed_point_in_range, read_number_in_range, skip_if_next_is, word_or_empty,
+};
 use crate::{Error, Request};
 
 static OBJECT_TEMPERATURE_RANGE: Range = Range {
@@ -46,31 +48,26 @@ pub fn parse_object(words: &mut Words<'_>) -> Result<Request, Error> {
     }
     if !skip_if_next_is(words, "slab") {
         return match read_fixed_point_in_range(words, &OBJECT_TEMPERATURE_RANGE) {
-            Ok(celsius) => Ok(Request::Station(Command::Object(Some(celsius.to_num())))),
+            Ok(celsius) => Ok(Request::Station(Command::Object(Some(saturated(celsius))))),
             Err(Error::NotANumber(..)) => Err(Error::UnknownObject(word.into())),
             Err(error) => Err(error),
         };
     }
     let word = word_or_empty(words);
     let number = word.strip_suffix("mm").unwrap_or(word);
-    let thickness_mm: I32F32 =
-        read_fixed_point_in_range(&mut number.split_ascii_whitespace(), &THICKNESS_RANGE).map_err(
-            |error| match error {
-                Error::NotANumber(range, _) => Error::NotMillimetres(range, word.into()),
-                error => error,
-            },
-        )?;
+    let thickness_mm = read_number_in_range(&mut number.split_ascii_whitespace(), &THICKNESS_RANGE)
+        .map_err(|error| match error {
+            Error::NotANumber(range, _) => Error::NotMillimetres(range, word.into()),
+            error => error,
+        })?;
     if number == word {
         skip_if_next_is(words, "mm");
     }
     let back = match word_or_empty(words) {
         "insulated" => Back::Insulated,
         "held" => Back::Held,
-        "film" => Back::Film(read_fixed_point_in_range(words, &FILM_RANGE)?.to_num()),
+        "film" => Back::Film(read_number_in_range(words, &FILM_RANGE)?),
         unknown => return Err(Error::UnknownBack(unknown.into())),
     };
-    Ok(Request::Slab {
-        thickness_mm: thickness_mm.to_num(),
-        back,
-    })
+    Ok(Request::Slab { thickness_mm, back })
 }

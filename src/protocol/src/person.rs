@@ -42,7 +42,7 @@ pub fn parse_person(words: &mut Words<'_>) -> Result<Request, Error> {
                 None => PersonRequest::Choose(Some(code)),
                 Some(data) => PersonRequest::Store(Person {
                     code,
-                    finger: bytes(data).ok_or(Error::NotPersonData(data.into()))?,
+                    finger: Person::read_finger(data).ok_or(Error::NotPersonData(data.into()))?,
                 }),
             }
         }
@@ -63,26 +63,12 @@ fn code(word: &str) -> Result<PersonCode, Error> {
     PersonCode::new(word).ok_or(Error::NotPersonCode(word.into()))
 }
 
-/// Reads two hexadecimal digits for each byte.
-fn bytes(word: &str) -> Option<[u8; Person::FINGER_BYTES]> {
-    let mut bytes = [0; Person::FINGER_BYTES];
-    let (digits, _) = word.as_bytes().as_chunks::<2>();
-    if word.len() != 2 * bytes.len() {
-        return None;
-    }
-    for (byte, [high, low]) in bytes.iter_mut().zip(digits) {
-        let digit = |digit: u8| char::from(digit).to_digit(16);
-        *byte = (digit(*high)? << 4 | digit(*low)?) as u8;
-    }
-    Some(bytes)
-}
-
 /// A person in the answers to `person` and `person enrol`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PersonReply {
     /// The chosen one, or the one that was stored.
     pub person: Option<Person>,
-    /// Contacts of 8 s or more from which the finger is learnt.
+    /// Contacts of 8 s or more, trusted to their end, since the person was chosen or the finger was last distrusted.
     pub contacts: u8,
 }
 

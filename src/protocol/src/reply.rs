@@ -4,13 +4,14 @@ use core::fmt::{self, Display as _};
 
 use contact_model::contact_law::ContactLaw;
 use contact_model::decimal::Rounded;
+use contact_model::fixed_point::units_to_f64;
 use thermal_commissioning::{
     CONVERTER_STEPS_PER_LINE_MAX, SessionReply, Setting, StorageOrder, THERMISTOR_WORDS,
 };
 use thermal_device::command::{self, FluxState, Status};
 use thermal_device::safety::{SelfTestReport, SideLine, TripCause};
 use thermal_device::sense::Samples;
-use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
+use thermal_device::{Flux, SCANS_PER_SECOND, TICK_HZ};
 use thermal_settings::{Calibration, DisplaySurface, FluxSensor, Tile};
 
 use crate::BoardStatus;
@@ -86,7 +87,10 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
         }
         command::Reply::Raw(samples) => raw_answer_line(samples).fmt(f),
         command::Reply::Finger(name) => write!(f, "ok finger={name}"),
-        command::Reply::ContactLaw(law) => write_contact_law(f, law),
+        command::Reply::ContactLaw(law) => {
+            f.write_str("ok ")?;
+            write_contact_law(f, law)
+        }
         // No line from the host requests a material's properties.
         command::Reply::Material(_) => f.write_str("ok"),
         // Averages, normal equations and flux are evaluated by commissioning sessions, persons by the handler.
@@ -99,12 +103,12 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
     }
 }
 
-fn write_contact_law(f: &mut fmt::Formatter<'_>, law: &ContactLaw) -> fmt::Result {
+pub fn write_contact_law(f: &mut fmt::Formatter<'_>, law: &ContactLaw) -> fmt::Result {
     let exponent = Rounded(law.exponent, 4);
     let (hardness, gap) = (Rounded(law.hardness_pa, 0), Rounded(law.gap_w_m2k, 1));
     write!(
         f,
-        "ok exponent={exponent} hardness_pa={hardness} gap_w_m2k={gap}"
+        "exponent={exponent} hardness_pa={hardness} gap_w_m2k={gap}"
     )
 }
 
@@ -149,7 +153,10 @@ fn write_flux_answer(
         write!(f, " {name}={}", Rounded(value, decimals as usize))?;
     }
     match state.flux {
-        Some(flux) => write!(f, " w_m2={}", Rounded(flux.to_num(), 1))?,
+        Some(flux) => {
+            let flux_w_m2 = units_to_f64(flux.to_bits().into(), Flux::FRAC_NBITS);
+            write!(f, " w_m2={}", Rounded(flux_w_m2, 1))?;
+        }
         None => f.write_str(" w_m2=-")?,
     }
     write!(f, " finger={}", state.knowledge.name())
@@ -175,7 +182,7 @@ fn state_answer_line(status: &Status) -> LineBuffer {
     line.push_str_if_fits(status.material.unwrap_or("-"));
     line.push_str_if_fits(" object_c=");
     match status.object {
-        Some(_) => line.push_celsius_or_dash::<2>(status.object),
+        Some(_) => line.push_celsius_or_dash(2, status.object),
         None => line.push_str_if_fits("room"),
     }
     line.push_str_if_fits(" mode=");
@@ -184,7 +191,7 @@ fn state_answer_line(status: &Status) -> LineBuffer {
         .find(|(_, mode)| *mode == status.mode);
     line.push_str_if_fits(mode.map_or("-", |(name, _)| name));
     line.push_str_if_fits(" setpoint_c=");
-    line.push_celsius_or_dash::<2>(status.setpoint);
+    line.push_celsius_or_dash(2, status.setpoint);
     line.push_str_if_fits(if status.limited { " limited" } else { "" });
     line.push_str_if_fits(" body=");
     line.push_str_if_fits(status.body);
@@ -207,7 +214,7 @@ fn trip_cause_answer_line(cause: Option<&TripCause>) -> LineBuffer {
         (" sink_c=", cause.sink),
     ] {
         line.push_str_if_fits(name);
-        line.push_celsius_or_dash::<2>(temperature);
+        line.push_celsius_or_dash(2, temperature);
     }
     line.push_str_if_fits(" current_a=");
     line.push_current(cause.current);
@@ -263,10 +270,14 @@ fn pulse_test_answer_words(report: &SelfTestReport) -> LineBuffer {
         .zip(report.responses)
     {
         line.push_str_if_fits(name);
-        line.push_celsius_or_dash::<2>(response);
+        line.push_celsius_or_dash(2, response);
     }
     line.push_str_if_fits(" result=");
     line.push_str_if_fits(report.result.name());
+    if let Some(test) = report.flux_sensor {
+        line.push_str_if_fits(" flux=");
+        line.push_str_if_fits(test.name());
+    }
     line
 }
 

@@ -3,6 +3,7 @@
 use contact_model::contact_law::ContactLaw;
 use contact_model::material::{MATERIALS, Material, Surface};
 use contact_model::slab::Back;
+use fixed::types::I32F32;
 
 use thermal_commissioning::{SessionRequest, StorageOrder};
 use thermal_device::command::{AssumedFinger, ChosenContactLaw, ChosenMaterial, Command};
@@ -223,9 +224,10 @@ fn parse_stream(words: &mut Words<'_>) -> Result<Command<'static>, Error> {
     // Rounds a fraction of a millisecond up, so that only 0 ends the stream.
     let interval_ms = read_fixed_point_in_range(words, &STREAM_INTERVAL_RANGE)?
         .saturating_ceil()
-        .to_num::<i64>();
+        .to_bits()
+        >> I32F32::FRAC_NBITS;
     Ok(Command::Stream {
-        interval_ms: interval_ms.unsigned_abs() as u32,
+        interval_ms: interval_ms as u32,
         fields: parse_telemetry_fields(words)?,
     })
 }

@@ -1,6 +1,7 @@
 //! Arguments of the commands that prescribe temperatures: `hold`, `play`, `pulse`, `skin`, and the upload of a course.
 
-use contact_model::fixed_point::Celsius;
+use contact_model::fixed_point::{Celsius, saturated};
+use fixed::types::I32F32;
 use thermal_device::command::Command;
 use thermal_device::safety::Setpoint;
 use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
@@ -123,14 +124,14 @@ fn duration_ms(from: Celsius, to: Celsius, rate_k_s: Celsius) -> u32 {
 
 #[inline(never)]
 fn read_celsius(words: &mut Words<'_>, range: &'static Range) -> Result<Celsius, Error> {
-    Ok(read_fixed_point_in_range(words, range)?.to_num())
+    Ok(saturated(read_fixed_point_in_range(words, range)?))
 }
 
 #[inline(never)]
 fn read_milliseconds(words: &mut Words<'_>) -> Result<u32, Error> {
     let seconds = read_fixed_point_in_range(words, &TIME_RANGE)?;
     let milliseconds = seconds.saturating_mul_int(1000).round();
-    Ok(milliseconds.to_num::<i64>().unsigned_abs() as u32)
+    Ok((milliseconds.to_bits() >> I32F32::FRAC_NBITS) as u32)
 }
 
 pub fn parse_hold(words: &mut Words<'_>) -> Result<Command<'static>, Error> {

@@ -75,6 +75,7 @@ fn flux_state<const FINGERS: usize>(
 }
 
 impl fmt::Display for UnsolicitedLine {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Telemetry(line) => line.fmt(f),
@@ -93,6 +94,7 @@ impl fmt::Display for UnsolicitedLine {
 }
 
 impl fmt::Display for TelemetryLine {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut line = LineBuffer::new();
         let Self { telemetry, flux } = self;
@@ -107,17 +109,17 @@ impl fmt::Display for TelemetryLine {
             line.push_str_if_fits(" ");
             // In the order of `TelemetryFields::NAMES`.
             match index {
-                0 => line.push_celsius_or_dash::<5>(telemetry.setpoint),
-                1 => line.push_celsius_or_dash::<4>(telemetry.display),
-                2 => line.push_celsius_or_dash::<2>(telemetry.sink),
-                3 => line.push_celsius_or_dash::<2>(telemetry.skin),
-                4 => line.push_celsius_or_dash::<2>(telemetry.room),
+                0 => line.push_celsius_or_dash(5, telemetry.setpoint),
+                1 => line.push_celsius_or_dash(4, telemetry.display),
+                2 => line.push_celsius_or_dash(2, telemetry.sink),
+                3 => line.push_celsius_or_dash(2, telemetry.skin),
+                4 => line.push_celsius_or_dash(2, telemetry.room),
                 5 => line.push_force_or_dash(telemetry.force),
                 6 => line.push_current(telemetry.demand),
                 7 => line.push_current(telemetry.current),
                 8 => line.push_integer(telemetry.evaluations),
                 9 => line.push_flux_or_dash(flux.and_then(|state| state.flux)),
-                10 => line.push_celsius_or_dash::<4>(flux.and_then(|state| state.surface)),
+                10 => line.push_celsius_or_dash(4, flux.and_then(|state| state.surface)),
                 _ => line.push_str_if_fits(flux.map_or("-", |state| state.knowledge.name())),
             }
         }

@@ -19,7 +19,7 @@ use thermal_device::command::{self, Command, FluxState, ObjectBody, Status};
 use thermal_device::command::{AssumedFinger, ChosenContactLaw};
 use thermal_device::control::Law;
 use thermal_device::drive::Current;
-use thermal_device::learning::FingerKnowledge;
+use thermal_device::learning::{FingerKnowledge, FluxSensorTest};
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::{
     ComparatorSideReport, Fault, SelfTestReport, SelfTestResult, SideLine,
@@ -419,12 +419,14 @@ fn the_longest_answers_fit_their_limit() {
         warming_current: Some(Current::from_num(10.24)),
         responses: [Some(Celsius::from_num(-99)); 2],
         result: SelfTestResult::Failed(Fault::SettingsCorrupt),
+        flux_sensor: Some(FluxSensorTest::Range),
     };
     let answer = Reply::Station(command::Reply::SelfTest(report)).to_string();
     assert_eq!(
         answer,
         "ok hot_cut_ms=19 hot_supply_v=14.2 hot_release_ms=19 cold_cut_ms=19 cold_supply_v=14.2 cold_release_ms=19 \
-         side=high supply_v=14.2 cool_a=10.24 warm_a=10.24 display_k=-99.00 check_k=-99.00 result=settings-corrupt"
+         side=high supply_v=14.2 cool_a=10.24 warm_a=10.24 display_k=-99.00 check_k=-99.00 result=settings-corrupt \
+         flux=sensor-range"
     );
     assert!(answer.len() <= ANSWER_MAX_BYTES);
 

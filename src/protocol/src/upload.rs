@@ -13,7 +13,7 @@ use thermal_settings::{CRC_32, Crc32Digest, Range};
 
 use crate::Error;
 use crate::arguments::{
-    Words, expect_end, read_fixed_point_in_range, read_whole_number_in_range, read_word,
+    Words, expect_end, read_number_in_range, read_whole_number_in_range, read_word,
 };
 use crate::stimulus::{
     COURSE_POINT_COUNT_RANGE, COURSE_POINT_INDEX_RANGE, read_course_point, read_temperature_kind,
@@ -142,8 +142,8 @@ impl Upload {
         let kind = match read_word(words, "kind of upload")? {
             "object" => {
                 self.count = read_whole_number_in_range(words, &ROW_COUNT_RANGE)?;
-                let direct_mm2k_w = read_fixed_point_in_range(words, &DIRECT_RANGE)?;
-                self.direct_m2k_w = M2_PER_MM2 * direct_mm2k_w.to_num::<f64>();
+                let direct_mm2k_w = read_number_in_range(words, &DIRECT_RANGE)?;
+                self.direct_m2k_w = M2_PER_MM2 * direct_mm2k_w;
                 self.rows.clear();
                 Kind::Object
             }
@@ -286,8 +286,8 @@ impl Upload {
 }
 
 fn read_relaxation(words: &mut Words<'_>) -> Result<Relaxation, Error> {
-    let rate_1_s = read_fixed_point_in_range(words, &RATE_RANGE)?.to_num();
-    let gain_m2k_j = M2_PER_MM2 * read_fixed_point_in_range(words, &GAIN_RANGE)?.to_num::<f64>();
+    let rate_1_s = read_number_in_range(words, &RATE_RANGE)?;
+    let gain_m2k_j = M2_PER_MM2 * read_number_in_range(words, &GAIN_RANGE)?;
     expect_end(words)?;
     Ok(Relaxation {
         rate_1_s,

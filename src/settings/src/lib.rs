@@ -214,6 +214,8 @@ pub struct PiGains {
 impl Default for Settings {
     /// Factory defaults, for the nominal components of `docs/hardware.md`: 10 kΩ thermistors with a beta of 3950 K and
     /// 10 kΩ pull-up resistors, a Peltier module of 30 mm and 6 A on 12 V, and its nominal tile. No calibration.
+    // Not inlined, because each caller would have constants of its own.
+    #[inline(never)]
     fn default() -> Self {
         let [gains, gains_10hz] = PiGains::for_1khz_and_10hz_laws(&Tile::FACTORY_DEFAULT);
         Self {

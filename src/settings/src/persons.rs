@@ -16,9 +16,10 @@ impl PersonCode {
     #[must_use]
     pub fn new(word: &str) -> Option<Self> {
         let mut padded = [0; Self::MAX_BYTES];
-        padded
-            .get_mut(..word.len())?
-            .copy_from_slice(word.as_bytes());
+        let places = padded.get_mut(..word.len())?;
+        for (place, byte) in places.iter_mut().zip(word.bytes()) {
+            *place = byte;
+        }
         Self::from_bytes(padded)
     }
 
@@ -61,6 +62,21 @@ impl Person {
     pub const FINGER_BYTES: usize = 20;
     /// Length of a person in a record.
     pub const BYTES: usize = PersonCode::MAX_BYTES + Self::FINGER_BYTES;
+
+    /// Reads what was learnt of a finger: two hexadecimal digits for each byte; `None` for anything else.
+    #[must_use]
+    pub fn read_finger(digits: &str) -> Option<[u8; Self::FINGER_BYTES]> {
+        let mut finger = [0; Self::FINGER_BYTES];
+        let (pairs, _) = digits.as_bytes().as_chunks::<2>();
+        if digits.len() != 2 * finger.len() {
+            return None;
+        }
+        for (byte, [high, low]) in finger.iter_mut().zip(pairs) {
+            let digit = |digit: u8| char::from(digit).to_digit(16);
+            *byte = (digit(*high)? << 4 | digit(*low)?) as u8;
+        }
+        Some(finger)
+    }
 }
 
 /// The persons of a device, each with a code of its own.

@@ -100,7 +100,7 @@ impl Answer {
         });
         LearnerOutput {
             weights: self.weights.map(I2F30::from_bits),
-            air_change: I4F28::from_bits(self.air),
+            air_flux_deviation: I4F28::from_bits(self.air),
             skin_offset_k: I10F22::from_bits(self.skin),
             resistance_factor: I4F28::from_bits(self.resistance),
             trust: element(&trusts, self.trust),

@@ -103,9 +103,9 @@ fn a_shorted_bridge_trips_both_engines_in_the_same_tick() {
 /// An object with most relaxations, which is uploaded, and a drawn finger on a drawn device.
 #[test]
 fn both_engines_write_the_same_trace_of_a_layered_object_and_of_a_drawn_finger() {
-    let objects = Population::Objects.cases(1, 0);
+    let objects = Population::Objects.cases(1, 0).expect("cases");
     let layers = objects.iter().find(|case| case.name == "5 x copper, foam");
-    let drawn = Population::DrawnFingers.cases(1, 1);
+    let drawn = Population::DrawnFingers.cases(1, 1).expect("cases");
     let firmware = Firmware::from_file(image()).expect("an image for this chip");
     for case in [layers, drawn.get(4)] {
         let case = case.expect("a case");

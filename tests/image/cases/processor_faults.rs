@@ -4,6 +4,9 @@ use image_tests::{image, on_image};
 use stm32_emulator::Firmware;
 use stm32_emulator::OneFingerBoard;
 use system_tests::{between, copper_contact, forces, host, scene};
+use thermal_campaigns::faults::{
+    FaultCase, FaultRun, FaultScene, InjectionPoint, RunAssessment, fault_cases,
+};
 use thermal_sim::World;
 use thermal_sim::processor::Injection;
 use thermal_sim::processor::ResetCause;
@@ -20,6 +23,24 @@ fn with_fault(t_s: f64, fault: &str) -> Outcome {
     let fault = fault.parse().expect("a fault");
     run_with(&scene, &[Injection { t_s, fault }], &mut engine, |_| ())
         .expect("the image runs to the end")
+}
+
+/// The converter of the heat-flux sensor ends no conversion any more, in a contact with copper that has been learnt: the device
+/// says so, does not trip, and renders the assumed finger.
+#[test]
+fn a_stopped_converter_of_the_flux_is_a_word_and_ends_in_the_assumed_finger() {
+    let image = Firmware::from_file(image()).expect("an image");
+    let stopped = |case: &FaultCase| case.fault.to_string() == "adc2-stopped";
+    let case = fault_cases().into_iter().find(stopped).expect("a row");
+    let scene = FaultScene::Copper;
+    let run = FaultRun::run(&image, &case, InjectionPoint { scene, t_s: 2.0 }, 1);
+    let run = run.expect("the image runs").expect("an injected fault");
+    let RunAssessment {
+        breaches,
+        knowledge,
+        ..
+    } = run.assessment;
+    assert_eq!((breaches, knowledge.as_deref()), (vec![], Some("no-code")));
 }
 
 /// The timer keeps the last duty until the reset: 100 ms at most with the nominal oscillator of the slower watchdog.

@@ -2,13 +2,16 @@
 
 #[embedded_test::tests]
 mod tests {
+    use core::fmt::Write as _;
+
     use cortex_m::peripheral::NVIC;
     use stm32f4xx_hal::pac::{GPIOA, Interrupt, USART2};
+    use thermal_display::protocol::OutgoingLine;
 
     use crate::running_board::{set_up, take_request};
     use crate::{cycles, report};
 
-    const TEXT: &[u8] = b"abcdefghijklmnopqrstuvwxyz 0123456789 ABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    const TEXT: &str = "abcdefghijklmnopqrstuvwxyz 0123456789 ABCDEFGHIJKLMNOPQRSTUVWXYZ";
     const CYCLES_PER_BYTE: u32 = 10 * 180;
 
     #[test]
@@ -22,9 +25,8 @@ mod tests {
         usart.cr3().modify(|_, w| w.hdsel().half_duplex());
         usart.cr1().modify(|_, w| w.ue().enabled());
         board.console.outbox.enqueue_or_drop(|line| {
-            line.clear();
-            let _ = line.extend_from_slice(TEXT);
-            let _ = line.push(b'\n');
+            *line = OutgoingLine::new();
+            let _ = writeln!(line, "{TEXT}");
         });
         let begun = cycles::now();
         let limit = 2 * CYCLES_PER_BYTE * TEXT.len() as u32;
@@ -44,7 +46,7 @@ mod tests {
         }
         let line = received.expect("a line comes back");
         let line = line.expect("without an error of reception");
-        assert_eq!(line.as_bytes(), TEXT);
+        assert_eq!(line.as_bytes(), TEXT.as_bytes());
         // The end of the line is one byte more.
         let took = last.wrapping_sub(first.expect("a first byte"));
         let per_byte = took as f32 / TEXT.len() as f32;

@@ -90,7 +90,7 @@ fn package(python: Option<&str>) -> Check {
 /// What the windows show, without a display and without optimisations, which take minutes for the toolkit. The windows themselves
 /// are checked by a job of `cargo xtask soak`.
 fn windows() -> Check {
-    let tests = cargo("test --package thermal-window --features views --quiet");
+    let tests = cargo("test --package thermal-window --features views --lib --test views --quiet");
     Check {
         title: "windows, without a display",
         commands: Ok(vec![tests.env("CARGO_PROFILE_DEV_DEBUG", "0")]),
@@ -158,6 +158,8 @@ fn whole(
                 ]),
             },
         ),
+        // In another profile, so that it does not wait for the lock of the lane beside it.
+        windows(),
     ];
     // The emulator is selected beside it for the sake of its dependencies' features, with which the lints compile them.
     let without_emulator = "check --release -p hil-sim -p stm32-emulator --no-default-features";
@@ -178,9 +180,8 @@ fn whole(
         },
         check(
             "test programs",
-            ["test --release --workspace --no-run --quiet"],
+            ["test --release --workspace --tests --no-run --quiet"],
         ),
-        windows(),
     ];
     let tests = |which: &str| {
         let line = format!("test --release --no-fail-fast {which}");
@@ -188,6 +189,8 @@ fn whole(
     };
     // `hil-sim` is selected, too, so that cargo unifies features as for the workspace and compiles no dependency again.
     let on_image = "-p image-tests -p hil-sim --test image";
+    let circuits = "-p hardware-benches -p hil-sim --lib --bins --test benches --test bom";
+    let others = "--workspace --exclude image-tests --exclude hardware-benches --tests";
     let on_target = choice.handed_to(cargo("xtask on-target --emulated --check"));
     let fuzz = format!("xtask fuzz --seconds {FUZZ_S}");
     vec![
@@ -195,7 +198,7 @@ fn whole(
         vec![
             vec![Check {
                 title: "units, and the whole system natively",
-                commands: tests("--workspace --exclude image-tests"),
+                commands: tests(others),
             }],
             vec![
                 Check {
@@ -204,10 +207,18 @@ fn whole(
                 },
                 check("fuzzers: inputs of the repository, 4 s a target", [&fuzz]),
                 Check {
+                    title: "circuits",
+                    commands: tests(circuits),
+                },
+                Check {
                     title: "tests for a bare board, on the emulated one",
                     commands: Ok(vec![on_target]),
                 },
                 package(python),
+                Check {
+                    title: "examples of the documentation",
+                    commands: tests("--workspace --doc"),
+                },
             ],
         ],
     ]

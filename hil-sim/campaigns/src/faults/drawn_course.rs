@@ -12,6 +12,9 @@ use super::scene_text;
 const ABSOLUTE_C: (f64, f64) = (15.0, 41.0);
 /// Range of relative temperatures, K above a skin of 34 °C.
 const RELATIVE_K: (f64, f64) = (-19.0, 7.0);
+/// Coldest temperature, °C, of courses for the law `pi-10hz`: after a step of 15 K with the slowest thermistors it overshoots by
+/// 3 K, and below 13 °C the device trips.
+const COLDEST_IF_OVERSHOOTING_C: f64 = 18.0;
 /// Most points, so that a course is loaded within 60 ms.
 const POINTS_MAX: usize = 12;
 /// Range of the time between two points, s, drawn with a uniform logarithm.
@@ -22,14 +25,27 @@ const TIMES_MAX: u32 = 20;
 const TRIGGER_AFTER_S: (f64, f64) = (0.1, 6.0);
 
 /// Tables of a scene in which the host uploads and plays a drawn course from this time, s, on, with an edge at the trigger
-/// input if the course waits for one before `end_s`.
-pub(super) fn course_tables(seed: u64, t_s: f64, end_s: f64) -> String {
+/// input if the course waits for one before `end_s`. With a skin, °C, the course stays above the coldest end of a law that
+/// overshoots.
+pub(super) fn course_tables(
+    seed: u64,
+    t_s: f64,
+    end_s: f64,
+    skin_if_overshooting_c: Option<f64>,
+) -> String {
     let mut draw = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let (temperatures, (low, high)) = if draw.random_bool(0.5) {
-        (TemperatureKind::Absolute, ABSOLUTE_C)
+    let (temperatures, (low, high), zero_c) = if draw.random_bool(0.5) {
+        (TemperatureKind::Absolute, ABSOLUTE_C, Some(0.0))
     } else {
-        (TemperatureKind::AboveSkin, RELATIVE_K)
+        (
+            TemperatureKind::AboveSkin,
+            RELATIVE_K,
+            skin_if_overshooting_c,
+        )
     };
+    let coldest_c = skin_if_overshooting_c.map(|_| COLDEST_IF_OVERSHOOTING_C);
+    let coldest = coldest_c.zip(zero_c).map(|(coldest, zero)| coldest - zero);
+    let low = coldest.map_or(low, |coldest| low.max(coldest));
     let mut points = vec![(0.0, draw.random_range(low..=high))];
     for _ in 1..draw.random_range(2..=POINTS_MAX) {
         let (before_s, before) = points[points.len() - 1];
@@ -70,7 +86,9 @@ mod tests {
     /// 200 draws miss one of six shares of a third or more with a probability below 1e-30.
     #[test]
     fn every_kind_of_course_is_drawn() {
-        let draws: Vec<_> = (0..200).map(|seed| course_tables(seed, 0.1, 9.0)).collect();
+        let draws: Vec<_> = (0..200)
+            .map(|seed| course_tables(seed, 0.1, 9.0, None))
+            .collect();
         for part in [
             "absolute",
             "relative",
@@ -91,7 +109,7 @@ mod tests {
             let text = format!(
                 "duration_s = 7\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"copper\"\nappears_t_s = 7\n\
                  [[force]]\nt_s = 1\nforce_n = 2\n{}{}",
-                course_tables(seed, 0.1, 7.0),
+                course_tables(seed, 0.1, 7.0, None),
                 scene_text::host_line("events on", 0.05),
             );
             let scene = Scene::parse(&text, "course".as_ref()).expect("a scene");

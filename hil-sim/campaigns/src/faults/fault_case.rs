@@ -7,7 +7,7 @@ use thermal_device::safety::Fault;
 use thermal_sim::processor::MachineFault;
 use thermal_sim::scene::{ActiveFault, FaultKind, Sensor};
 
-use super::{FaultScene, Symptom};
+use super::{FaultScene, Symptom, Touch};
 
 /// A fault to inject.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,4 +133,14 @@ pub struct FaultCase {
     pub never_at: &'static [FaultScene],
     /// Duration of the scene after the fault, s.
     pub after_s: f64,
+}
+
+impl FaultCase {
+    /// The finger of its scenes, drawn by a seed if the device learns it, and the object.
+    pub(super) fn touch(&self, seed: u64) -> Touch {
+        match self.learning {
+            Some(_) => Touch::learnt(seed),
+            None => Touch::default(),
+        }
+    }
 }

@@ -101,17 +101,13 @@ impl FaultRun {
         point: InjectionPoint,
         seed: u64,
     ) -> anyhow::Result<Option<Self>> {
-        let touch = match fault_case.learning {
-            Some(_) => Touch::learnt(seed),
-            None => Touch::default(),
-        };
         let text = scene_text(
             &[(fault_case.fault, point.t_s)],
             point,
             fault_case.after_s,
             seed,
             &[],
-            &touch,
+            &fault_case.touch(seed),
         );
         Self::run_text(device, fault_case, point, &text)
     }

@@ -60,7 +60,7 @@ impl UseSession {
             Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, &format!("session {number}")));
         let device = PlantDraw::in_use(seed, number / ON_ONE_DEVICE);
         let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
-        let (law, _) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
+        let (law_word, law) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
         let skin_c = draw.random_range(30.0..=36.0);
         let object_c = draw.random_range(17.0..=41.0);
         let held_c = draw
@@ -84,7 +84,7 @@ impl UseSession {
             Touch::new(touch_seed, material)
         };
         let mut text = format!(
-            "duration_s = {SESSION_S:?}\nskin_c = {skin_c:?}\nroom_c = 24\nseed = {}\nlaw = \"{law}\"\n[device]\n{}\
+            "duration_s = {SESSION_S:?}\nskin_c = {skin_c:?}\nroom_c = 24\nseed = {}\nlaw = \"{law_word}\"\n[device]\n{}\
              [object]\nmaterial = \"{material}\"\nstart_c = {object_c:?}\nappears_t_s = {appears_s:?}\n{}{}",
             device.seed, touch.device, touch.object, touch.tables
         );
@@ -104,10 +104,11 @@ impl UseSession {
             text += &scene_text::host_line(&format!("hold {held_c:.3}"), 0.1);
         }
         if plays {
+            let skin_if_overshooting_c = (law == Law::Pi10Hz).then_some(skin_c);
             for part in 0..(SESSION_S / PLAYED_EVERY_S) as u32 {
                 let seed = stream_seed(course_seed, &format!("part {part}"));
                 let t_s = 0.1 + f64::from(part) * PLAYED_EVERY_S;
-                text += &course_tables(seed, t_s, SESSION_S);
+                text += &course_tables(seed, t_s, SESSION_S, skin_if_overshooting_c);
             }
         }
         if with_flux_sensor {

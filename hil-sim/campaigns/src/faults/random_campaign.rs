@@ -61,7 +61,8 @@ impl RandomCampaign {
         let mut touch = Touch::new(stream_seed(own, "touch"), place.object().0);
         let takes_course = !place.is_commanded() && place.has_tripped_before().is_none();
         if takes_course && draw.random_bool(WITH_COURSE) {
-            touch.tables += &course_tables(stream_seed(own, "course"), COURSE_S, COURSE_UNTIL_S);
+            touch.tables +=
+                &course_tables(stream_seed(own, "course"), COURSE_S, COURSE_UNTIL_S, None);
         }
         let flux_seed = stream_seed(own, "flux sensor");
         let has_sensor = Xoshiro256PlusPlus::seed_from_u64(flux_seed).random_bool(WITH_FLUX_SENSOR);

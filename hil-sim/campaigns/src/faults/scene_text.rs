@@ -71,7 +71,7 @@ pub(super) fn host_line(line: &str, t_s: f64) -> String {
 mod tests {
     use super::*;
     use crate::faults::fault_cases;
-    use crate::faults::{FaultScene, InjectionPoint, Touch};
+    use crate::faults::{FaultScene, InjectionPoint};
     use thermal_sim::scene::Scene;
 
     #[test]
@@ -81,19 +81,13 @@ mod tests {
                 scene: FaultScene::Slew,
                 t_s: 1.25,
             };
-            let mut touch = Touch::default();
-            if let InjectedFault::Hardware(broken) = fault_case.fault
-                && broken.kind.needs_flux_sensor()
-            {
-                touch.fit_flux_sensor(7);
-            }
             let text = crate::faults::fault_run::scene_text(
                 &[(fault_case.fault, 1.25)],
                 point,
                 fault_case.after_s,
                 7,
                 &[],
-                &touch,
+                &fault_case.touch(7),
             );
             let scene = Scene::parse(&text, "slew".as_ref())
                 .unwrap_or_else(|error| panic!("{error}\n{text}"));

@@ -29,9 +29,9 @@ pub use plant_draws::{
 };
 pub use plot::draw as plot;
 pub use population::{
-    ImageSample, Population, PopulationCase, PopulationReport, PopulationResult,
-    SVG as POPULATIONS_SVG, Way, WayStatistics, chart as population_chart, layer_keys, spread,
-    table as population_table,
+    BoundResult, BoundRow, Compared, ImageSample, Population, PopulationCase, PopulationReport,
+    PopulationResult, Priors, SVG as POPULATIONS_SVG, Way, WayStatistics, bound_rows,
+    chart as population_chart, layer_keys, spread, table as population_table,
 };
 pub use removed_limit::RemovedLimit;
 pub use report::{HTML, SVG, page};

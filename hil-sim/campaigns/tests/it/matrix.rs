@@ -3,9 +3,10 @@
 use std::collections::HashSet;
 
 use thermal_campaigns::faults::{
-    Breach, ExpectedReaction, FaultCase, FaultRun, FaultScene, InjectedFault, Symptom, fault_cases,
-    five_finger_cases,
+    Breach, ExpectedReaction, FaultCase, FaultRun, FaultScene, InjectedFault, LearningExpected,
+    Symptom, fault_cases, five_finger_cases,
 };
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
 use thermal_sim::NativeRunner;
 use thermal_sim::scene::{FaultKind, ProcessorKind};
@@ -28,10 +29,10 @@ fn breaches(fault_case: &FaultCase, t_s: f64) -> Vec<Breach> {
 #[test]
 fn every_kind_of_fault_has_an_entry_of_its_own() {
     let fault_cases = fault_cases();
-    // The faults of the select lines are of the device for five fingers only, those of the heat-flux sensor of that for one.
-    let five_finger_cases = five_finger_cases();
-    let kinds: HashSet<_> = (fault_cases.iter())
-        .chain(&five_finger_cases)
+    // The faults of the select lines are of the device for five fingers only.
+    let kinds: HashSet<_> = fault_cases
+        .iter()
+        .chain(&five_finger_cases())
         .map(|fault_case| fault_case.fault.kind())
         .collect();
     for kind in FaultKind::ALL.map(FaultKind::name) {
@@ -116,6 +117,28 @@ fn device_that_goes_on_is_late_and_has_no_reason() {
         ..fault_case("comparator-dead")
     };
     assert_eq!(breaches(&unseen, 2.0), [Breach::Late, Breach::Reason]);
+}
+
+/// A sensor without its plug: another word would be wrong, and the skin is not the same to the last bit.
+#[test]
+fn a_wrong_word_and_another_skin_are_breaches() {
+    let open = fault_case("flux-open");
+    assert_eq!(breaches(&open, 2.0), []);
+    let learning = open.learning.expect("a row with a sensor");
+    let with = |learning| FaultCase {
+        learning: Some(learning),
+        ..open
+    };
+    let other_word = LearningExpected {
+        knowledge: &[FingerKnowledge::Late],
+        ..learning
+    };
+    assert_eq!(breaches(&with(other_word), 2.0), [Breach::Knowledge]);
+    let same_skin = LearningExpected {
+        skin_max_k: 0.0,
+        ..learning
+    };
+    assert_eq!(breaches(&with(same_skin), 2.0), [Breach::Changed]);
 }
 
 /// A sink that is held at 80 °C reaches the finger whatever the device does.

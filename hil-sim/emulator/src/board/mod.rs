@@ -110,6 +110,10 @@ fn inject<W: Wiring>(machine: &mut Machine<W>, fault: &MachineFault) -> Result<(
             machine.stop_adc();
             Ok(())
         }
+        MachineFault::Adc2Stopped => {
+            machine.stop_adc2();
+            Ok(())
+        }
         MachineFault::DmaStopped { controller, stream } => machine.stop_dma(controller, stream),
         MachineFault::BrownOut => machine.brown_out().map_err(InjectError::from),
         MachineFault::PowerCycle { seed } => machine.power_cycle(seed).map_err(InjectError::from),

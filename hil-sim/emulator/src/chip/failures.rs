@@ -1,5 +1,5 @@
 //! Effects of injected faults on the peripherals.
-use super::{ADC1, Chip, TIM1, TIM8, TIMERS};
+use super::{Chip, TIM1, TIM8, TIMERS};
 use crate::Wiring;
 use crate::nvic::exception;
 use crate::rcc::AfterHse;
@@ -59,9 +59,9 @@ impl<W: Wiring> Chip<W> {
         true
     }
 
-    /// No conversion of ADC1 ends until it is reset.
-    pub fn stop_adc(&mut self, now: u64) {
-        self.adcs[ADC1].stop_converting();
+    /// No conversion of a converter, by its index, ends until it is reset.
+    pub fn stop_adc(&mut self, converter: usize, now: u64) {
+        self.adcs[converter].stop_converting();
         self.refresh_next(now);
     }
 

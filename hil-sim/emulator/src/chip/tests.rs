@@ -377,6 +377,24 @@ fn converters_have_one_reset_and_two_clocks() {
     assert_eq!(bench.read(ADC), Ok(0));
 }
 
+#[test]
+fn a_stopped_adc2_converts_again_after_a_reset_and_adc1_all_the_time() {
+    let mut bench = Bench::new();
+    bench.chip.stop_adc(super::ADC2, 0);
+    bench.set_up(&[(ADC + 8, 1)]);
+    start_adc2(&mut bench);
+    bench.set_up(&[(ADC + 8, 1 << 30 | 1)]);
+    bench.now = 10_000;
+    bench.chip.service(bench.now, &mut Absent);
+    assert_eq!(bench.read(ADC2), Ok(0x10), "started, not ended");
+    assert_eq!(bench.read(ADC), Ok(0x12));
+    bench.set_up(&[(APB2RSTR, 1 << 8), (APB2RSTR, 0), (ADC2 + 8, 1)]);
+    bench.now += 100;
+    bench.set_up(&[(ADC2 + 8, 1 << 30 | 1)]);
+    bench.chip.service(bench.now + 10_000, &mut Absent);
+    assert_eq!(bench.read(ADC2), Ok(0x12));
+}
+
 /// DS10693, t_STAB. HCLK is 16 MHz.
 #[test]
 fn adc2_too_takes_3_us_to_be_stable() {

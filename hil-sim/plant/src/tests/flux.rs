@@ -2,7 +2,7 @@
 
 use contact_model::material::{REFERENCE_DISPLAY, SKIN_MICROHARDNESS_PA};
 use contact_model::pressure::contact_area_m2;
-use contact_model::reference::mean_conductance;
+use contact_model::reference::conductance_at_hardness;
 
 use super::*;
 use crate::finger::FingerParams;
@@ -81,7 +81,7 @@ fn the_layer_is_in_series_with_skin_and_contact() {
     for force_n in [0.25, 2.0] {
         let relative = force_n / contact_area_m2(force_n) / SKIN_MICROHARDNESS_PA;
         let contact_w_m2k =
-            mean_conductance::<f64>(&SKIN.surface, &REFERENCE_DISPLAY) * relative.powf(0.95);
+            conductance_at_hardness::<f64>(&SKIN.surface, &REFERENCE_DISPLAY) * relative.powf(0.95);
         for layer_m2k_w in [0.0, 3e-5, 2.3e-4] {
             let flux = FluxParams {
                 resistance_m2k_w: layer_m2k_w,

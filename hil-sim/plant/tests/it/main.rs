@@ -1,6 +1,7 @@
-//! The infrared instrument against golden values, and golden values against their generator.
+//! The infrared instrument against golden values, golden values against their generator, and a finger alone against closed forms.
 
 mod infrared;
+mod lone_finger;
 
 use documented_figures::run_generator;
 

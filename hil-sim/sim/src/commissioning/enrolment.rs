@@ -34,15 +34,17 @@ const END_AFTER_S: f64 = 1.0;
 /// Differences between two days: standard deviations of the contact resistance, relative, and of the skin thermistor, K.
 const RESISTANCE: f64 = 0.07;
 const SKIN_THERMISTOR_K: f64 = 0.02;
+/// The refusal of a finger that was not trusted in both contacts.
+const NOT_ENOUGH: &str = "enrol needs 2 contacts";
 /// Time of the scene at which the person is chosen, s: the device is then armed and waits.
 const CHOOSE_AT_S: f64 = -1.0;
 
 /// The scene with the lines that choose its person, if its finger is enrolled. It was enrolled on the same device, by two contacts
-/// of another day, natively, once per process for each finger on a device. A finger that the device refuses to enrol is
-/// not.
+/// of another day, natively, once per process for each finger on a device. A finger that the device did not trust in both contacts
+/// is not enrolled.
 ///
 /// # Errors
-/// The device cannot be commissioned, or refuses to be set up.
+/// The device cannot be commissioned, refuses to be set up, or does not answer `person enrol` with a person.
 pub fn with_person(scene: &Scene) -> Result<Cow<'_, Scene>, CommissionError> {
     if !scene.enrolled {
         return Ok(Cow::Borrowed(scene));
@@ -130,7 +132,7 @@ fn first_object() -> Object {
     }
 }
 
-/// Why enrolment failed, or what was learnt; `None` if the device refused to store it. Computed once.
+/// Why enrolment failed, or what was learnt; `None` if the contacts were not trusted. Computed once.
 type SharedData = Arc<OnceLock<Result<Option<String>, CommissionError>>>;
 
 /// What the device of `scene` has learnt of the person on another day, as on the line that stores it.
@@ -149,13 +151,14 @@ fn person_data(on_day: &Scene, scene: &Scene) -> Result<Option<String>, Commissi
         let outcome = run_with_settings(on_day, &settings, &[], &mut engine, |_| ())
             .map_err(|error| failed(&error))?;
         let exchanges = outcome.exchanges();
-        let answer = (exchanges.iter()).find(|exchange| {
-            exchange
-                .line
-                .is_some_and(|line| line.starts_with("person enrol"))
-        });
-        let data = answer.and_then(|exchange| exchange.answer.split_once("data="));
-        Ok(data.map(|(_, data)| data.into()))
+        let line = format!("person enrol {CODE}");
+        let answer = (exchanges.iter()).find(|exchange| exchange.line == Some(&line));
+        let answer = answer.map_or("no answer", |exchange| exchange.answer);
+        match answer.split_once("data=") {
+            Some((_, data)) => Ok(Some(data.into())),
+            None if answer.contains(NOT_ENOUGH) => Ok(None),
+            None => Err(failed(&format!("{line}: {answer}")).into()),
+        }
     };
     data.get_or_init(enrol).clone()
 }

@@ -29,7 +29,7 @@ pub use thermal_client::commissioning::{
 pub use enrolment::with_person;
 pub use frequency_response::FrequencyResponse;
 pub use operator::{commission, restore};
-pub use setup::CommissioningSetup;
+pub use setup::{CommissioningSetup, SimulatedPhantom};
 pub use surroundings::{SimulatedOperator, SimulatedSurroundings, SurroundingsAction};
 
 /// Lines of settings, or why commissioning failed; computed once.
@@ -58,19 +58,27 @@ pub fn settings_for_scene(scene: &Scene) -> Result<Vec<String>, CommissionError>
         lines.push(PlainCommand::FluxSensor(Some(sensor)).to_string());
     }
     if scene.measured_surface {
-        let display = &scene.params.display;
-        let values = [
-            ("conductivity", display.conductivity_w_mk),
-            ("roughness", display.roughness_um),
-            ("slope", display.slope_rad),
-        ];
-        let measured = values.map(|(name, value)| {
-            SURFACE_MEASUREMENT.draw(value, scene.seed, &format!("measured.display.{name}"))
-        });
-        let surface = DisplaySurface::from_array_rounded(measured);
-        lines.push(PlainCommand::DisplaySurface(surface).to_string());
+        lines.push(PlainCommand::DisplaySurface(display_surface(scene)).to_string());
     }
     Ok(lines)
+}
+
+/// The surface that the device of a scene takes for that of its display: the measured one, if it was measured.
+#[must_use]
+pub fn display_surface(scene: &Scene) -> DisplaySurface {
+    if !scene.measured_surface {
+        return DisplaySurface::NOMINAL;
+    }
+    let display = &scene.params.display;
+    let values = [
+        ("conductivity", display.conductivity_w_mk),
+        ("roughness", display.roughness_um),
+        ("slope", display.slope_rad),
+    ];
+    let measured = values.map(|(name, value)| {
+        SURFACE_MEASUREMENT.draw(value, scene.seed, &format!("measured.display.{name}"))
+    });
+    DisplaySurface::from_array_rounded(measured)
 }
 
 /// The settings of a device with these parameters and this seed of its converter, in a room, deg C.

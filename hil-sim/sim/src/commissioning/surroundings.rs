@@ -5,12 +5,12 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rand_distr::{Distribution, StandardNormal};
 use thermal_client::client::Client;
 use thermal_client::commissioning::{
-    CommissioningEvent, Surroundings, SurroundingsError, SurroundingsRequest,
+    CommissioningEvent, PhantomPlace, Surroundings, SurroundingsError, SurroundingsRequest,
 };
 use thermal_device::safety::ThermistorId;
 use thermal_plant::ConfigError;
 
-use super::CommissioningSetup;
+use super::{CommissioningSetup, SimulatedPhantom};
 use crate::World;
 use crate::board::BoardBench;
 use crate::engine::Engine;
@@ -19,6 +19,9 @@ use crate::simulated_link::SimulatedLink;
 /// Resolution of the reference thermometer, K.
 const RESOLUTION_K: f64 = 1e-3;
 
+/// Force of the phantom with its weight, N.
+const PHANTOM_N: f64 = 2.0;
+
 /// Moves a device from bath to bath, and reads the reference thermometer with its offset and noise.
 #[derive(Clone, Debug)]
 pub struct SimulatedSurroundings {
@@ -26,6 +29,8 @@ pub struct SimulatedSurroundings {
     random: Xoshiro256PlusPlus,
     /// Temperature of the bath of skin or room, deg C.
     bath_c: f64,
+    /// The phantom of the heat-flux sensor.
+    phantom: SimulatedPhantom,
     /// The board that is brought up, if one is.
     board: Option<BoardBench>,
 }
@@ -38,6 +43,7 @@ impl SimulatedSurroundings {
             setup: setup.clone(),
             random: Xoshiro256PlusPlus::seed_from_u64(setup.operator_seed()),
             bath_c: setup.room_c(),
+            phantom: SimulatedPhantom::gel(setup.operator_seed(), setup.room_c()),
             board: None,
         }
     }
@@ -49,6 +55,32 @@ impl SimulatedSurroundings {
             board: Some(board.clone()),
             ..Self::new(&board.setup())
         }
+    }
+
+    /// The same with another phantom.
+    #[must_use]
+    pub fn with_phantom(self, phantom: SimulatedPhantom) -> Self {
+        Self { phantom, ..self }
+    }
+
+    /// Moves the phantom; with it beside the display begins a place of its own.
+    ///
+    /// # Errors
+    /// The plant does not accept it.
+    pub fn move_phantom(
+        &mut self,
+        world: &mut World,
+        place: PhantomPlace,
+    ) -> Result<(), ConfigError> {
+        match place {
+            PhantomPlace::Beside => world.move_to(self.setup.with_phantom(&self.phantom)?),
+            PhantomPlace::OnDisplay => world.set_force_and_faults(PHANTOM_N, std::iter::empty()),
+            PhantomPlace::Away => world.move_to(self.setup.in_use()?),
+        }
+        if let Some(board) = &self.board {
+            board.apply(world);
+        }
+        Ok(())
     }
 
     /// What the reference thermometer shows at a thermistor, deg C; at those of skin and room it is in their bath.
@@ -120,6 +152,17 @@ impl<'a, E: Engine> Surroundings<SimulatedLink<'a, E>> for SimulatedOperator<'_>
             .map_err(|error| SurroundingsError::Failed(error.to_string()))
     }
 
+    fn move_phantom(
+        &mut self,
+        client: &mut Client<SimulatedLink<'a, E>>,
+        place: PhantomPlace,
+    ) -> Result<(), SurroundingsError> {
+        let world = client.link().world();
+        self.surroundings
+            .move_phantom(world, place)
+            .map_err(|error| SurroundingsError::Failed(error.to_string()))
+    }
+
     fn reads_again(&mut self, _why: &str) -> bool {
         false
     }
@@ -156,6 +199,11 @@ impl SimulatedSurroundings {
             }
             SurroundingsRequest::Bath(thermistor, bath_c) => {
                 self.put_into_bath(world, thermistor, bath_c)
+                    .map_err(|error| error.to_string())?;
+                "ok".into()
+            }
+            SurroundingsRequest::Phantom(place) => {
+                self.move_phantom(world, place)
                     .map_err(|error| error.to_string())?;
                 "ok".into()
             }

@@ -14,7 +14,7 @@ use thermal_device::{
     Device, FingerIndex, PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_PERIOD_STEPS_OF_ONE_FINGER,
     TriggerEdge,
 };
-use thermal_learner::Learner;
+use thermal_learner::{Learner, LearnerOutput};
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::comparator::ComparatorTest as PlantTest;
 use thermal_protocol::{CommandHandler, Error, LineReader, OutgoingLine, Reply, UnsolicitedLine};
@@ -102,6 +102,8 @@ struct Finger {
     flux_code: Option<u16>,
     /// Runs only with a heat-flux sensor.
     learner: Learner,
+    /// Its last result.
+    learnt: Option<LearnerOutput>,
 }
 
 impl Finger {
@@ -118,6 +120,7 @@ impl Finger {
             outputs: OFF,
             flux_code: None,
             learner: Learner::new(),
+            learnt: None,
         };
         finger.discard_scans(more_at_first);
         finger.start_tick();
@@ -187,6 +190,13 @@ impl NativeEngine {
     pub fn new(world: World) -> Self {
         let finger = Finger::new(world, 0, 0);
         Self::with_fingers([finger], PWM_PERIOD_STEPS_OF_ONE_FINGER)
+    }
+
+    /// What the device has learnt of the finger last; `None` before the first result, and without a heat-flux sensor.
+    #[must_use]
+    pub const fn learnt(&self) -> Option<&LearnerOutput> {
+        let [finger] = &self.fingers;
+        finger.learnt.as_ref()
     }
 }
 
@@ -267,6 +277,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         if let Some(input) = self.device.take_learner_input(index) {
             let output = finger.learner.advance(&input);
             self.device.put_learner_output(index, output);
+            finger.learnt = Some(*output);
         }
         match outputs.comparator_test {
             ComparatorTest::None => {}

@@ -61,6 +61,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         file.plant.as_ref(),
         file.device.flux_sensor,
     )?;
+    let assumed_finger = assumed_finger(&file, &params, &draws);
     let scene = Scene {
         duration_s,
         settle_s,
@@ -69,7 +70,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         seed: file.seed,
         commissioned: file.device.commissioned,
         measured_surface: file.device.measured_surface,
-        enrolled: enrolled(&source, &file.device)?,
+        enrolled: enrolled(&source, &file.device, assumed_finger)?,
         chip: chip(&source, &file.device)?,
         mode,
         law: file
@@ -78,7 +79,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
             .map(|name| law(&source, name))
             .transpose()?,
         object: object(&source, &file.object, duration_s, room_c)?,
-        assumed_finger: assumed_finger(&file, &params, &draws),
+        assumed_finger,
         object_as_half_space: file.object.get_ref().told.is_some(),
         nominal,
         params,
@@ -143,11 +144,19 @@ fn assumed_finger(file: &File, params: &Params, draws: &Draws) -> AssumedFinger 
     }
 }
 
-/// Whether the finger was enrolled, which needs a heat-flux sensor.
-fn enrolled(source: &Source<'_>, device: &file::Device) -> Result<bool, SceneError> {
+/// Whether the finger was enrolled, which needs a heat-flux sensor, and another finger than the thesis's.
+fn enrolled(
+    source: &Source<'_>,
+    device: &file::Device,
+    assumed: AssumedFinger,
+) -> Result<bool, SceneError> {
     let enrolled = *device.enrolled.get_ref();
     if enrolled && !device.flux_sensor {
         let problem = "device.enrolled = true without device.flux_sensor = true; a finger is learnt by the sensor only";
+        return Err(source.error(Some(device.enrolled.span()), problem));
+    }
+    if enrolled && !assumed.is_layered() {
+        let problem = "device.enrolled = true with the thesis's finger, of which nothing is learnt; allowed is finger.tissue = \"layered\", or device.finger = \"mean\" or \"mean-on-pad\"";
         return Err(source.error(Some(device.enrolled.span()), problem));
     }
     Ok(enrolled)

@@ -29,7 +29,7 @@ pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
 pub use event::ReceivedEvent;
 pub use fields::Fields;
-pub use person::{EnrolPerson, PersonReport, person_data, read_person_data};
+pub use person::{EnrolPerson, PersonReport, person_data};
 pub use plain_command::{
     PlainCommand, THERMISTORS, thermistor, thermistor_word, upload, upload_course,
 };
@@ -493,9 +493,12 @@ fn may_be_repeated(line: &str) -> bool {
             | "self-test"
             | "law"
             | "finger"
+            | "contact"
             | "margins"
             | "flux"
-            | "surface"]
+            | "surface"
+            | "person"
+            | "persons"]
             | ["settings", ..]
             | ["upload", "row", ..]
     )

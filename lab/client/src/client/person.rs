@@ -11,7 +11,7 @@ use super::{Command, Fields};
 pub struct PersonReport {
     /// The chosen or enrolled person; `None` for an unknown one.
     pub person: Option<Person>,
-    /// Contacts of 8 s or more, trusted to their end, since learning has begun.
+    /// Contacts of 8 s or more, trusted to their end, since the person was chosen or the finger was last distrusted.
     pub contacts: u8,
 }
 
@@ -21,7 +21,7 @@ impl PersonReport {
             "none" => None,
             word => Some(Person {
                 code: PersonCode::new(word)?,
-                finger: read_person_data(reply.word("data")?)?,
+                finger: Person::read_finger(reply.word("data")?)?,
             }),
         };
         Some(Self {
@@ -49,26 +49,11 @@ impl Command for EnrolPerson {
     }
 }
 
-/// What is stored of a person's finger, as 40 hexadecimal digits.
+/// What is stored of a person's finger, as the 40 hexadecimal digits that [`Person::read_finger`] reads.
 #[must_use]
 pub fn person_data(person: &Person) -> String {
     let digits = person.finger.iter().map(|byte| format!("{byte:02X}"));
     digits.collect()
-}
-
-/// The reverse of [`person_data`]; `None` for anything else.
-#[must_use]
-pub fn read_person_data(digits: &str) -> Option<[u8; Person::FINGER_BYTES]> {
-    let (pairs, rest) = digits.as_bytes().as_chunks::<2>();
-    if pairs.len() != Person::FINGER_BYTES || !rest.is_empty() {
-        return None;
-    }
-    let mut finger = [0; Person::FINGER_BYTES];
-    for (byte, [high, low]) in finger.iter_mut().zip(pairs) {
-        let digit = |digit: u8| char::from(digit).to_digit(16);
-        *byte = (16 * digit(*high)? + digit(*low)?) as u8;
-    }
-    Some(finger)
 }
 
 /// The codes of an answer to `persons`.

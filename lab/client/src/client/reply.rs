@@ -6,7 +6,7 @@ use std::str::FromStr;
 use serde::{Serialize, Serializer};
 use thermal_commissioning::{SessionRequest, Setting};
 use thermal_device::StateName;
-use thermal_device::learning::FingerKnowledge;
+use thermal_device::learning::{FingerKnowledge, FluxSensorTest};
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_protocol::{CONTACT_MODEL_WORDS, Request};
@@ -265,6 +265,9 @@ pub struct SelfTestReport {
     /// The result.
     #[serde(serialize_with = "result_word")]
     pub result: SelfTestResult,
+    /// Heat-flux sensor; `None` without one, and before a self-test has passed.
+    #[serde(serialize_with = "flux_sensor_word")]
+    pub flux_sensor: Option<FluxSensorTest>,
 }
 
 fn self_test_result(word: &str) -> Option<SelfTestResult> {
@@ -294,6 +297,22 @@ fn side_line_word<S: Serializer>(
     side.map(SideLine::name).serialize(serializer)
 }
 
+/// What the answer says of the heat-flux sensor.
+fn flux_sensor_test(word: Option<&str>) -> Option<Option<FluxSensorTest>> {
+    let Some(word) = word else {
+        return Some(None);
+    };
+    let mut all = FluxSensorTest::ALL.into_iter();
+    all.find(|known| known.name() == word).map(Some)
+}
+
+fn flux_sensor_word<S: Serializer>(
+    test: &Option<FluxSensorTest>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    test.map(FluxSensorTest::name).serialize(serializer)
+}
+
 fn result_word<S: Serializer>(result: &SelfTestResult, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(result.name())
 }
@@ -314,6 +333,7 @@ impl SelfTestReport {
             display_k: reply.number_or_unknown("display_k")?,
             check_k: reply.number_or_unknown("check_k")?,
             result: self_test_result(reply.word("result")?)?,
+            flux_sensor: flux_sensor_test(reply.word("flux"))?,
         })
     }
 }

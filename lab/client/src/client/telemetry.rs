@@ -51,6 +51,9 @@ pub struct Telemetry {
     pub limited: bool,
 }
 
+/// Force below which a finger counts as lifted, N.
+const LIFTED_N: f64 = 0.01;
+
 /// A telemetry line as a client received it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReceivedTelemetry {
@@ -126,6 +129,12 @@ impl Telemetry {
             },
             limited: remark == "limited",
         })
+    }
+
+    /// Whether the finger does not press on the display; `None` if the force is not known.
+    #[must_use]
+    pub fn is_lifted(&self) -> Option<bool> {
+        self.force_n.map(|force_n| force_n < LIFTED_N)
     }
 
     /// The tick that a telemetry line names, whatever its fields; `None` if it is not telemetry.

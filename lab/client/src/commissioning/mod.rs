@@ -2,6 +2,7 @@
 //! storage of its settings. The one procedure of the person at a bench and of the simulated operator.
 
 mod bench_line;
+mod flux;
 mod procedure;
 mod record;
 mod surroundings;
@@ -11,7 +12,10 @@ use crate::client::ClientError;
 use crate::link::LinkError;
 
 pub use bench_line::{BenchRequest, Button, MeterPoint, Part, Removal};
-pub use procedure::{arm, clear_calibration, commission, restore, settings};
+pub use flux::{FluxCalibration, FluxCalibrationError, PhantomPlace, calibrate_flux};
+pub use procedure::{
+    arm, clear_calibration, commission, commission_flux_sensor, restore, settings,
+};
 pub use record::{CalibrationPoint, CommissioningEvent, CommissioningRecord};
 pub use surroundings::{Surroundings, SurroundingsError};
 pub use surroundings_line::SurroundingsRequest;
@@ -25,6 +29,9 @@ pub enum CommissionError {
     /// Reference thermometer or baths do not work, or the person has ended the procedure.
     #[error("commissioning: {0}")]
     Surroundings(#[from] SurroundingsError),
+    /// The heat-flux sensor is not calibrated.
+    #[error("heat-flux sensor: {0}")]
+    Flux(#[from] FluxCalibrationError),
     /// The device does not report a setting that it accepted.
     #[error("commissioning: the device took '{0}', but has other settings")]
     NotRestored(String),

@@ -7,8 +7,10 @@ use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
 use thermal_settings::{CODES_PER_ADC_SEGMENT, Settings};
 
+use super::flux::sensor_of;
 use super::{
-    CalibrationPoint, CommissionError, CommissioningEvent, CommissioningRecord, Surroundings,
+    CalibrationPoint, CommissionError, CommissioningEvent, CommissioningRecord, FluxCalibration,
+    Surroundings, calibrate_flux,
 };
 use crate::client::{
     Calibrate, Client, ClientError, CountSettings, IdentifiedTile, PlainCommand, QueryMargins,
@@ -48,7 +50,7 @@ const ROOM_C: [f64; 5] = [17.7, 20.5, 23.5, 26.7, 30.5];
 const SINK_C: [f64; 5] = [17.7, 23.5, 29.3, 35.0, 40.7];
 
 /// Calibrates all sensors of a device, or of one of its fingers, in its place of use, and makes it tune itself and store the
-/// result. If anything fails, the bridge is switched off.
+/// result. A heat-flux sensor is among them if the device was told of it. If anything fails, the bridge is switched off.
 ///
 /// # Errors
 /// The device cannot be commissioned, or the person has ended the procedure.
@@ -69,6 +71,26 @@ pub fn commission<L: Link>(
         let _ignored = client.ask_finger(finger, &PlainCommand::Abort);
     }
     done
+}
+
+/// Calibrates the heat-flux sensor of a device that is commissioned, and makes it store the result, which is returned with the
+/// settings as lines. If anything fails, the bridge is switched off, and the settings are as before.
+///
+/// # Errors
+/// The sensor cannot be calibrated, or the person has ended the procedure.
+pub fn commission_flux_sensor<L: Link>(
+    client: &mut Client<L>,
+    finger: Option<u8>,
+    surroundings: &mut dyn Surroundings<L>,
+) -> Result<(FluxCalibration, Vec<String>), CommissionError> {
+    let mut procedure = Procedure {
+        client,
+        finger,
+        surroundings,
+        points: Vec::new(),
+    };
+    let found = procedure.calibrate_flux()?;
+    Ok((found, procedure.save()?))
 }
 
 /// Sends lines of settings to a device, and returns the tile that it then reports. They are in use until it restarts, unless
@@ -204,15 +226,36 @@ impl<L: Link> Procedure<'_, L> {
         self.calibrate_in_baths(ThermistorId::Room, ROOM_C)?;
         self.start_step("calibrate the sink's thermistor on coolants");
         self.calibrate_in_baths(ThermistorId::Sink, SINK_C)?;
+        // Before the phantom, so that nothing else is lost if it fails.
+        let mut settings = self.save()?;
+        let mut flux = None;
+        if sensor_of(self.client, self.finger)?.is_some() {
+            flux = Some(self.calibrate_flux()?);
+            settings = self.save()?;
+        }
+        Ok(CommissioningRecord {
+            settings,
+            flux,
+            points: std::mem::take(&mut self.points),
+            tile,
+        })
+    }
+
+    fn calibrate_flux(&mut self) -> Result<FluxCalibration, CommissionError> {
+        self.start_step("calibrate the heat-flux sensor with a phantom");
+        let found = calibrate_flux(self.client, self.finger, self.surroundings)?;
+        self.surroundings
+            .notice(&CommissioningEvent::FluxCalibrated(found));
+        Ok(found)
+    }
+
+    /// Makes the device store its settings, and returns them as lines.
+    fn save(&mut self) -> Result<Vec<String>, CommissionError> {
         self.start_step("save what was found");
         let settings = settings(self.client, self.finger)?;
         self.client.ask(&PlainCommand::Store(StorageOrder::Save))?;
         expect_settings(self.client, self.finger, &settings)?;
-        Ok(CommissioningRecord {
-            settings,
-            points: std::mem::take(&mut self.points),
-            tile,
-        })
+        Ok(settings)
     }
 
     fn start_step(&mut self, what: &'static str) {

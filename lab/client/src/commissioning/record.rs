@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::FluxCalibration;
 use crate::client::IdentifiedTile;
 
 /// A calibration point that the device accepted.
@@ -26,6 +27,9 @@ pub struct CommissioningRecord {
     pub points: Vec<CalibrationPoint>,
     /// The identified tile.
     pub tile: IdentifiedTile,
+    /// Calibration of the heat-flux sensor, if the device has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flux: Option<FluxCalibration>,
     /// The settings as lines; sent to the device, they restore it.
     pub settings: Vec<String>,
 }
@@ -48,6 +52,8 @@ pub enum CommissioningEvent {
     },
     /// The device identified its tile.
     TileIdentified(IdentifiedTile),
+    /// The heat-flux sensor is calibrated.
+    FluxCalibrated(FluxCalibration),
 }
 
 impl fmt::Display for CommissioningEvent {
@@ -62,6 +68,7 @@ impl fmt::Display for CommissioningEvent {
             ),
             Self::PointRefused { sensor, why } => write!(f, "  {sensor:8} not taken: {why}"),
             Self::TileIdentified(tile) => write!(f, "  {tile}"),
+            Self::FluxCalibrated(calibration) => write!(f, "  {calibration}"),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use thermal_device::safety::ThermistorId;
 
-use super::CommissioningEvent;
+use super::{CommissioningEvent, PhantomPlace};
 use crate::client::Client;
 
 /// Reference thermometer, baths and coolant: those of a simulated operator, or of a person who is told what to do and asked
@@ -42,6 +42,18 @@ pub trait Surroundings<L> {
         thermistor: ThermistorId,
         bath_c: f64,
     ) -> Result<(), SurroundingsError>;
+
+    /// Moves the phantom of the heat-flux sensor.
+    ///
+    /// # Errors
+    /// There is none, or the person has ended the procedure.
+    fn move_phantom(
+        &mut self,
+        _client: &mut Client<L>,
+        _place: PhantomPlace,
+    ) -> Result<(), SurroundingsError> {
+        Err(SurroundingsError::Failed("no phantom is here".into()))
+    }
 
     /// Whether the thermometer is read again after the device refused a point for this reason: a person may have mistyped. If
     /// not, a point in a bath is left out.

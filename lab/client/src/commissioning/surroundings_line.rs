@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use thermal_device::safety::ThermistorId;
 
-use super::BenchRequest;
+use super::{BenchRequest, PhantomPlace};
 use crate::client::{thermistor, thermistor_word};
 
 /// Largest force on the display, N.
@@ -21,6 +21,8 @@ pub enum SurroundingsRequest {
     Reference(ThermistorId),
     /// `bath SENSOR CELSIUS`: puts the thermistor of skin or room into a bath, or the sink on a coolant.
     Bath(ThermistorId, f64),
+    /// `phantom PLACE`: moves the phantom of the heat-flux sensor, `beside` the display, `on` it, or `away`.
+    Phantom(PhantomPlace),
     /// `force NEWTON`: presses a finger on the display, or lifts it for 0.
     Force(f64),
     /// `wait MS SENT`: lets time pass, after the bytes that the host has sent to the device since it connected have arrived,
@@ -42,6 +44,10 @@ impl fmt::Display for SurroundingsRequest {
             Self::Reference(sensor) => write!(f, "reference {}", thermistor_word(*sensor)),
             Self::Bath(sensor, celsius) => {
                 write!(f, "bath {} {celsius}", thermistor_word(*sensor))
+            }
+            Self::Phantom(place) => {
+                let word = PhantomPlace::WORDS.iter().find(|(_, one)| one == place);
+                write!(f, "phantom {}", word.map_or("", |(word, _)| word))
             }
             Self::Force(force_n) => write!(f, "force {force_n}"),
             Self::Wait { ms, sent } => write!(f, "wait {ms} {sent}"),
@@ -72,6 +78,11 @@ impl FromStr for SurroundingsRequest {
                 let bath_c = bath_c.ok_or_else(|| format!("bath of '{celsius}'; 0 to 60 C"))?;
                 Ok(Self::Bath(sensor, bath_c))
             }
+            ["phantom", word] => {
+                let place = PhantomPlace::WORDS.iter().find(|(one, _)| *one == word);
+                let place = place.map(|(_, place)| Self::Phantom(*place));
+                place.ok_or_else(|| format!("unknown place '{word}'; known: beside on away"))
+            }
             ["force", newton] => {
                 let force_n = newton.parse().ok();
                 let force_n = force_n.filter(|n| (0.0..=FORCE_MAX_N).contains(n));
@@ -88,8 +99,8 @@ impl FromStr for SurroundingsRequest {
             }
             ["meter" | "fit" | "remove" | "press" | "release", ..] => line.parse().map(Self::Bench),
             _ => Err(format!(
-                "'{line}'; known: reference SENSOR, bath SENSOR CELSIUS, force NEWTON, wait MS SENT, meter POINT, fit PART, \
-                 remove PART, press BUTTON, release BUTTON"
+                "'{line}'; known: reference SENSOR, bath SENSOR CELSIUS, phantom PLACE, force NEWTON, wait MS SENT, \
+                 meter POINT, fit PART, remove PART, press BUTTON, release BUTTON"
             )),
         }
     }

@@ -7,12 +7,11 @@ use std::time::Duration;
 use thermal_client::client::{
     BoardReport, Client, ClientError, EnrolPerson, FluxReport, PersonReport, PlainCommand,
     QueryBoard, QueryCause, QueryDisplaySurface, QueryFlux, QueryIdentity, QueryPerson,
-    QueryPersons, QueryRaw, QuerySelfTest, QueryState, Telemetry, person_data, read_person_data,
-    upload_course,
+    QueryPersons, QueryRaw, QuerySelfTest, QueryState, Telemetry, person_data, upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, LinkError};
 use thermal_device::events::DeviceEventKind;
-use thermal_device::learning::FingerKnowledge;
+use thermal_device::learning::{FingerKnowledge, FluxSensorTest};
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_device::stimulus::TemperatureKind;
 use thermal_device::{StateName, TelemetryFields};
@@ -301,6 +300,12 @@ fn only_questions_and_numbered_lines_are_sent_again_after_a_damaged_line() {
         "@2 cause",
         "settings 3",
         "upload row 5 1.000 30.000000",
+        "contact",
+        "flux",
+        "surface",
+        "person",
+        "@1 person",
+        "persons",
     ] {
         assert_eq!(sent_as_often(line), (2, true), "{line}");
     }
@@ -311,6 +316,10 @@ fn only_questions_and_numbered_lines_are_sent_again_after_a_damaged_line() {
         "law pi",
         "calibrate display 30",
         "tune result",
+        "contact nominal",
+        "flux zero",
+        "person enrol P07",
+        "person none",
     ] {
         assert_eq!(sent_as_often(line), (1, false), "{line}");
     }
@@ -414,6 +423,13 @@ fn the_answers_for_diagnosis_are_read() {
     )]);
     let test = newer.ask(&QuerySelfTest).unwrap();
     assert_eq!(test.side, Some(SideLine::StuckLow));
+    assert_eq!(test.flux_sensor, None, "a device without the sensor");
+    let mut fitted = knows(&[(
+        "self-test",
+        "ok hot_cut_ms=1 hot_supply_v=4.1 hot_release_ms=1 cold_cut_ms=1 cold_supply_v=4.1 cold_release_ms=1 side=ok supply_v=12.0 cool_a=1.00 warm_a=1.00 display_k=0.54 check_k=0.54 result=passed flux=zero",
+    )]);
+    let test = fitted.ask(&QuerySelfTest).unwrap();
+    assert_eq!(test.flux_sensor, Some(FluxSensorTest::Zero));
     let raw = client.ask(&QueryRaw).unwrap();
     assert_eq!((raw.display, raw.supply), (2048.25, 2730.0));
     assert!(raw.fault_line && !raw.stop);
@@ -488,12 +504,12 @@ fn persons_are_read_and_written() {
     let code = PersonCode::new("P07").unwrap();
     let person = Person {
         code,
-        finger: read_person_data(DATA).unwrap(),
+        finger: Person::read_finger(DATA).unwrap(),
     };
     assert_eq!(person.finger[..4], [0, 8, 0, 0]);
     assert_eq!(person_data(&person), DATA);
     for wrong in [&DATA[1..], &DATA[2..], "", &DATA.replace('4', "g")] {
-        assert_eq!(read_person_data(wrong), None, "{wrong}");
+        assert_eq!(Person::read_finger(wrong), None, "{wrong}");
     }
     let mut client = knows(&[
         (

@@ -52,6 +52,20 @@ fn telemetry_between_lines_and_answers_is_kept_apart_and_in_order() {
 }
 
 #[test]
+fn a_finger_is_lifted_below_10_mn_and_nothing_is_said_of_an_unknown_force() {
+    for (force, is_lifted) in [
+        ("0.009", Some(true)),
+        ("0.010", Some(false)),
+        ("2.000", Some(false)),
+        ("-", None),
+    ] {
+        let line = line(1).replace(" 0.001 ", &format!(" {force} "));
+        let telemetry = Telemetry::parse(&line).unwrap();
+        assert_eq!(telemetry.is_lifted(), is_lifted, "{force}");
+    }
+}
+
+#[test]
 fn what_the_device_does_not_know_and_why_it_tripped_is_read() {
     let mut client = streaming(1);
     client.link().sends(

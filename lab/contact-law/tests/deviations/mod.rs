@@ -6,7 +6,8 @@ use thermal_plant::Params;
 
 /// The law of a plant's finger.
 pub struct Exact {
-    resistances_m2k_w: [f64; FORCES_N.len()],
+    /// Contact resistances at [`FORCES_N`], m² K/W.
+    pub resistances_m2k_w: [f64; FORCES_N.len()],
     exponent: f64,
     gap_w_m2k: f64,
 }

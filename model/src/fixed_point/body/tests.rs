@@ -274,3 +274,21 @@ fn committed_fingers_are_those_of_their_impedances() {
         assert_eq!(source(&committed), source(&computed));
     }
 }
+
+/// Against `libm::expm1`, for arguments down to those of a relaxation of 1e-9 per tick.
+#[test]
+fn expm1_has_no_cancellation() {
+    for k in -120..=13 {
+        for x in [
+            10f64.powf(f64::from(k) / 10.0),
+            -(10f64.powf(f64::from(k) / 10.0)),
+        ] {
+            let exact = libm::expm1(x);
+            assert!(
+                (expm1(x) / exact - 1.0).abs() < 1e-15,
+                "{x}: {} for {exact}",
+                expm1(x)
+            );
+        }
+    }
+}

@@ -120,6 +120,12 @@ struct HeatInputGains<Gain> {
 }
 
 impl<Frac: LeEqU32> HeatInputGains<FixedI32<Frac>> {
+    const ZERO: Self = Self {
+        pumped: FixedI32::ZERO,
+        joule: FixedI32::ZERO,
+        finger: FixedI32::ZERO,
+    };
+
     fn new([pumped, joule, finger]: [f64; 3]) -> Self {
         Self {
             pumped: to_fixed(pumped),
@@ -170,18 +176,19 @@ impl TileToClassRatios {
         Self {
             pumped: gain,
             joule: ratio(gain * tile.joule_per_a, Tile::FACTORY_DEFAULT.joule_per_a),
-            finger: libm::pow(gain, GAIN_RATIO_TO_FINGER_RATIO_EXPONENT),
+            finger: libm::exp(GAIN_RATIO_TO_FINGER_RATIO_EXPONENT * libm::log(gain)),
             leak: ratio(tile.leak_1_s, Tile::FACTORY_DEFAULT.leak_1_s),
         }
     }
 
     /// Scales a relaxation of the class tile to the identified tile: multiplies its steady-state gains by the ratios
-    /// for pumped heat, Joule heat and the finger's heat. `slowest` marks the relaxation towards the sink; its time
+    /// for pumped heat, Joule heat and the finger's heat. The first relaxation is that towards the sink; its time
     /// constant and its gains are also divided by the ratio of the leak. The initial rate of change per watt then does
     /// not depend on the leak.
     #[inline(never)]
-    fn scale_relaxation(&self, slowest: bool, class: RelaxationParameters) -> RelaxationParameters {
-        let leak = if slowest { self.leak } else { 1.0 };
+    fn scale_relaxation(&self, index: usize) -> RelaxationParameters {
+        let class = &CLASS_RELAXATIONS[index.min(RELAXATION_COUNT - 1)];
+        let leak = if index == 0 { self.leak } else { 1.0 };
         let [pumped, joule, finger] = class.gains_k_w;
         RelaxationParameters {
             time_constant_s: class.time_constant_s / leak,
@@ -214,12 +221,20 @@ struct FixedPointRelaxation {
 }
 
 impl FixedPointRelaxation {
+    const ZERO: Self = Self {
+        state: I12F52::ZERO,
+        tick_gains: HeatInputGains::ZERO,
+        steady_state_gains: HeatInputGains::ZERO,
+        tick_change: I0F32::ZERO,
+        horizon_change: I2F30::ZERO,
+    };
+
     #[inline(never)]
-    fn new(relaxation: RelaxationParameters) -> Self {
+    fn new(relaxation: &RelaxationParameters) -> Self {
         let RelaxationParameters {
             time_constant_s,
             gains_k_w,
-        } = relaxation;
+        } = *relaxation;
         let tick_decay = decay(1.0, time_constant_s);
         Self {
             state: I12F52::ZERO,
@@ -353,11 +368,12 @@ impl PlateModel {
     #[must_use]
     pub fn new(module: &PeltierModule, tile: &Tile) -> Self {
         let ratios = TileToClassRatios::of(tile);
-        let mut slowest = true;
-        let relaxations = CLASS_RELAXATIONS
-            .map(|class| ratios.scale_relaxation(core::mem::take(&mut slowest), class));
+        // In one loop: `map` unrolls.
+        let mut relaxations = [FixedPointRelaxation::ZERO; RELAXATION_COUNT];
         let mut horizon_gains = [0.0; 3];
-        for relaxation in &relaxations {
+        for (index, fixed) in relaxations.iter_mut().enumerate() {
+            let relaxation = &ratios.scale_relaxation(index);
+            *fixed = FixedPointRelaxation::new(relaxation);
             let decay = decay(CONTROL_HORIZON_TICKS, relaxation.time_constant_s);
             for (sum, gain) in horizon_gains.iter_mut().zip(relaxation.gains_k_w) {
                 *sum += decay * gain;
@@ -365,7 +381,7 @@ impl PlateModel {
         }
         let [pumped_k_w, ..] = horizon_gains;
         Self {
-            relaxations: relaxations.map(FixedPointRelaxation::new),
+            relaxations,
             horizon_gains: HeatInputGains::new(horizon_gains),
             finger_feedthrough: to_fixed(ratios.finger * FINGER_FEEDTHROUGH_K_W),
             leg_mean: LowPass::new(Coefficient::from_time_constant_s(LEG_MEAN_TIME_CONSTANT_S)),

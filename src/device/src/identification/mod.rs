@@ -85,6 +85,9 @@ const SETTLING_GAINS: PiGains = PiGains {
     proportional_a_k: 0.3,
     integral_s: 5.0,
 };
+/// Computed by the compiler, because `tune` locks out the tick.
+const SETTLING_COEFFICIENTS: PiCoefficients =
+    PiCoefficients::new(&SETTLING_GAINS, UpdatePeriod::EveryTick);
 /// Largest magnitude of the current, A, by which the PI loop brings the display to the operating point. It moves the
 /// display by 3 K/s; a faster display would let thermistors of different lags differ so much that the fault detectors
 /// could trip.
@@ -198,11 +201,10 @@ impl Identification {
     #[must_use]
     pub fn begin_at_sink_temperature(sink: Celsius) -> Self {
         let operating_point = sink.clamp(OPERATING_POINT_CLAMP_MIN, OPERATING_POINT_CLAMP_MAX);
-        let coefficients = PiCoefficients::new(&SETTLING_GAINS, UpdatePeriod::EveryTick);
         Self {
             phase: IdentificationPhase::Settling { ticks: 0, near: 0 },
             operating_point: Setpoint::clamp_celsius_with_flag(operating_point).0,
-            pi: Pi::new(coefficients, SETTLING_CURRENT_LIMIT),
+            pi: Pi::new(SETTLING_COEFFICIENTS, SETTLING_CURRENT_LIMIT),
             baseline_demand: 0,
             baseline_reading: 0,
             baseline_measured: 0,

@@ -1,7 +1,7 @@
 //! The flux that the sensor measures beyond that of the modelled finger.
 //!
-//! The plate is cooled by the finger that is there. The model of the finger shows at once what is quicker than a window; the
-//! sensor shows what the model has wrong, one to two windows later.
+//! The plate loses heat to the real finger. The modelled flux is there in the same tick, but is that of the modelled finger; the measured
+//! one comes one to two windows later. So the difference of the two is added to the modelled flux.
 
 use contact_model::fixed_point::{product, saturating_product};
 use fixed::types::U0F32;
@@ -10,18 +10,24 @@ use thermal_learner::Flux;
 use super::{FluxParameters, StateAtEnd};
 use crate::estimate::FluxPerMm2;
 
-/// Ticks since landing from which on the differences count: the first window that is all contact.
-const FROM_TICKS: u64 = 10;
+/// Ticks since landing from which on the difference is added to the model: from the first window that is all contact. What was
+/// measured earlier is made up for then.
+const ADDED_FROM_TICKS: u64 = 10;
 /// From W/m² to W/mm².
 const M2_PER_MM2: U0F32 = U0F32::lit("1e-6");
+
+/// A measured flux in the model's unit.
+pub fn flux_per_mm2(flux: Flux) -> FluxPerMm2 {
+    product(flux, M2_PER_MM2)
+}
 
 /// Flux of the modelled finger behind the sensor's lag, and what is added to it in the present window.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BeyondModel {
     modelled: FluxPerMm2,
     added: FluxPerMm2,
-    /// What was measured and not added yet, times one window.
-    owed: FluxPerMm2,
+    /// Sum over this contact's windows of the flux beyond the model less the flux that was added.
+    deficit: FluxPerMm2,
 }
 
 impl BeyondModel {
@@ -41,15 +47,15 @@ impl BeyondModel {
         self.modelled = self.modelled.saturating_add(step);
         let ticks = state.ticks_since_landing;
         let Some(flux) = flux.filter(|_| ticks > 0) else {
-            (self.owed, self.added) = (FluxPerMm2::ZERO, FluxPerMm2::ZERO);
+            (self.deficit, self.added) = (FluxPerMm2::ZERO, FluxPerMm2::ZERO);
             return;
         };
-        let measured: FluxPerMm2 = product(flux, M2_PER_MM2);
+        let measured = flux_per_mm2(flux);
         let beyond = measured.saturating_sub(self.modelled);
         let short = beyond.saturating_sub(self.added);
-        self.owed = self.owed.saturating_add(short);
-        if ticks >= FROM_TICKS {
-            self.added = self.owed.saturating_add(beyond);
+        self.deficit = self.deficit.saturating_add(short);
+        if ticks >= ADDED_FROM_TICKS {
+            self.added = self.deficit.saturating_add(beyond);
         }
     }
 
@@ -70,8 +76,9 @@ mod tests {
         skin: None,
         scaled_air_flux: contact_model::fixed_point::Celsius::ZERO,
         resistance: None,
-        ticks_since_landing: FROM_TICKS,
+        ticks_since_landing: ADDED_FROM_TICKS,
         is_steady: true,
+        is_display_at_room: true,
     };
 
     fn parameters(lag_ms: f64) -> FluxParameters {

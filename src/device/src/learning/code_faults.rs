@@ -9,6 +9,9 @@ const HIGHEST: u16 = 4031;
 /// Windows at a rail, 50 ms, after which the flux is not known well enough, or a wire is broken. A flux that was beyond the range
 /// for so long is some per cent larger than what was read.
 const AT_RAIL_WINDOWS_MAX: u8 = 5;
+/// The same, 300 ms, while the modelled finger gives so much that another one can be beyond the range: cold copper under a force of
+/// some newtons.
+const AT_RAIL_WINDOWS_MAX_IF_LIKELY: u8 = 30;
 /// Windows with one and the same code, 100 ms, after which the converter does not convert: noise alone changes its code in almost
 /// every tick.
 const UNCHANGED_WINDOWS_MAX: u8 = 10;
@@ -32,9 +35,15 @@ pub struct CodeFaults {
 }
 
 impl CodeFaults {
-    /// Judges the codes of a window: their sum, the last one, and whether one was missing. Returns their sum; a mean at a rail counts as
-    /// the nearest code of sound wires.
-    pub fn judge(&mut self, sum: u32, last: u16, is_one_missing: bool) -> u32 {
+    /// Judges the codes of a window: their sum, the last one, and whether one was missing; and whether a flux beyond the range is
+    /// likely. Returns their sum; a mean at a rail counts as the nearest code of sound wires.
+    pub fn judge(
+        &mut self,
+        sum: u32,
+        last: u16,
+        is_one_missing: bool,
+        is_beyond_likely: bool,
+    ) -> u32 {
         let counted = |count: u8, is_so| if is_so { count.saturating_add(1) } else { 0 };
         let is_unchanged = sum == self.last_sum && sum == WINDOW_TICKS * u32::from(last);
         self.last_sum = sum;
@@ -44,7 +53,12 @@ impl CodeFaults {
             WINDOW_TICKS * u32::from(HIGHEST),
         );
         self.at_rail_windows = counted(self.at_rail_windows, within != sum);
-        let is_beyond = self.at_rail_windows >= AT_RAIL_WINDOWS_MAX
+        let at_rail_windows_max = if is_beyond_likely {
+            AT_RAIL_WINDOWS_MAX_IF_LIKELY
+        } else {
+            AT_RAIL_WINDOWS_MAX
+        };
+        let is_beyond = self.at_rail_windows >= at_rail_windows_max
             || self.unchanged_windows >= UNCHANGED_WINDOWS_MAX;
         self.present = match (is_one_missing, is_beyond) {
             (true, _) => Some(CodeFault::Missing),
@@ -52,6 +66,18 @@ impl CodeFaults {
             (false, false) => None,
         };
         within
+    }
+
+    /// Sum of the codes of the last window.
+    #[must_use]
+    pub const fn last_sum(&self) -> u32 {
+        self.last_sum
+    }
+
+    /// Whether the sensor was at a rail for so long that its flux is not known well enough.
+    #[must_use]
+    pub const fn is_saturated(&self) -> bool {
+        self.at_rail_windows >= AT_RAIL_WINDOWS_MAX
     }
 
     /// The fault of the last window.
@@ -72,21 +98,34 @@ mod tests {
             for _ in 0..3 {
                 for window in 1..=8 {
                     // The last code differs, as with noise.
-                    assert_eq!(faults.judge(sum, 1, false), within);
+                    assert_eq!(faults.judge(sum, 1, false, false), within);
                     let fault = (window >= 5).then_some(CodeFault::Range);
                     assert_eq!(faults.present(), fault, "{sum}, {window}");
                 }
-                assert_eq!(faults.judge(20_485, 2048, false), 20_485);
+                assert_eq!(faults.judge(20_485, 2048, false, false), 20_485);
                 assert_eq!(faults.present(), None);
             }
         }
         let mut faults = CodeFaults::default();
         for _ in 0..20 {
             for sum in [640, 40_310] {
-                assert_eq!(faults.judge(sum, 1, false), sum);
+                assert_eq!(faults.judge(sum, 1, false, false), sum);
                 assert_eq!(faults.present(), None);
             }
         }
+    }
+
+    #[test]
+    fn a_flux_that_is_likely_to_be_beyond_the_range_may_be_there_for_longer() {
+        let mut faults = CodeFaults::default();
+        for window in 1..=40 {
+            faults.judge(40_950, 1, false, true);
+            let fault = (window >= 30).then_some(CodeFault::Range);
+            assert_eq!(faults.present(), fault, "{window}");
+            assert_eq!(faults.is_saturated(), window >= 5, "{window}");
+        }
+        faults.judge(20_485, 1, false, true);
+        assert!(!faults.is_saturated() && faults.present().is_none());
     }
 
     #[test]
@@ -94,16 +133,16 @@ mod tests {
         let mut faults = CodeFaults::default();
         for _ in 0..3 {
             for window in 0..20 {
-                faults.judge(20_480, 2048, false);
+                faults.judge(20_480, 2048, false, false);
                 let fault = (window >= 10).then_some(CodeFault::Range);
                 assert_eq!(faults.present(), fault, "{window}");
             }
-            faults.judge(20_480, 2047, false);
+            faults.judge(20_480, 2047, false, false);
             assert_eq!(faults.present(), None);
-            faults.judge(20_490, 2049, false);
+            faults.judge(20_490, 2049, false, false);
         }
         for window in 0..40 {
-            faults.judge(20_480 + window % 2, 2048, false);
+            faults.judge(20_480 + window % 2, 2048, false, false);
             assert_eq!(faults.present(), None);
         }
     }
@@ -112,7 +151,7 @@ mod tests {
     fn a_missing_code_is_a_fault_of_its_window() {
         let mut faults = CodeFaults::default();
         for is_missing in [true, true, false, true, false] {
-            faults.judge(20_485, 2048, is_missing);
+            faults.judge(20_485, 2048, is_missing, false);
             assert_eq!(faults.present(), is_missing.then_some(CodeFault::Missing));
         }
     }

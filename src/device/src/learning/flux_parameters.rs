@@ -19,7 +19,7 @@ pub struct FluxParameters {
     /// Code without flux.
     zero: I28F4,
     /// W/m² per count in each tick of a window, over the window's ticks.
-    w_m2_per_count_and_tick: U8F24,
+    w_m2_per_summed_count: U8F24,
     /// Windows after that of the lifting in which the flux still counts.
     pub(super) windows_after_lifting: u32,
     /// Part of the distance to its input by which a low-pass filter of the sensor's lag moves in a window.
@@ -37,7 +37,7 @@ impl FluxParameters {
         let resistance_m2k_w = 1e-6 * sensor.resistance_mm2k_w;
         Self {
             zero: to_fixed(sensor.zero_counts),
-            w_m2_per_count_and_tick: to_fixed(
+            w_m2_per_summed_count: to_fixed(
                 1.0 / (sensor.counts_per_w_m2 * f64::from(WINDOW_TICKS)),
             ),
             windows_after_lifting: (LAGS_AFTER_LIFTING * sensor.lag_ms / WINDOW_MS) as u32,
@@ -55,7 +55,7 @@ impl FluxParameters {
     pub fn mean_flux(&self, codes: u32) -> Flux {
         let zeros = i64::from(self.zero.to_bits()) * i64::from(WINDOW_TICKS);
         let above_zeros = (i64::from(codes) << I28F4::FRAC_NBITS) - zeros;
-        let bits = above_zeros * i64::from(self.w_m2_per_count_and_tick.to_bits());
+        let bits = above_zeros * i64::from(self.w_m2_per_summed_count.to_bits());
         // From 4 + 24 binary places to 12. Settings have at most 100 W/m² per count of 4095, which fits.
         Flux::from_bits((bits >> (I28F4::FRAC_NBITS + U8F24::FRAC_NBITS - Flux::FRAC_NBITS)) as i32)
     }

@@ -12,8 +12,9 @@
 mod beyond_model;
 mod code_faults;
 mod flux_parameters;
+mod no_contact_code;
 mod person_state;
-mod resting_code;
+mod self_test;
 mod window_sums;
 
 use thermal_learner::{
@@ -22,12 +23,13 @@ use thermal_learner::{
 use thermal_settings::Person;
 
 use crate::estimate::FluxPerMm2;
-use beyond_model::BeyondModel;
+use beyond_model::{BeyondModel, flux_per_mm2};
 use code_faults::{CodeFault, CodeFaults};
 pub use flux_parameters::FluxParameters;
+pub use no_contact_code::NoContactCodeSum;
+use no_contact_code::NoContactCodes;
 pub use person_state::PersonState;
-pub use resting_code::RestingCode;
-use resting_code::RestingCodes;
+pub use self_test::FluxSensorTest;
 use window_sums::WindowSums;
 pub use window_sums::{MeasuredTick, StateAtEnd};
 
@@ -39,22 +41,22 @@ const SELDOM_WINDOWS: u16 = 8;
 /// What the host is told about the finger that is learnt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FingerKnowledge {
-    /// No sensor of the heat flux is fitted: the assumed finger.
-    NoSensor,
-    /// The converter has not converted the sensor's voltage: the assumed finger until the next contact without such a tick.
+    /// A conversion had not ended in this window: a step towards the assumed finger. In contact the learner then distrusts the sensor
+    /// until the next landing.
     NoCode,
-    /// The sensor reads beyond its range, or the same for too long: the assumed finger until the next contact without such codes.
+    /// The sensor's code has been at a rail for 50 ms, or the same for 100 ms: towards the assumed finger while it lasts. In contact the
+    /// learner then distrusts the sensor until the next landing.
     SensorFault,
     /// The learner has not answered in time: the assumed finger until this contact has ended.
     Late,
-    /// What the learner says.
+    /// What the learner itself says: learning, trusted, or distrusted for a reason.
     Learnt(Trust),
 }
 
 impl FingerKnowledge {
-    /// All with their words in the protocol. Those with a reason are on the way to the assumed finger, or there.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 12] = [
-        ("assumed", Self::NoSensor),
+    /// All, with their words in the protocol. With all but the first two the device has gone back to the assumed finger, or is on the way
+    /// there.
+    pub const PROTOCOL_WORDS: [(&'static str, Self); 11] = [
         ("learning", Self::Learnt(Trust::Learning)),
         ("trusted", Self::Learnt(Trust::Trusted)),
         ("no-code", Self::NoCode),
@@ -77,7 +79,7 @@ impl FingerKnowledge {
     /// Whether what the sensor reads can be right. Also for a finger that is not trusted: the finger is in doubt then, not the flux.
     const fn is_of_sound_sensor(self) -> bool {
         match self {
-            Self::NoSensor | Self::NoCode | Self::SensorFault | Self::Late => false,
+            Self::NoCode | Self::SensorFault | Self::Late => false,
             Self::Learnt(Trust::Mean(why)) => {
                 !matches!(why, Distrust::Sensor | Distrust::Arithmetic)
             }
@@ -89,7 +91,6 @@ impl FingerKnowledge {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::NoSensor => "assumed",
             Self::NoCode => "no-code",
             Self::SensorFault => "sensor-range",
             Self::Late => "late",
@@ -119,14 +120,17 @@ pub struct FingerLearning {
     input: Option<LearnerInput>,
     parameters: FluxParameters,
     faults: CodeFaults,
-    resting: RestingCodes,
+    resting: NoContactCodes,
     beyond_model: BeyondModel,
     /// Windows in which the flux still counts if the finger has lifted.
     counting_windows: u32,
     /// Number of the last window.
     sequence: u16,
-    /// The place of another finger that may follow, for the next input.
+    /// The place of another finger that may follow, until the learner has taken it with an input.
     restart: Option<Place>,
+    /// Whether this finger has not been seen lifted: its contact has warmed or cooled it before the learner looked, so that nothing is
+    /// learnt from it.
+    has_unknown_history: bool,
     /// Whether the learner must answer that input before the present window ends, and its answer.
     is_asked: bool,
     answer: Option<Trust>,
@@ -150,11 +154,12 @@ impl FingerLearning {
             code: 0,
             parameters: *parameters,
             faults: CodeFaults::default(),
-            resting: RestingCodes::default(),
+            resting: NoContactCodes::default(),
             beyond_model: BeyondModel::default(),
             counting_windows: 0,
             sequence: 0,
             restart: Some(place),
+            has_unknown_history: true,
             input: None,
             is_asked: false,
             answer: None,
@@ -171,15 +176,22 @@ impl FingerLearning {
     /// unknown one.
     pub fn restart(&mut self, place: Place, person: Option<Person>) {
         self.restart = Some(place);
+        self.has_unknown_history = true;
+        self.input = None;
         self.is_asked = false;
         self.answer = None;
         self.learnt = None;
-        self.applied = None;
         self.knowledge = FingerKnowledge::Learnt(Trust::Learning);
         self.person = PersonState::new(person);
     }
 
-    /// Notes the sensor's code, or that its conversion has not ended, and returns the one that counts.
+    /// Notes that the assumed finger is applied.
+    pub const fn note_assumed_finger(&mut self) {
+        self.applied = None;
+    }
+
+    /// Takes the sensor's code of this tick. Without one, because the conversion has not ended, the last code stands in, and the window
+    /// is faulty. Returns the code that stands for the tick.
     #[inline(always)]
     pub const fn note_code(&mut self, code: Option<u16>) -> u16 {
         match code {
@@ -195,14 +207,18 @@ impl FingerLearning {
         self.sums.add(tick)
     }
 
-    /// Ends a complete window: offers the next input, and returns the finger to be applied now, if it differs enough from the
-    /// one that was applied last. That is the answer to the input before; if it is missing, one that is nearer to the assumed finger, until
-    /// a window without contact. So it is while the sensor's code cannot be right.
+    /// Ends a complete window: makes the learner's next input, and returns the finger to apply in this tick; `None` if it hardly differs
+    /// from the one in use. It is the learner's answer to the input before. While the codes cannot be right, and from a missing answer to
+    /// the next window without contact, it is a step towards the assumed finger.
     pub fn end_window(&mut self, state: &StateAtEnd) -> Option<&LearnerOutput> {
-        let contact = self.sums.contact(state);
-        let flux_w_m2 = self.flux_of_window();
+        self.has_unknown_history &= self.sums.has_contact();
         let modelled_flux = self.sums.mean_modelled_flux();
-        self.sums = self.sums.next();
+        let flux_w_m2 = self.flux_of_window(modelled_flux, state.is_display_at_room);
+        let mut contact = self.sums.contact(state);
+        if let Some(contact) = &mut contact {
+            contact.is_steady &= !self.faults.is_saturated() && !self.has_unknown_history;
+        }
+        self.sums.begin_next();
         let (answer, fault) = (self.answer.take(), self.faults.present());
         self.was_late &= contact.is_some();
         self.was_late |= self.is_asked && answer.is_none();
@@ -224,7 +240,7 @@ impl FingerLearning {
         self.is_asked = true;
         self.input = Some(LearnerInput {
             sequence: self.sequence,
-            restart: (self.restart.take()).map(|place| Restart {
+            restart: self.restart.map(|place| Restart {
                 place,
                 sensor: self.parameters.sensor,
                 person: self.person.prior(),
@@ -238,6 +254,7 @@ impl FingerLearning {
             return applied.approach_mean().then_some(applied);
         }
         let is_due = state.ticks_since_landing < APPLIED_SELDOM_FROM_TICKS
+            || matches!(answer, Some(Trust::Mean(_)))
             || self.sequence.is_multiple_of(SELDOM_WINDOWS);
         let learnt = self.learnt.as_ref();
         let learnt = learnt.filter(|_| is_due && core::mem::take(&mut self.is_new))?;
@@ -247,8 +264,8 @@ impl FingerLearning {
         Some(self.applied.insert(*learnt))
     }
 
-    /// Mean flux of the window, 0 without contact; `None` if the codes cannot be right. Notes the codes if the finger has lifted.
-    fn flux_of_window(&mut self) -> Option<Flux> {
+    /// Mean flux of the window, 0 without contact; `None` if the codes cannot be right. Notes the codes if no flux is expected.
+    fn flux_of_window(&mut self, modelled: FluxPerMm2, is_display_at_room: bool) -> Option<Flux> {
         self.counting_windows = if self.sums.has_contact() {
             self.parameters.windows_after_lifting + 1
         } else {
@@ -259,10 +276,20 @@ impl FingerLearning {
             return Some(Flux::ZERO);
         }
         let sums = &self.sums;
-        let codes = (self.faults).judge(sums.codes(), self.code, sums.is_code_missing);
+        // At least half of what was measured.
+        let measured = flux_per_mm2(self.parameters.mean_flux(sums.codes()));
+        let is_beyond_likely = (modelled.saturating_mul_int(2).abs() >= measured.abs())
+            && modelled.is_negative() == measured.is_negative();
+        let codes = (self.faults).judge(
+            sums.codes(),
+            self.code,
+            sums.is_code_missing,
+            is_beyond_likely,
+        );
         let is_valid = self.faults.present().is_none();
         let counts = self.counting_windows != 0;
-        self.resting.add((is_valid && !counts).then_some(codes));
+        let is_resting = is_valid && !counts && is_display_at_room;
+        self.resting.add(is_resting.then_some(codes));
         is_valid.then(|| {
             if counts {
                 self.parameters.mean_flux(codes)
@@ -280,7 +307,9 @@ impl FingerLearning {
 
     /// The input of the last window, once.
     pub fn take_input(&mut self) -> Option<LearnerInput> {
-        self.input.take()
+        let input = self.input.take()?;
+        self.restart = None;
+        Some(input)
     }
 
     /// Keeps the learner's answer for the end of the present window. One to an earlier input than the last is void, and one from
@@ -309,9 +338,9 @@ impl FingerLearning {
         self.beyond_model.flux()
     }
 
-    /// Mean code of the last half second without contact.
+    /// Mean code of half a second without contact, with the display at the temperature of the room.
     #[must_use]
-    pub const fn resting_code(&self) -> Option<RestingCode> {
+    pub const fn no_contact_code(&self) -> Option<NoContactCodeSum> {
         self.resting.last()
     }
 

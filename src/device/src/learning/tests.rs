@@ -5,7 +5,7 @@ extern crate std;
 use std::vec::Vec;
 
 use contact_model::fixed_point::Celsius;
-use fixed::types::{I2F30, I4F28};
+use fixed::types::{I2F30, I4F28, U16F16};
 use thermal_learner::{Learner, WINDOW_TICKS};
 use thermal_settings::FluxSensor;
 
@@ -17,6 +17,7 @@ const STATE: StateAtEnd = StateAtEnd {
     resistance: None,
     ticks_since_landing: 0,
     is_steady: true,
+    is_display_at_room: true,
 };
 
 /// A flux of 1000 W/m², with the least noise, into a display that is 5 K colder than the skin.
@@ -38,7 +39,7 @@ fn answer(input: &LearnerInput) -> LearnerOutput {
     let mean = *Learner::new().advance(input);
     LearnerOutput {
         weights: [I2F30::lit("0.9"); 9],
-        air_change: I4F28::lit("0.5"),
+        air_flux_deviation: I4F28::lit("0.5"),
         skin_offset_k: Celsius::lit("-0.05"),
         resistance_factor: I4F28::lit("1.5"),
         revision: 7,
@@ -46,14 +47,22 @@ fn answer(input: &LearnerInput) -> LearnerOutput {
     }
 }
 
-/// A window, with or without a contact; what is applied at its end.
-fn window(learning: &mut FingerLearning, presses: bool) -> Option<LearnerOutput> {
+/// A window, with or without a contact, that ends in this state; what is applied then.
+fn window_to(
+    learning: &mut FingerLearning,
+    presses: bool,
+    state: &StateAtEnd,
+) -> Option<LearnerOutput> {
     for number in 1..=WINDOW_TICKS {
         let mut tick = tick(number, presses);
         tick.code = learning.note_code(Some(tick.code));
         assert_eq!(learning.add_tick(&tick), number == WINDOW_TICKS);
     }
-    learning.end_window(&STATE).copied()
+    learning.end_window(state).copied()
+}
+
+fn window(learning: &mut FingerLearning, presses: bool) -> Option<LearnerOutput> {
+    window_to(learning, presses, &STATE)
 }
 
 /// A learner that has answered once, and whose answer is applied.
@@ -164,7 +173,10 @@ fn a_missing_answer_and_one_for_another_window_end_in_the_mean_finger() {
             assert_eq!(learning.knowledge(), FingerKnowledge::Late);
             let now = last.expect("a finger nearer to the mean one");
             let share = |now: f64, before: f64| now / before;
-            let left = share(now.air_change.to_num(), before.air_change.to_num());
+            let left = share(
+                now.air_flux_deviation.to_num(),
+                before.air_flux_deviation.to_num(),
+            );
             assert!((left - 0.75f64.powi(number + 1)).abs() < 1e-6, "{left}");
         }
         let last = last.expect("a finger");
@@ -200,6 +212,72 @@ fn an_answer_from_before_a_restart_is_void_and_nothing_is_late() {
     let input = learning.take_input().expect("an input");
     let place = input.restart.map(|restart| restart.place);
     assert_eq!(place, Some(Place::Pad));
+}
+
+/// Its place and person must reach the learner, whatever windows it misses.
+#[test]
+fn a_restart_stays_until_the_learner_has_taken_it() {
+    let mut learning = taught();
+    learning.restart(Place::Pad, None);
+    for _ in 0..3 {
+        window(&mut learning, false);
+    }
+    let restart = |learning: &mut FingerLearning| learning.take_input().expect("an input").restart;
+    assert_eq!(
+        restart(&mut learning).map(|restart| restart.place),
+        Some(Place::Pad)
+    );
+    window(&mut learning, false);
+    assert_eq!(restart(&mut learning), None);
+}
+
+/// The finger has been cooled before the learner looked, so that its skin is not what it was before contact.
+#[test]
+fn nothing_is_learnt_from_a_finger_that_rests_during_a_restart() {
+    let mut learning = taught();
+    learning.restart(Place::Air, None);
+    let state = StateAtEnd {
+        resistance: Some(U16F16::ONE),
+        ..STATE
+    };
+    let mut is_steady = |presses| {
+        window_to(&mut learning, presses, &state);
+        let contact = learning.take_input().expect("an input").contact;
+        contact.map(|contact| contact.is_steady)
+    };
+    for _ in 0..5 {
+        assert_eq!(is_steady(true), Some(false));
+    }
+    assert_eq!(is_steady(false), None);
+    assert_eq!(is_steady(true), Some(true));
+}
+
+/// Its steps are those of the learner, a quarter of the way in each window; several at once would be felt.
+#[test]
+fn the_way_to_the_mean_finger_is_applied_in_each_window_however_long_the_contact_is() {
+    for (trust, applied) in [
+        (Trust::Trusted, 2),
+        (
+            Trust::Mean(Distrust::Contact),
+            2 * u32::from(SELDOM_WINDOWS),
+        ),
+    ] {
+        let mut learning = taught();
+        let state = StateAtEnd {
+            ticks_since_landing: APPLIED_SELDOM_FROM_TICKS,
+            ..STATE
+        };
+        let mut count = 0;
+        for number in 1..=2 * SELDOM_WINDOWS {
+            let input = learning.take_input().expect("an input");
+            let mut next = answer(&input);
+            (next.trust, next.revision) = (trust, next.revision + number);
+            next.resistance_factor -= I4F28::lit("0.01") * i32::from(number);
+            learning.put_output(&next);
+            count += u32::from(window_to(&mut learning, true, &state).is_some());
+        }
+        assert_eq!(count, applied, "{trust:?}");
+    }
 }
 
 #[test]

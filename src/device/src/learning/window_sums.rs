@@ -12,20 +12,22 @@ const W_M2_PER_SCALED_K: i64 = 36_999;
 /// `sqrt(dt) / e_skin`, mm² K/W: a resistance, K per K of scaled flux, times this is a thermal resistance.
 const MM2K_W_PER_SCALED: U16F16 = U16F16::lit("27.028");
 
-/// What is known at the end of a window with contact.
+/// State at the end of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StateAtEnd {
     /// Skin before contact, as its thermistor has it, °C; `None` without an estimate.
     pub skin: Option<Celsius>,
     /// Scaled flux that the air took from the assumed finger's skin before contact, K.
     pub scaled_air_flux: Celsius,
-    /// Contact resistance of an average skin with the display at the mean force, K per K of scaled flux; `None` before the
-    /// contact is detected.
+    /// Contact resistance of skin and display at the mean force by the finger's contact law, without the factor that is learnt and
+    /// without the sensor's layer, K per K of scaled flux; `None` before the contact is detected.
     pub resistance: Option<U16F16>,
     /// Ticks since landing.
     pub ticks_since_landing: u64,
     /// Whether the finger may be learnt from this window: no jump of the force, and no limited set-point.
     pub is_steady: bool,
+    /// Whether display and room are so near that hardly any heat flows through the sensor without a finger.
+    pub is_display_at_room: bool,
 }
 
 /// What was measured in a tick.
@@ -41,7 +43,7 @@ pub struct MeasuredTick {
     pub presses: bool,
 }
 
-/// Code, surface and modelled flux over some ticks. A surface has four bits less, 4 uK, so that ten have 32 bits.
+/// Sums of code, surface and modelled flux over some ticks. Surfaces have a resolution of 4 uK.
 #[derive(Clone, Copy, Debug, Default)]
 struct Measured {
     codes: u32,
@@ -49,8 +51,8 @@ struct Measured {
     modelled_flux: FluxPerMm2,
 }
 
-/// Bits by which surfaces are shortened.
-const FEWER: u32 = 4;
+/// Bits by which a surface temperature is shifted right before it is summed, so that a sum of ten fits into 32 bits.
+const SURFACE_SHIFT: u32 = 4;
 
 /// Sums over the ticks of the present window. They are all that a tick costs; what follows from them is found once a window.
 ///
@@ -59,7 +61,9 @@ const FEWER: u32 = 4;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WindowSums {
     ticks: u32,
-    present: Measured,
+    /// Over the ticks after those of `of_window`, which belong to the next window.
+    of_next_window: Measured,
+    /// Over the ten ticks of this window; they end [`CONTACT_DEBOUNCE_TICKS`] before it does.
     of_window: Measured,
     touching_ticks: u32,
     /// Whether a tick had no code.
@@ -70,25 +74,23 @@ impl WindowSums {
     /// Adds a tick. Returns whether the window is complete.
     #[inline(always)]
     pub fn add(&mut self, tick: &MeasuredTick) -> bool {
-        self.present.codes += u32::from(tick.code);
-        self.present.surface += tick.surface.to_bits() >> FEWER;
-        self.present.modelled_flux =
-            (self.present.modelled_flux).saturating_add(tick.modelled_flux);
+        self.of_next_window.codes += u32::from(tick.code);
+        self.of_next_window.surface += tick.surface.to_bits() >> SURFACE_SHIFT;
+        self.of_next_window.modelled_flux =
+            (self.of_next_window.modelled_flux).saturating_add(tick.modelled_flux);
         self.touching_ticks += u32::from(tick.presses);
         self.ticks += 1;
         if self.ticks == WINDOW_TICKS - CONTACT_DEBOUNCE_TICKS {
-            self.of_window = core::mem::take(&mut self.present);
+            self.of_window = core::mem::take(&mut self.of_next_window);
         }
         self.ticks >= WINDOW_TICKS
     }
 
-    /// The next window.
-    #[must_use]
-    pub fn next(&self) -> Self {
-        Self {
-            present: self.present,
-            ..Self::default()
-        }
+    /// Begins the next window. Its codes and surfaces replace those of this one before they are asked for.
+    pub const fn begin_next(&mut self) {
+        self.ticks = 0;
+        self.touching_ticks = 0;
+        self.is_code_missing = false;
     }
 
     /// Sum of the ten codes.
@@ -116,7 +118,7 @@ impl WindowSums {
             return None;
         }
         // In the window of a landing the surface before it counts, too, which is nearly the same.
-        let surface = self.of_window.surface / WINDOW_TICKS as i32 * (1 << FEWER);
+        let surface = self.of_window.surface / WINDOW_TICKS as i32 * (1 << SURFACE_SHIFT);
         let above = state.skin?.saturating_sub(Celsius::from_bits(surface));
         let of_tick = Celsius::from_bits(above.to_bits() / WINDOW_TICKS as i32);
         let air_bits = i64::from(state.scaled_air_flux.to_bits()) * W_M2_PER_SCALED_K;
@@ -150,6 +152,7 @@ mod tests {
         resistance: Some(U16F16::ONE),
         ticks_since_landing: 30,
         is_steady: true,
+        is_display_at_room: true,
     };
 
     fn tick() -> impl Strategy<Value = MeasuredTick> {
@@ -194,7 +197,7 @@ mod tests {
                     let apart_k = above_k - found.skin_above_display_k.to_num::<f64>();
                     prop_assert!(apart_k.abs() <= 1e-5, "{}", apart_k);
                 }
-                sums = sums.next();
+                sums.begin_next();
             }
         }
     }

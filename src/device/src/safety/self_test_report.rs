@@ -4,6 +4,7 @@ use contact_model::fixed_point::Celsius;
 
 use super::Fault;
 use crate::drive::Current;
+use crate::learning::FluxSensorTest;
 use crate::sense::SupplyVoltage;
 
 /// What the last self-test has measured, whether it has passed or not; `None` for what it has not reached.
@@ -25,6 +26,9 @@ pub struct SelfTestReport {
     pub responses: [Option<Celsius>; 2],
     /// Result.
     pub result: SelfTestResult,
+    /// Heat-flux sensor, at the end of a self-test that has passed; `None` without one. It trips nothing, as the device works
+    /// without.
+    pub flux_sensor: Option<FluxSensorTest>,
 }
 
 /// What the test of one side of the comparator has measured.

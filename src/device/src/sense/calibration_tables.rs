@@ -1,6 +1,6 @@
 //! Calibration in fixed point: the error of the analogue-to-digital converter, and the correction of each thermistor.
 
-use contact_model::fixed_point::{Celsius, product, to_fixed};
+use contact_model::fixed_point::{Celsius, product, to_fixed, truncated_units};
 use fixed::types::{I0F32, U28F4};
 
 use super::{SCANS_PER_TICK, THERMISTOR_COUNT};
@@ -139,7 +139,7 @@ impl ThermistorCorrection {
     /// warmer than the surface that it is mounted on, so that the corrected reading is the temperature of the surface.
     #[inline(never)]
     fn new(correction: &thermal_settings::Correction, self_heating_k: f64) -> Self {
-        let coefficient = |value| I0F32::from_bits(libm::ldexp(value, 32) as i32);
+        let coefficient = |value| I0F32::from_bits(truncated_units(value, 32));
         Self {
             offset: to_fixed(correction.offset_k - self_heating_k),
             slope: coefficient(correction.slope),

@@ -1,6 +1,6 @@
 //! The force sensor: conversion of its sums to newtons, tracking of its zero, and detection of a finger's contact.
 
-use contact_model::fixed_point::{Force, Fraction, saturating_product, to_fixed};
+use contact_model::fixed_point::{Force, Fraction, saturating_product, to_fixed, truncated_units};
 use fixed::types::I18F14;
 
 use thermal_settings::ForceSensor;
@@ -74,8 +74,7 @@ impl ForceChannel {
     pub fn new(settings: &ForceSensor) -> Self {
         let zero = settings.zero_counts * 16.0;
         let max_change = FORCE_ZERO_TRACKING_RANGE_N * settings.counts_per_n * 16.0;
-        let fine =
-            |sum| FineForceSum::from_bits(libm::ldexp(sum, FineForceSum::FRAC_NBITS as i32) as i32);
+        let fine = |sum| FineForceSum::from_bits(truncated_units(sum, FineForceSum::FRAC_NBITS));
         Self {
             broken_below: (zero / 2.0) as u16,
             zero: fine(zero),

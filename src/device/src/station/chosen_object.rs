@@ -40,6 +40,7 @@ pub struct ChosenObject {
 }
 
 /// Contact constants of the first material on this display.
+#[inline(never)]
 fn default_pair(display: &Surface) -> Option<ContactPair> {
     let [(_, any), ..] = &MATERIALS;
     ContactPair::new(&SKIN, any, display, TICK_S).ok()
@@ -127,9 +128,15 @@ impl ChosenObject {
     /// Assumes this finger from now on.
     pub fn choose_finger(&mut self, finger: AssumedFinger) {
         self.finger = finger;
-        self.bodies.finger = *finger.body();
+        self.restore_assumed_finger();
         self.choose_contact_law(&ChosenContactLaw::NOMINAL);
         self.bodies.are_half_spaces = self.is_half_space && finger == AssumedFinger::Thesis;
+    }
+
+    /// Discards what was learnt of the finger that touches. A contact law that was told stays.
+    pub const fn restore_assumed_finger(&mut self) {
+        self.bodies.finger = *self.finger.body();
+        self.bodies.resistances.skin_factor = OwnResistances::NONE.skin_factor;
     }
 
     /// Takes this for the contact law of the finger from now on; what was learnt of its resistance was learnt by another one.
@@ -141,9 +148,11 @@ impl ChosenObject {
 
     /// Gives the assumed finger what was learnt of the one that touches: its tissue, the relative change of the flux that the air
     /// took from it, and the factor on its contact resistance.
-    pub fn learn_finger(&mut self, tissue: &Body, air_change: I4F28, skin_factor: I4F28) {
+    pub fn learn_finger(&mut self, tissue: &Body, air_flux_deviation: I4F28, skin_factor: I4F28) {
         let air = u64::from(self.finger.body().air.to_bits());
-        let factor = air_change.saturating_add(I4F28::ONE).max(I4F28::ZERO);
+        let factor = air_flux_deviation
+            .saturating_add(I4F28::ONE)
+            .max(I4F28::ZERO);
         let air = (air * u64::from(factor.to_bits().unsigned_abs())) >> I4F28::FRAC_NBITS;
         // Each by itself, so that the tissue is copied once.
         self.bodies.finger.tissue = *tissue;

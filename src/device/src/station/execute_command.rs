@@ -51,6 +51,9 @@ impl Station {
                     self.object.choose_finger(finger);
                     self.reference.forget_resistances();
                     self.forget_learnt_finger(finger);
+                    if let Some(learning) = &mut self.learning {
+                        learning.note_assumed_finger();
+                    }
                     self.due.add(DueWork::CONTACT_RESTART);
                 }
             }
@@ -82,7 +85,14 @@ impl Station {
                 self.due.add(DueWork::CONTACT_RESTART);
             }
             Command::Person => return Ok(Reply::Person(self.person_state()?)),
+            Command::LearntPerson => {
+                self.require_nominal_contact_law()?;
+                return Ok(Reply::Person(self.person_state()?));
+            }
             Command::ChoosePerson(person) => {
+                if person.is_some() {
+                    self.require_nominal_contact_law()?;
+                }
                 self.choose_person(person)?;
                 self.due.add(DueWork::CONTACT_RESTART);
             }

@@ -1,20 +1,20 @@
 //! Learning of the finger that touches: between the station's estimates and its learner.
 
 use contact_model::fixed_point::{Celsius, TissueStateFactors, TissueWeights, product};
-use fixed::types::U16F16;
+use fixed::types::{U10F22, U16F16};
 use thermal_learner::{LearnerInput, LearnerOutput, Place, WINDOW_TICKS};
 use thermal_settings::Person;
 
 use super::{DueWork, Station};
 use crate::command::{AssumedFinger, FluxState, Refused};
+use crate::estimate::FluxPerMm2;
 use crate::events::DeviceEventKind;
 use crate::learning::{
-    FingerKnowledge, FingerLearning, FluxParameters, MeasuredTick, PersonState, RestingCode,
-    StateAtEnd,
+    FingerLearning, FluxParameters, MeasuredTick, NoContactCodeSum, PersonState, StateAtEnd,
 };
 
-/// Largest difference of display and room at which the flux from display to air counts as none, K: some 3 W/m².
-const ZERO_DIFFERENCE_MAX: Celsius = Celsius::lit("0.3");
+/// Largest temperature difference of display and room at which the zero may be taken, K: the air then takes some 3 W/m².
+const FLUX_ZERO_ROOM_DIFFERENCE_MAX: U10F22 = U10F22::lit("0.3");
 
 /// Where the assumed finger is before its contacts.
 const fn place(finger: AssumedFinger) -> Place {
@@ -34,14 +34,16 @@ impl Station {
         self.learning = sensor.map(|sensor| FingerLearning::new(sensor, place));
         let layer = sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer);
         self.object.set_display_layer(layer);
+        self.reference.forget_resistances();
         self.estimator.finger.set_skin_offset(Celsius::ZERO);
+        (self.estimator.finger).set_flux_beyond_model(FluxPerMm2::ZERO);
         self.due.add(DueWork::ASSUMED_FINGER);
         self.due.add(DueWork::CONTACT_RESTART);
     }
 
-    /// Goes back to the finger that is assumed.
-    pub(super) fn assume_finger_again(&mut self) {
-        self.object.choose_finger(self.object.assumed_finger());
+    /// Discards what was learnt: tissue, resistance and conductances are those of the assumed finger again.
+    pub(super) fn restore_assumed_finger(&mut self) {
+        self.object.restore_assumed_finger();
         self.estimator.finger.forget_tissue_history();
         self.estimator.finger.forget_conductances();
     }
@@ -62,7 +64,7 @@ impl Station {
     }
 
     /// Mean code of the heat-flux sensor, at a time at which no flux is expected.
-    pub(super) fn flux_zero(&self) -> Result<RestingCode, Refused> {
+    pub(super) fn flux_zero(&self) -> Result<NoContactCodeSum, Refused> {
         let learning = self
             .learning
             .as_ref()
@@ -70,19 +72,24 @@ impl Station {
         if self.contact.touching() {
             return Err(Refused::Touched("flux zero"));
         }
-        let readings = &self.last.readings;
-        let (display, room) = (readings.display.ok(), readings.room.ok());
-        let difference = display
-            .zip(room)
-            .map(|(display, room)| display.saturating_sub(room));
-        let allowed = Celsius::ZERO.saturating_sub(ZERO_DIFFERENCE_MAX)..=ZERO_DIFFERENCE_MAX;
-        if !difference.is_some_and(|difference| allowed.contains(&difference)) {
+        if !self.is_display_at_room() {
+            let readings = &self.last.readings;
+            let (display, room) = (readings.display.ok(), readings.room.ok());
             return Err(Refused::DisplayNotAtRoom { display, room });
         }
         if learning.flux().is_none() {
             return Err(Refused::FluxSensorFault);
         }
-        learning.resting_code().ok_or(Refused::TooEarly)
+        learning.no_contact_code().ok_or(Refused::TooEarly)
+    }
+
+    /// Whether hardly any heat flows through the heat-flux sensor without a finger.
+    fn is_display_at_room(&self) -> bool {
+        let readings = &self.last.readings;
+        let both = readings.display.ok().zip(readings.room.ok());
+        both.is_some_and(|(display, room)| {
+            display.saturating_sub(room).unsigned_abs() <= FLUX_ZERO_ROOM_DIFFERENCE_MAX
+        })
     }
 
     /// [`crate::Device::note_flux_code`]. Adds the last tick to the learner's window.
@@ -93,7 +100,9 @@ impl Station {
         };
         let tick = MeasuredTick {
             code: learning.note_code(code),
-            surface: self.estimator.plate.surface().unwrap_or_default(),
+            surface: (self.estimator.plate.surface())
+                .or(self.last.readings.display.ok())
+                .unwrap_or_default(),
             modelled_flux: self.estimator.finger.modelled_flux(),
             presses: self.contact.is_force_nonzero_debounced(),
         };
@@ -115,17 +124,19 @@ impl Station {
         }
     }
 
-    /// [`crate::Device::finger_knowledge`].
-    pub(crate) fn finger_knowledge(&self) -> FingerKnowledge {
-        let learning = self.learning.as_ref();
-        learning.map_or(FingerKnowledge::NoSensor, |learning| learning.knowledge())
-    }
-
     /// Begins to learn another finger.
     pub(super) fn forget_learnt_finger(&mut self, finger: AssumedFinger) {
         if let Some(learning) = &mut self.learning {
             learning.restart(place(finger), None);
             self.estimator.finger.set_skin_offset(Celsius::ZERO);
+        }
+    }
+
+    /// What is stored of a person holds with the nominal contact law only.
+    pub(super) const fn require_nominal_contact_law(&self) -> Result<(), Refused> {
+        match self.object.bodies().resistances.law {
+            None => Ok(()),
+            Some(_) => Err(Refused::OtherContactLaw(self.object.contact_law)),
         }
     }
 
@@ -151,6 +162,7 @@ impl Station {
     /// Ends the learner's window, and takes over what was learnt up to the window before. A finger that is the thesis's half-space
     /// is not learnt.
     pub(super) fn end_flux_window(&mut self) {
+        let is_display_at_room = self.is_display_at_room();
         let Some(learning) = &mut self.learning else {
             return;
         };
@@ -173,6 +185,7 @@ impl Station {
             is_steady: contact
                 .is_some_and(|contact| !contact.force_means().have_jumped_within(WINDOW_TICKS))
                 && !(self.last.reference).is_some_and(|reference| reference.limited),
+            is_display_at_room,
         };
         let before = learning.knowledge();
         let learnt = learning.end_window(&state).filter(|_| assumed.is_layered());
@@ -185,7 +198,7 @@ impl Station {
             finger.change_tissue(&factors, &to);
             self.reference.change_finger(&factors, &to);
             self.object
-                .learn_finger(&to, learnt.air_change, learnt.resistance_factor);
+                .learn_finger(&to, learnt.air_flux_deviation, learnt.resistance_factor);
             finger.forget_conductances();
             finger.set_skin_offset(learnt.skin_offset_k);
         }

@@ -263,7 +263,7 @@ impl Station {
     fn do_due_work(&mut self) {
         let due = core::mem::take(&mut self.due);
         if due.contains(DueWork::ASSUMED_FINGER) {
-            self.assume_finger_again();
+            self.restore_assumed_finger();
         }
         if due.contains(DueWork::FLUX_WINDOW) {
             self.end_flux_window();
@@ -439,6 +439,10 @@ impl Station {
                     }
                     SelfTestStep::Passed => {
                         report.result = SelfTestResult::Passed;
+                        let above_room = valid.display.saturating_sub(valid.room);
+                        let learning = self.learning.as_ref();
+                        report.flux_sensor =
+                            learning.map(|learning| learning.test_sensor(above_room));
                         self.apply_event(Event::Pass);
                         BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST
                     }

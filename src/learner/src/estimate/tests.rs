@@ -32,7 +32,9 @@ fn covariance_stays_positive_over_a_million_updates() {
         };
         let mut signals = Signals::NEW;
         for input in scene.inputs(&mut random, 0) {
-            let lagged = signals.advance(&input, &sensor);
+            let drive = signals.drive(&input, &sensor);
+            let lagged = signals.lagged(&drive, &sensor);
+            signals.advance(&drive, &sensor);
             let resistance = display_resistance_m2k_w(force_n) as f32;
             measurements.push(lagged.measurement(
                 resistance,
@@ -69,7 +71,7 @@ fn measurements_that_are_no_numbers_are_refused() {
             let mut measurement = Measurement {
                 residual_k: 0.1,
                 regressors: [0.1; PARAMETERS],
-                drop_k: 1.0,
+                open_circuit_difference_k: 1.0,
             };
             if in_regressor {
                 measurement.regressors[2] = value;

@@ -108,7 +108,7 @@ class Finger:
 
 
 def simulate(finger, air_w_m2, contacts, noise):
-    """Windows of contacts: (ticks lifted before, ticks, nominal resistance, factor, display's temperature over time in s)."""
+    """Windows of contacts: (ticks lifted before, ticks, nominal resistance and factor, display's temperature; over time in s)."""
     q, above, landed, resistances = [], [], [], []
     lagged, last = 0.0, -math.inf
     keep = 1 - math.exp(-TICK_S / LAG_S)
@@ -121,7 +121,8 @@ def simulate(finger, air_w_m2, contacts, noise):
             landed.append(0)
             resistances.append(0.0)
         for tick in range(ticks):
-            conductance = 1 / (resistance * factor + SENSOR)
+            nominal = resistance(tick * TICK_S)
+            conductance = 1 / (nominal * factor + SENSOR)
             surface = display(tick * TICK_S)
             if tick < 3:
                 for _ in range(20):
@@ -132,7 +133,7 @@ def simulate(finger, air_w_m2, contacts, noise):
             q.append(lagged + noise.gauss(0, 7))
             above.append(SKIN_C - surface + noise.gauss(0, 0.8e-3))
             landed.append(tick + 1)
-            resistances.append(resistance)
+            resistances.append(nominal)
         last = len(q)
     windows = []
     for start in range(0, len(q) - 9, 10):
@@ -143,7 +144,7 @@ def simulate(finger, air_w_m2, contacts, noise):
             "touching": touching,
             "above": round(sum(above[part]) / 10 * 2**22),
             "air": round(air_w_m2 * 2**12),
-            "resistance": round(max(resistances[part]) * 1e6 * 2**16),
+            "resistance": round(resistances[part][-1] * 1e6 * 2**16),
             "since": landed[part][-1],
         })
     return windows
@@ -154,13 +155,20 @@ class Reference:
 
     def __init__(self, air_deviation):
         self.sigma = [1, 1, air_deviation, 0.05, 0.45, 0.1 + 1e-3 / LAG_S]
-        limits = [(-3.5, 3.5), (-3.5, 3.5), (-1, 1.5), (-0.3, 0.3), (-0.6, 1.5), (-0.3, 0.3)]
+        limits = [(-3.5, 3.5), (-7, 7), (-2.5, 2.5), (-0.3, 0.3), (-0.6, 1.5), (-0.3, 0.3)]
         self.limits = [(a / s, b / s) for (a, b), s in zip(limits, self.sigma)]
         self.theta = MEANS + [0.0] * 4
         self.p = [[float(i == j) for j in range(6)] for i in range(6)]
         self.lags = [0.0] * 4
         self.u, self.o = [0.0] * 8, [0.0] * 8
         self.windows = 0
+        self.followed, self.change = [0.0, 0.0], [0.0, 0.0]
+        self.learnt_r = None
+
+    def follow(self, index, x, share):
+        """Low-pass and the largest distance from it, which is forgotten as fast."""
+        self.followed[index] += share * (x - self.followed[index])
+        self.change[index] = max((1 - share) * self.change[index], abs(x - self.followed[index]))
 
     def lag(self, index, x):
         keep = math.exp(-0.01 / LAG_S)
@@ -195,10 +203,16 @@ class Reference:
             return
         self.windows += 1
         since = w["since"]
+        r = w["resistance"] / 2**16 * 1e-6
+        for index, x, share in ((0, w["above"] / 2**22 / touching, 0.01), (1, r, 0.5)):
+            self.follow(index, x, 1 if self.windows == 1 else share)
         every = 1 if since < 300 else 2 if since < 1000 else 4
         if since < 10 or self.windows % every:
             return
-        r = w["resistance"] / 2**16 * 1e-6
+        if self.learnt_r:
+            moved = 0.2 * (r - self.learnt_r) / max(r, self.learnt_r) / self.sigma[4]
+            self.p[4][4] = min(self.p[4][4] + moved**2, 1.25)
+        self.learnt_r = r
         y = d1 - sum(a * b for a, b in zip(u, WEIGHTS)) - (r + SENSOR) * flux
         relative = [1 + self.theta[0] * a + self.theta[1] * b for a, b in zip(*COMPONENTS)]
         h = [sum(v * g * x for v, g, x in zip(c, WEIGHTS, u)) for c in COMPONENTS]
@@ -206,7 +220,9 @@ class Reference:
         h = [a * s for a, s in zip(h, self.sigma)]
         rho = 1 + self.theta[4] * self.sigma[4]
         unsettled = 0.3**2 if since < 20 else 0
-        variance = (20e-3**2 * (1 + since / 50) + unsettled + (rho * r * 7) ** 2 + 1.5e-3**2) / every
+        changes = (0.05 * self.change[0]) ** 2 + (self.change[1] * flux) ** 2
+        variance = 20e-3**2 * (1 + since / 50) + unsettled + (rho * r * 7) ** 2 + 1.5e-3**2 + changes
+        variance /= every if since < 1000 else 1
         ph = [sum(p * x for p, x in zip(row, h)) for row in self.p]
         s = variance + sum(a * b for a, b in zip(ph, h))
         gain = [a / s for a in ph]
@@ -225,12 +241,17 @@ def towards(start, end, tau):
     return lambda t: end + (start - end) * math.exp(-t / tau)
 
 
+def steady(value):
+    return lambda t: value
+
+
 CASES = [
     ("box", "air", Finger(0.65e-3, 0.21, 1.1, 8.0), [
-        (20, 600, 7.1e-4, 1.3, towards(26.0, 24.2, 0.05)), (310, 600, 7.1e-4, 1.25, towards(31.0, 30.5, 0.3))]),
+        (20, 600, steady(7.1e-4), 1.3, towards(26.0, 24.2, 0.05)),
+        (310, 600, towards(1.2e-3, 7.1e-4, 0.04), 1.25, towards(31.0, 30.5, 0.3))]),
     ("callus", "air", Finger(1.1e-3, 0.17, 0.95, 12.0), [
-        (27, 1203, 7.1e-4, 0.7, towards(28.0, 26.0, 0.2)), (500, 400, 2.3e-3, 0.7, towards(30.0, 26.0, 0.2))]),
-    ("thin", "pad", Finger(0.4e-3, 0.2, 0.85, 2.0), [(33, 907, 4.2e-3, 1.6, towards(24.5, 27.0, 0.5))]),
+        (27, 1203, steady(7.1e-4), 0.7, towards(28.0, 26.0, 0.2)), (500, 400, steady(2.3e-3), 0.7, towards(30.0, 26.0, 0.2))]),
+    ("thin", "pad", Finger(0.4e-3, 0.2, 0.85, 2.0), [(33, 907, steady(4.2e-3), 1.6, towards(24.5, 27.0, 0.5))]),
 ]
 
 

@@ -39,8 +39,9 @@ impl<const FINGERS: usize> Line<FINGERS> {
     fn written(&self, content: &dyn Display) -> String {
         let mut line = OutgoingLine::new();
         self.handler.write_line(&mut line, content);
-        assert_eq!(line.pop(), Some(b'\n'));
-        String::from_utf8(line.to_vec()).expect("ASCII")
+        let (end, text) = line.split_last().expect("a line");
+        assert_eq!(*end, b'\n');
+        String::from_utf8(text.to_vec()).expect("ASCII")
     }
 }
 

@@ -100,6 +100,11 @@ impl PopulationCase {
             max_after_50ms_mk: skin.max_after_50ms.unwrap_or(f64::INFINITY),
             max_after_500ms_mk: late_mk.reduce(f64::max).unwrap_or(f64::INFINITY),
             rms_mk: skin.rms,
+            is_enrolled: (outcome.exchanges().iter()).any(|exchange| {
+                exchange
+                    .line
+                    .is_some_and(|line| line.starts_with("person "))
+            }),
             faults: figures.faults.into_iter().map(|trip| trip.fault).collect(),
         })
     }

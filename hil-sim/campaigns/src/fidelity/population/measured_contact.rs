@@ -4,9 +4,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use anyhow::Context;
-use contact_law_fit::{Order, fit, measure};
+use contact_law_fit::{MeasurementOptions, fit, measure};
 use contact_model::contact_law::ContactLaw;
-use contact_model::material::REFERENCE_DISPLAY;
 use thermal_client::client::Client;
 use thermal_plant::Params;
 use thermal_plant::parameters;
@@ -35,17 +34,19 @@ pub fn measured_contact(seed: u64) -> anyhow::Result<ContactLaw> {
     for line in &settings_for_scene(&scene)? {
         client.command(line)?;
     }
-    let order = Order {
+    let options = MeasurementOptions {
         finger: None,
         takes_zero: false,
-        display: REFERENCE_DISPLAY,
     };
-    let measurement = measure(&mut client, &order, &mut |client, step| {
+    let measurement = measure(&mut client, &options, &mut |client, step| {
         let world = client.link().world();
         world.set_force_and_faults(step.target_n(), std::iter::empty());
     })
-    .with_context(|| format!("contact.draw = {seed}"))?;
-    Ok(fit(&measurement.recording)?.law)
+    .with_context(|| format!("measured contact.draw = {seed}"))?;
+    let fit = fit(&measurement.recording);
+    Ok(fit
+        .with_context(|| format!("fitted contact.draw = {seed}"))?
+        .law)
 }
 
 /// The finger at the device on which it is measured.

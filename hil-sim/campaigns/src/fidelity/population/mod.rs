@@ -1,5 +1,6 @@
 //! Populations: many objects, fingers or contact laws, each run as the device is now told of it, and as version 0.1 was.
 
+mod bound;
 mod case;
 mod chart;
 mod measured_contact;
@@ -16,6 +17,7 @@ use thermal_sim::named_enum;
 
 use super::plant_draws::SAME_VALUE;
 
+pub use bound::{BoundResult, BoundRow, Compared, Priors, rows as bound_rows};
 pub use case::{PopulationCase, Way};
 pub use chart::{SVG, draw as chart};
 use measured_contact::measured_contact;
@@ -115,6 +117,12 @@ impl Population {
         }
     }
 
+    /// Whether its fingers are enrolled before.
+    #[must_use]
+    pub const fn is_of_enrolled(self) -> bool {
+        matches!(self, Self::EnrolledDesigned | Self::EnrolledHypothetical)
+    }
+
     /// Description of the population.
     #[must_use]
     pub const fn title(self) -> &'static str {
@@ -188,8 +196,10 @@ impl Population {
     }
 
     /// The cases: all objects, or six objects for each of a number of draws.
-    #[must_use]
-    pub fn cases(self, seed: u64, draws: u64) -> Vec<PopulationCase> {
+    ///
+    /// # Errors
+    /// A person's contact law cannot be measured.
+    pub fn cases(self, seed: u64, draws: u64) -> anyhow::Result<Vec<PopulationCase>> {
         let case = |object, (name, own): (String, u64), tables: String| PopulationCase {
             population: self,
             name,
@@ -198,10 +208,10 @@ impl Population {
             tables,
         };
         if self == Self::Objects {
-            return every_object()
+            return Ok(every_object()
                 .into_iter()
                 .map(|object| case(object.clone(), (object.name, seed), String::new()))
-                .collect();
+                .collect());
         }
         let mut cases = Vec::new();
         for number in 0..draws {
@@ -230,9 +240,7 @@ impl Population {
                 }
                 Self::ToldContactLaws => (seed, drawn_contact(own) + &told(exact_contact(own))),
                 Self::MeasuredContactLaws => {
-                    // A person whose measurement fails is told nothing.
-                    let line = measured_contact(own).map_or(String::new(), told);
-                    (seed, drawn_contact(own) + &line)
+                    (seed, drawn_contact(own) + &told(measured_contact(own)?))
                 }
                 _ => (seed, drawn_contact(own)),
             };
@@ -241,7 +249,7 @@ impl Population {
                 cases.push(case(object, (name, of_device), tables.clone()));
             }
         }
-        cases
+        Ok(cases)
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::{Aim, Population, Since, Way};
+use super::{Aim, BoundRow, Population, Since, Way, bound};
 use crate::fidelity::Percentiles;
 use crate::percentile;
 
@@ -23,6 +23,8 @@ pub struct PopulationResult {
     pub max_after_500ms_mk: f64,
     /// Its root mean square over the contact, mK.
     pub rms_mk: f64,
+    /// Whether the device knew the person.
+    pub is_enrolled: bool,
     /// Faults that the device reported.
     pub faults: Vec<String>,
 }
@@ -51,6 +53,8 @@ pub struct WayStatistics {
     pub rms_mk: Percentiles,
     /// Runs in which the device reported a fault.
     pub faulty: usize,
+    /// Runs in which the device knew the person.
+    pub enrolled: usize,
     /// The worst runs, worst first.
     pub worst: Vec<PopulationResult>,
 }
@@ -90,6 +94,9 @@ pub struct PopulationReport {
     pub image: Option<ImageSample>,
     /// Statistics by what the device was told.
     pub ways: Vec<WayStatistics>,
+    /// What was learnt against the bound of Cramér and Rao, if that was computed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bound: Vec<BoundRow>,
 }
 
 /// Number of worst runs that are listed.
@@ -136,6 +143,7 @@ impl PopulationReport {
                 .collect::<Option<_>>()?,
             image,
             ways: ways.flatten().collect(),
+            bound: Vec::new(),
         })
     }
 }
@@ -151,6 +159,7 @@ fn statistics(way: Way, mut own: Vec<&PopulationResult>) -> Option<WayStatistics
         max_after_500ms_mk: column(|one| one.max_after_500ms_mk)?,
         rms_mk: column(|one| one.rms_mk)?,
         faulty: own.iter().filter(|one| !one.faults.is_empty()).count(),
+        enrolled: own.iter().filter(|one| one.is_enrolled).count(),
         worst: own.into_iter().take(WORST).cloned().collect(),
     })
 }
@@ -167,6 +176,7 @@ pub fn table(reports: &[PopulationReport]) -> String {
             aims,
             image,
             ways,
+            bound,
         } = report;
         // Writing to a String cannot fail.
         let _ = write!(
@@ -203,6 +213,13 @@ pub fn table(reports: &[PopulationReport]) -> String {
                 way.faulty
             );
         }
+        if population.is_of_enrolled() {
+            let enrolled: usize = ways.iter().map(|way| way.enrolled).sum();
+            let _ = writeln!(
+                text,
+                "finger enrolled in {enrolled} of {cases} cases; the device did not trust the others"
+            );
+        }
         for aim in aims {
             let _ = writeln!(
                 text,
@@ -228,6 +245,7 @@ pub fn table(reports: &[PopulationReport]) -> String {
                 one.faults.join(", ")
             );
         }
+        text += &bound::table(bound);
     }
     text
 }

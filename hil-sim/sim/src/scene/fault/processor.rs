@@ -71,12 +71,13 @@ pub struct ProcessorKind {
 
 impl ProcessorKind {
     /// All kinds.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::new("hung-core", &[]),
         Self::new("debugger-halt", &[]),
         Self::new("hse-stopped", &[]),
         Self::new("hse-started", &[]),
         Self::new("adc-stopped", &[]),
+        Self::new("adc2-stopped", &[]),
         Self::new(
             "dma-stopped",
             &[ProcessorKey::Controller, ProcessorKey::Stream],

@@ -2,7 +2,9 @@
 
 mod aborts;
 mod accuracy;
+mod flux_self_test;
 mod margins;
+mod phantom;
 mod restore;
 mod tile;
 

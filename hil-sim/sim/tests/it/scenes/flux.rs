@@ -48,6 +48,37 @@ fn the_operator_tells_the_device_of_the_sensor_that_it_has() {
     assert_eq!(flux_events(&without), 0);
 }
 
+/// A finger with 1.6 times the mean contact resistance, of which the device knows before it lands, or not.
+#[test]
+fn an_enrolled_finger_is_known_and_trusted_in_its_first_contact() {
+    const PLANT: &str = "\n[plant]\nfinger.resistance_factor = 1.6\n";
+    let unknown = outcome(&format!("flux_sensor = true{PLANT}"), "person");
+    let known = outcome(
+        &format!("flux_sensor = true\nenrolled = true{PLANT}"),
+        "person",
+    );
+    let person = |outcome: &Outcome| {
+        let answers = outcome.answers.iter();
+        let mut answers = answers.filter_map(|(_, line)| line.strip_prefix("ok person="));
+        answers
+            .next()
+            .map(|person| person.get(..3).map(String::from))
+    };
+    assert_eq!(person(&known), Some(Some("P01".into())));
+    assert_eq!(person(&unknown), Some(Some("non".into())));
+    assert_eq!(word(&known), "finger=trusted");
+    // From the word `learning` on, without a distrust.
+    assert_eq!(flux_events(&known), 1);
+    // The display waits for another finger, 10 ms before the landing.
+    let before_landing = |outcome: &Outcome| {
+        let row = outcome.trace.rows().iter().find(|row| row.t_s >= 0.69);
+        let setpoint_c = row.and_then(|row| row.device.as_ref()?.setpoint_c);
+        setpoint_c.expect("a set-point")
+    };
+    let off_k = before_landing(&known) - before_landing(&unknown);
+    assert!(off_k > 0.05, "{off_k} K");
+}
+
 /// Told of a sensor that its board has not, a device renders the finger that it assumes; told of none, it takes no notice of one.
 #[test]
 fn a_device_that_is_told_wrongly_of_a_sensor_says_so_and_keeps_the_assumed_finger() {
@@ -170,7 +201,8 @@ fn a_contact_that_fits_no_finger_is_rendered_for_the_assumed_one_and_has_its_wor
             });
         println!("{name}: {found}, {:.1} mK", 1e3 * off_k);
         if found != "trusted" && found != "wet" {
-            assert!(off_k < 0.02, "{name}: {off_k} K");
+            // What the sensor measures goes on to count for the plate, whose surface is estimated otherwise than without it.
+            assert!(off_k < 0.06, "{name}: {off_k} K");
         }
     }
 }

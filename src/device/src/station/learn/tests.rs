@@ -11,6 +11,7 @@ use thermal_settings::{FluxSensor, Settings};
 use super::*;
 use crate::command::{ChosenMaterial, Command};
 use crate::drive::Current;
+use crate::learning::FingerKnowledge;
 use crate::reference::Reference;
 use crate::safety::ValidReadings;
 use crate::sense::{Samples, SupplyVoltage};
@@ -75,7 +76,7 @@ fn code(tick: u32) -> Option<u16> {
 fn answer(input: &LearnerInput) -> LearnerOutput {
     LearnerOutput {
         weights: [I2F30::lit("0.8"); 9],
-        air_change: I4F28::lit("0.5"),
+        air_flux_deviation: I4F28::lit("0.5"),
         skin_offset_k: Celsius::lit("-0.05"),
         resistance_factor: I4F28::lit("1.5"),
         ..*Learner::new().advance(input)
@@ -124,7 +125,8 @@ fn without_answers_the_assumed_finger_stays_with_a_word() {
             assert_eq!(factor, if tick < 19 { 1.0 } else { 1.5 }, "{tick}");
         }
     }
-    assert_eq!(station.finger_knowledge(), FingerKnowledge::Late);
+    let state = station.flux_state().expect("a sensor");
+    assert_eq!(state.knowledge, FingerKnowledge::Late);
     let bodies = station.object.bodies();
     assert!((bodies.resistances.skin_factor - I4F28::ONE).abs() < 1e-3);
     let air = bodies.finger.air.abs_diff(AssumedFinger::Mean.body().air);
@@ -216,6 +218,6 @@ fn codes_change_nothing_without_a_sensor() {
         assert_eq!(with.estimator.finger, without.estimator.finger);
         assert_eq!(with.object.bodies(), without.object.bodies());
         assert_eq!(with.take_learner_input(), None);
-        assert_eq!(with.finger_knowledge(), FingerKnowledge::NoSensor);
+        assert_eq!(with.flux_state(), None);
     }
 }

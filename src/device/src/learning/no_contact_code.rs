@@ -1,15 +1,15 @@
-//! Mean code of the heat-flux sensor without contact, from which its zero is taken.
+//! Codes of the heat-flux sensor without contact, from which its zero is taken.
 
 use thermal_learner::WINDOW_TICKS;
 
 /// Windows over which the mean is taken: half a second, in which the converter's noise of a count becomes 0.04 counts.
 const WINDOWS: u32 = 50;
 
-/// Total of the sensor's codes over half a second without contact.
+/// Sum of the sensor's codes over half a second without contact, from which its zero is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RestingCode(u32);
+pub struct NoContactCodeSum(u32);
 
-impl RestingCode {
+impl NoContactCodeSum {
     /// Mean code, counts.
     #[must_use]
     pub fn mean_counts(self) -> f64 {
@@ -19,13 +19,13 @@ impl RestingCode {
 
 /// Adds up the codes of windows without contact.
 #[derive(Clone, Debug, Default)]
-pub struct RestingCodes {
+pub struct NoContactCodes {
     total: u32,
     windows: u32,
-    last: Option<RestingCode>,
+    last: Option<NoContactCodeSum>,
 }
 
-impl RestingCodes {
+impl NoContactCodes {
     /// Adds the sum of a window's codes; `None` in contact or if one is not valid, after which nothing counts that was before.
     pub fn add(&mut self, codes: Option<u32>) {
         let Some(codes) = codes else {
@@ -35,14 +35,14 @@ impl RestingCodes {
         self.total += codes;
         self.windows += 1;
         if self.windows == WINDOWS {
-            self.last = Some(RestingCode(self.total));
+            self.last = Some(NoContactCodeSum(self.total));
             (self.total, self.windows) = (0, 0);
         }
     }
 
     /// The last complete half second; `None` if there was none since the last contact.
     #[must_use]
-    pub const fn last(&self) -> Option<RestingCode> {
+    pub const fn last(&self) -> Option<NoContactCodeSum> {
         self.last
     }
 }
@@ -52,11 +52,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn resting_code_is_the_mean_of_half_a_second_since_the_last_contact() {
-        let mut codes = RestingCodes::default();
+    fn no_contact_code_is_the_mean_of_half_a_second_since_the_last_contact() {
+        let mut codes = NoContactCodes::default();
         let mut add = |codes_of_window| {
             codes.add(codes_of_window);
-            codes.last().map(RestingCode::mean_counts)
+            codes.last().map(NoContactCodeSum::mean_counts)
         };
         for window in 1..=150 {
             let mean = add(Some(20_480 + 10 * (window % 2)));

@@ -1,6 +1,6 @@
-//! How well a force has followed the ramps.
+//! Compares the force of a recording with its target.
 
-use crate::ramps::{LEGS, force_n, leg_at};
+use crate::ramps::{RAMPS, force_n, ramp_at};
 use crate::recording::Recording;
 
 /// Forces that each ramp must have reached below and above, N: half of its way in the logarithm, and the two at which a gap and
@@ -10,18 +10,18 @@ const REACHED_N: (f64, f64) = (0.2, 1.0);
 /// something else.
 const LOG_RMS_MAX: f64 = 0.4;
 
-/// How well a force has followed the ramps.
+/// How closely a force has followed the target of the ramps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Following {
+pub struct ForceTracking {
     /// Typical deviation of the force from that which was asked, %.
     pub deviation_percent: f64,
     /// Least and largest force of each ramp, N.
-    pub reached_n: [(f64, f64); LEGS],
+    pub reached_n: [(f64, f64); RAMPS],
 }
 
 /// In what a force has not followed the ramps.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum FollowingError {
+pub enum ForceTrackingError {
     /// A ramp did not reach far enough.
     #[error(
         "ramp {ramp} went from {least_n:.3} to {largest_n:.3} N; it must go below {} and above {} N",
@@ -44,28 +44,29 @@ pub enum FollowingError {
     Deviation(f64),
 }
 
-impl Following {
-    /// The following of a recording of all ramps.
+impl ForceTracking {
+    /// The tracking of a recording of all ramps.
     ///
     /// # Errors
     /// A ramp does not cover the forces, or the force was too far from its target.
-    pub fn of(recording: &Recording) -> Result<Self, FollowingError> {
-        let mut reached_n = [(f64::INFINITY, 0.0_f64); LEGS];
+    pub fn of(recording: &Recording) -> Result<Self, ForceTrackingError> {
+        let mut reached_n = [(f64::INFINITY, 0.0_f64); RAMPS];
         let (mut squares, mut count) = (0.0, 0.0);
         for sample in &recording.samples {
-            let Some((leg, target_n)) = leg_at(sample.since_s).zip(force_n(sample.since_s)) else {
+            let Some((ramp, target_n)) = ramp_at(sample.since_s).zip(force_n(sample.since_s))
+            else {
                 continue;
             };
-            let (least_n, largest_n) = &mut reached_n[leg];
+            let (least_n, largest_n) = &mut reached_n[ramp];
             *least_n = least_n.min(sample.force_n);
             *largest_n = largest_n.max(sample.force_n);
             squares += (sample.force_n / target_n).ln().powi(2);
             count += 1.0;
         }
-        for (leg, &(least_n, largest_n)) in reached_n.iter().enumerate() {
+        for (ramp, &(least_n, largest_n)) in reached_n.iter().enumerate() {
             if least_n > REACHED_N.0 || largest_n < REACHED_N.1 {
-                return Err(FollowingError::Range {
-                    ramp: leg + 1,
+                return Err(ForceTrackingError::Range {
+                    ramp: ramp + 1,
                     least_n,
                     largest_n,
                 });
@@ -74,7 +75,7 @@ impl Following {
         let log_rms = f64::sqrt(squares / count);
         let deviation_percent = 100.0 * log_rms.exp_m1();
         if log_rms > LOG_RMS_MAX {
-            return Err(FollowingError::Deviation(deviation_percent));
+            return Err(ForceTrackingError::Deviation(deviation_percent));
         }
         Ok(Self {
             deviation_percent,

@@ -1,4 +1,4 @@
-//! The person at the bench: is told what to do, and asked for what the reference thermometer shows.
+//! The operator at the bench: is told what to do, and asked for what the reference thermometer shows.
 
 use std::io::{self, BufRead, Write};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, TryRecvError};
@@ -6,7 +6,9 @@ use std::thread;
 use std::time::Duration;
 
 use thermal_client::client::{Client, ClientError, PlainCommand, thermistor_word};
-use thermal_client::commissioning::{CommissioningEvent, Surroundings, SurroundingsError};
+use thermal_client::commissioning::{
+    CommissioningEvent, PhantomPlace, Surroundings, SurroundingsError,
+};
 use thermal_client::link::{Link, LinkError};
 use thermal_device::safety::ThermistorId;
 
@@ -37,8 +39,8 @@ const ABORT: &str = "abort";
 /// Lines that the person enters.
 pub type Lines = Receiver<io::Result<String>>;
 
-/// A person at the bench.
-pub struct Person<'a> {
+/// The operator at the bench.
+pub struct BenchOperator<'a> {
     finger: Option<u8>,
     lines: Lines,
     screen: &'a mut dyn Write,
@@ -60,7 +62,7 @@ pub fn lines(reader: impl BufRead + Send + 'static) -> Lines {
     lines
 }
 
-impl<'a> Person<'a> {
+impl<'a> BenchOperator<'a> {
     /// A person at a device, or at one of its fingers, who enters `lines` and reads the screen.
     pub fn new(finger: Option<u8>, lines: Lines, screen: &'a mut dyn Write) -> Self {
         Self {
@@ -165,7 +167,7 @@ fn ended(error: LinkError) -> SurroundingsError {
     }
 }
 
-impl<L: Link> Surroundings<L> for Person<'_> {
+impl<L: Link> Surroundings<L> for BenchOperator<'_> {
     fn reference_c(
         &mut self,
         client: &mut Client<L>,
@@ -254,6 +256,24 @@ impl<L: Link> Surroundings<L> for Person<'_> {
             .map(drop)
     }
 
+    fn move_phantom(
+        &mut self,
+        client: &mut Client<L>,
+        place: PhantomPlace,
+    ) -> Result<(), SurroundingsError> {
+        let what = match place {
+            PhantomPlace::Beside => {
+                "Have the phantom beside the display, a gel of 1 % agar that has the room's temperature; nothing touches the display"
+            }
+            PhantomPlace::OnDisplay => {
+                "Put the phantom on the display and 200 g on it; do not touch it from then on"
+            }
+            PhantomPlace::Away => "Take the phantom away and dry the display",
+        };
+        self.ask(client, &format!("  {what}, then press Enter: "))
+            .map(drop)
+    }
+
     fn reads_again(&mut self, why: &str) -> bool {
         // The bath stays as it is: its point is left out, as the others suffice.
         !why.starts_with("tripped") && !why.starts_with("at a step")
@@ -275,7 +295,7 @@ impl<L: Link> Surroundings<L> for Person<'_> {
                     text += "  If a number was wrong, press Ctrl-C and begin again.\n";
                 }
             }
-            CommissioningEvent::TileIdentified(_) => {}
+            CommissioningEvent::TileIdentified(_) | CommissioningEvent::FluxCalibrated(_) => {}
         }
         self.tell(&text);
     }

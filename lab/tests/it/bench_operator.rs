@@ -9,14 +9,16 @@ use std::sync::mpsc::{self, Sender};
 
 use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
-use thermal_lab::client::{Client, QueryState, SettingsLine};
+use thermal_lab::bench_operator::BenchOperator;
+use thermal_lab::client::{Client, PlainCommand, QueryState, SettingsLine};
 use thermal_lab::commissioning::{
-    CommissionError, CommissioningEvent, CommissioningRecord, Surroundings, SurroundingsError,
-    commission,
+    CommissionError, CommissioningEvent, CommissioningRecord, PhantomPlace, Surroundings,
+    SurroundingsError, commission,
 };
 use thermal_lab::link::{Interruptible, LinkError, SimulatedLink};
-use thermal_lab::person::Person;
 use thermal_plant::Params;
+use thermal_plant::sensors::FluxParams;
+use thermal_settings::FluxSensor;
 use thermal_sim::commissioning::{CommissioningSetup, SimulatedSurroundings};
 use thermal_sim::engine::NativeEngine;
 
@@ -55,7 +57,7 @@ impl io::Write for Screen {
 
 /// The person, and the thermometer and baths that are simulated for them.
 struct AtTheBench<'a> {
-    person: Person<'a>,
+    person: BenchOperator<'a>,
     surroundings: SimulatedSurroundings,
     shown: Rc<RefCell<String>>,
 }
@@ -92,6 +94,16 @@ impl<'b> Surroundings<Bench<'b>> for AtTheBench<'_> {
         self.person.put_into_bath(client, thermistor, bath_c)
     }
 
+    fn move_phantom(
+        &mut self,
+        client: &mut Client<Bench<'b>>,
+        place: PhantomPlace,
+    ) -> Result<(), SurroundingsError> {
+        let world = client.link().world();
+        self.surroundings.move_phantom(world, place).unwrap();
+        self.person.move_phantom(client, place)
+    }
+
     fn reads_again(&mut self, why: &str) -> bool {
         Surroundings::<Bench<'b>>::reads_again(&mut self.person, why)
     }
@@ -108,6 +120,10 @@ fn commissioned(
 ) -> (Result<CommissioningRecord, CommissionError>, String) {
     let mut engine = NativeEngine::new(setup.in_use().unwrap());
     let mut client = Client::new(SimulatedLink::new(&mut engine));
+    if setup.params().flux.is_some() {
+        let sensor = PlainCommand::FluxSensor(Some(FluxSensor::DESIGNED));
+        client.ask(&sensor).unwrap();
+    }
     let (keys, lines) = mpsc::channel();
     let shown = Rc::new(RefCell::new(String::new()));
     let mut screen = Screen {
@@ -118,7 +134,7 @@ fn commissioned(
         questions: 0,
     };
     let mut bench = AtTheBench {
-        person: Person::new(None, lines, &mut screen),
+        person: BenchOperator::new(None, lines, &mut screen),
         surroundings: SimulatedSurroundings::new(setup),
         shown,
     };
@@ -245,6 +261,49 @@ fn a_person_who_mistypes_is_asked_again_and_gets_the_operators_result() {
     );
 }
 
+#[test]
+fn a_heat_flux_sensor_is_calibrated_by_a_person_with_a_phantom() {
+    let mut params = Params {
+        flux: Some(FluxParams {
+            gain_error: 0.08,
+            ..FluxParams::NOMINAL
+        }),
+        ..Params::nominal()
+    };
+    let setup = CommissioningSetup::new(&params, 24.0, 1);
+    let (done, screen) = commissioned(&setup, Vec::new());
+    let done = done.unwrap();
+    let found = done.flux.unwrap();
+    // Three standard deviations of the phantom.
+    let gain = found.counts_per_w_m2 / (1.08 * 0.1192);
+    assert!((gain - 1.0).abs() < 0.018, "{found}");
+    let line = format!("set flux {:.6}", found.counts_per_w_m2);
+    let is_set = |set: &String| set.starts_with(&line);
+    assert!(done.settings.iter().any(is_set), "{:?}", done.settings);
+    for text in [
+        "calibrate the heat-flux sensor with a phantom",
+        "that has the room's temperature; nothing touches the display, then press Enter",
+        "and 200 g on it; do not touch it from then on, then press Enter",
+        "Take the phantom away and dry the display, then press Enter",
+        "within 0.5",
+    ] {
+        assert!(screen.contains(text), "{text}:\n{screen}");
+    }
+    // A sensor that is broken leaves the rest commissioned and stored.
+    if let Some(flux) = &mut params.flux {
+        flux.gain_error = -0.5;
+    }
+    let setup = CommissioningSetup::new(&params, 24.0, 1);
+    let (failed, screen) = commissioned(&setup, Vec::new());
+    let error = failed.unwrap_err().to_string();
+    assert!(
+        error.contains("the gain is 0.50 of the designed one"),
+        "{error}"
+    );
+    let saved = screen.find("save what was found").unwrap();
+    assert!(saved < screen.find("with a phantom").unwrap(), "{screen}");
+}
+
 /// A reading that the device refuses is asked for again, after a second look at what differs.
 #[test]
 fn a_number_that_is_insisted_on_is_refused_by_the_device_and_asked_for_again() {
@@ -266,7 +325,7 @@ fn without_anybody_at_the_keys_the_procedure_ends_and_the_bridge_is_off() {
     let (keys, lines) = mpsc::channel();
     drop(keys);
     let mut screen = Vec::new();
-    let mut person = Person::new(None, lines, &mut screen);
+    let mut person = BenchOperator::new(None, lines, &mut screen);
     let error = commission(&mut client, None, &mut person).unwrap_err();
     assert!(
         error.to_string().contains("standard input has ended"),
@@ -293,7 +352,7 @@ fn an_interruption_at_any_moment_ends_the_procedure_with_the_bridge_off() {
             questions: 0,
             allowed: readings,
         };
-        let mut person = Person::new(None, lines, &mut screen);
+        let mut person = BenchOperator::new(None, lines, &mut screen);
         let error = commission(&mut client, None, &mut person).unwrap_err();
         let interrupted = matches!(
             error,

@@ -1,0 +1,32 @@
+//! How much a signal has changed lately.
+
+/// A signal of a contact, and a low-pass of it that starts at the landing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recent {
+    followed: f32,
+    change: f32,
+}
+
+impl Recent {
+    /// Before the first contact.
+    pub const NEW: Self = Self {
+        followed: 0.0,
+        change: 0.0,
+    };
+
+    /// Takes the signal of a window; the low-pass goes this share of the way to it, all of it in the window of a landing.
+    pub fn advance(&mut self, signal: f32, share: f32) {
+        self.followed += (signal - self.followed) * share;
+        let distance = signal - self.followed;
+        let distance = if distance < 0.0 { -distance } else { distance };
+        self.change *= 1.0 - share;
+        if distance > self.change {
+            self.change = distance;
+        }
+    }
+
+    /// The largest distance of the signal from its low-pass; older ones count less, as in the low-pass.
+    pub const fn change(&self) -> f32 {
+        self.change
+    }
+}
