@@ -5,14 +5,13 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use thermal_client::client::{
-    Client, ClientError, PlainCommand, QueryDisplaySurface, QueryFlux, QueryState,
-    ReceivedTelemetry,
+    Client, ClientError, PlainCommand, QueryDisplaySurface, QueryState, ReceivedTelemetry,
 };
 use thermal_client::commissioning::{CommissionError, arm};
 use thermal_client::link::{Link, LinkError};
+use thermal_device::StateName;
 use thermal_device::events::DeviceEventKind;
 use thermal_device::learning::FingerKnowledge;
-use thermal_device::{StateName, TelemetryFields};
 
 use crate::force_tracking::{ForceTracking, ForceTrackingError};
 use crate::ramps::{TOTAL_S, force_n};
@@ -204,23 +203,15 @@ struct Session<'a, L> {
 impl<L: Link> Session<'_, L> {
     fn record(&mut self, options: &MeasurementOptions) -> Result<Recording, MeasurementError> {
         let finger = self.finger;
-        let sensor = self.client.ask_finger(finger, &QueryFlux);
-        let sensor = match sensor {
-            // Firmware from before there was a sensor.
-            Err(error) if error.refusal().is_some() => None,
-            answer => answer?,
-        };
+        let sensor = self.client.flux_report(finger)?;
         let sensor = sensor.ok_or(MeasurementError::NoSensor)?;
         let display = self.client.ask_finger(finger, &QueryDisplaySurface)?;
         let state = self.client.ask_finger(finger, &QueryState)?.state;
         if let Some(fault) = state.fault() {
             return Err(MeasurementError::Tripped(fault.name()));
         }
-        let fields = TelemetryFields::NAMES.iter().enumerate();
-        let fields = fields.filter(|(_, name)| FIELDS.contains(name));
-        let fields = fields.fold(TelemetryFields::NONE, |set, (index, _)| set.with(index));
         self.client
-            .ask_finger(finger, &PlainCommand::Stream(STREAM_MS, fields))?;
+            .ask_finger(finger, &PlainCommand::stream_fields(STREAM_MS, &FIELDS))?;
         self.client
             .ask_finger(finger, &PlainCommand::Events(true))?;
         self.wait_for_lifting()?;
@@ -244,21 +235,16 @@ impl<L: Link> Session<'_, L> {
     /// The next line of telemetry, after the guide has been called.
     fn next(&mut self, step: &Step) -> Result<ReceivedTelemetry, MeasurementError> {
         (self.guide)(self.client, step);
-        loop {
-            let line = self.client.next_telemetry(LINE_TIMEOUT)?;
-            let line = line.ok_or(MeasurementError::Silent)?;
-            if self.finger.is_some() && line.finger.is_some() && line.finger != self.finger {
-                continue;
-            }
-            if let Some(fault) = line.telemetry.state.fault() {
-                return Err(MeasurementError::Tripped(fault.name()));
-            }
-            self.recent.push_back(line);
-            if self.recent.len() > RECENT_LINES {
-                self.recent.pop_front();
-            }
-            return Ok(line);
+        let line = (self.client).next_telemetry_of(self.finger, LINE_TIMEOUT)?;
+        let line = line.ok_or(MeasurementError::Silent)?;
+        if let Some(fault) = line.telemetry.state.fault() {
+            return Err(MeasurementError::Tripped(fault.name()));
         }
+        self.recent.push_back(line);
+        if self.recent.len() > RECENT_LINES {
+            self.recent.pop_front();
+        }
+        Ok(line)
     }
 
     /// Calls `is_done` with lines until it says so, for so long at most.

@@ -6,12 +6,11 @@ use std::time::Duration;
 
 use contact_model::contact_law::ContactLaw;
 use thermal_client::client::{
-    Client, ClientError, EnrolPerson, PersonReport, PlainCommand, QueryContactLaw, QueryFlux,
+    Client, ClientError, EnrolPerson, PersonReport, PlainCommand, QueryContactLaw,
     ReceivedTelemetry,
 };
 use thermal_client::commissioning::{CommissionError, arm};
 use thermal_client::link::{Link, LinkError};
-use thermal_device::TelemetryFields;
 use thermal_device::learning::FingerKnowledge;
 use thermal_settings::PersonCode;
 
@@ -149,20 +148,12 @@ impl<L: Link> Session<'_, L> {
     }
 
     fn enrol(&mut self, options: &EnrolmentOptions) -> Result<PersonReport, EnrolmentError> {
-        let sensor = self.client.ask_finger(self.finger, &QueryFlux);
-        let sensor = match sensor {
-            // Firmware from before there was a sensor.
-            Err(error) if error.refusal().is_some() => None,
-            answer => answer?,
-        };
+        let sensor = self.client.flux_report(self.finger)?;
         sensor.ok_or(EnrolmentError::NoSensor)?;
         if self.client.ask_finger(self.finger, &QueryContactLaw)? != ContactLaw::NOMINAL {
             return Err(EnrolmentError::OtherContactLaw);
         }
-        let fields = TelemetryFields::NAMES.iter().enumerate();
-        let fields = fields.filter(|(_, name)| FIELDS.contains(name));
-        let fields = fields.fold(TelemetryFields::NONE, |set, (index, _)| set.with(index));
-        self.send(&PlainCommand::Stream(STREAM_MS, fields))?;
+        self.send(&PlainCommand::stream_fields(STREAM_MS, &FIELDS))?;
         self.rest()?;
         if options.takes_zero {
             self.send(&PlainCommand::FluxZero)?;
@@ -183,16 +174,11 @@ impl<L: Link> Session<'_, L> {
     /// The next line of telemetry, after the guide has been called.
     fn next(&mut self, step: &Step) -> Result<ReceivedTelemetry, EnrolmentError> {
         (self.guide)(self.client, step);
-        loop {
-            let line = self.client.next_telemetry(LINE_TIMEOUT)?;
-            let line = line.ok_or(EnrolmentError::Silent)?;
-            if self.finger.is_some() && line.finger.is_some() && line.finger != self.finger {
-                continue;
-            }
-            if let Some(fault) = line.telemetry.state.fault() {
-                return Err(EnrolmentError::Tripped(fault.name()));
-            }
-            return Ok(line);
+        let line = (self.client).next_telemetry_of(self.finger, LINE_TIMEOUT)?;
+        let line = line.ok_or(EnrolmentError::Silent)?;
+        match line.telemetry.state.fault() {
+            Some(fault) => Err(EnrolmentError::Tripped(fault.name())),
+            None => Ok(line),
         }
     }
 

@@ -2,30 +2,18 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
+
+use crate::command::{run, scene_file, text};
 
 fn contact(words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_thermal-lab"))
-        .arg("contact")
-        .args(words)
-        .stdin(Stdio::null())
-        .output()
-        .unwrap()
+    run(&[&["contact"], words].concat())
 }
 
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).unwrap()
-}
-
-/// A layered finger with a contact law of its own, on a nominal device.
+/// A finger with a contact law of its own.
 fn scene(name: &str, sensor: bool) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let scene = format!(
-        "duration_s = 60.0\nskin_c = 34.0\nroom_c = 24.0\n[object]\nmaterial = \"granite\"\nstart_c = 24.0\n[device]\n\
-         flux_sensor = {sensor}\n[finger]\ntissue = \"layered\"\n[plant]\ncontact.exponent = 0.9\ncontact.gap_w_m2k = 200.0\n"
-    );
-    fs::write(&path, scene).unwrap();
-    path
+    let law = "contact.exponent = 0.9\ncontact.gap_w_m2k = 200.0";
+    scene_file(name, "granite", sensor, law)
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 use std::time::Duration;
 
 use thermal_lab::client::Client;
@@ -10,30 +10,16 @@ use thermal_lab::enrolment::{EnrolmentError, EnrolmentOptions, enrol as enrol_at
 use thermal_lab::link::SimulatedLink;
 use thermal_settings::PersonCode;
 
+use crate::command::{run, scene_file, text};
 use crate::simulated_device::device;
 
 fn enrol(words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_thermal-lab"))
-        .arg("enrol")
-        .args(words)
-        .stdin(Stdio::null())
-        .output()
-        .unwrap()
+    run(&[&["enrol"], words].concat())
 }
 
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).unwrap()
-}
-
-/// A layered finger that is no mean one.
+/// A finger that is no mean one.
 fn scene(name: &str, sensor: bool) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let scene = format!(
-        "duration_s = 60.0\nskin_c = 34.0\nroom_c = 24.0\n[object]\nmaterial = \"copper\"\nstart_c = 24.0\n[device]\n\
-         flux_sensor = {sensor}\n[finger]\ntissue = \"layered\"\n[plant]\nfinger.resistance_factor = 1.4\n"
-    );
-    fs::write(&path, scene).unwrap();
-    path
+    scene_file(name, "copper", sensor, "finger.resistance_factor = 1.4")
 }
 
 #[test]

@@ -7,20 +7,10 @@ use std::thread;
 
 use serde_json::Value;
 
-fn thermal_lab() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_thermal-lab"))
-}
+use crate::command::{self, text, thermal_lab};
 
 fn run(line: &str) -> Output {
-    let output = thermal_lab()
-        .args(line.split(' '))
-        .stdin(Stdio::null())
-        .output();
-    output.unwrap()
-}
-
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).unwrap()
+    command::run(&line.split(' ').collect::<Vec<_>>())
 }
 
 fn json(bytes: &[u8]) -> Value {

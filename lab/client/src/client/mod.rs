@@ -272,6 +272,39 @@ impl<L: Link> Client<L> {
         Ok(())
     }
 
+    /// The heat-flux sensor of which the finger's device was told, its flux and what is known by it; `None` without one, and from
+    /// firmware from before there was one.
+    ///
+    /// # Errors
+    /// As [`ask`](Self::ask), but for a refusal.
+    pub fn flux_report(&mut self, finger: Option<u8>) -> Result<Option<FluxReport>, ClientError> {
+        match self.ask_finger(finger, &QueryFlux) {
+            Err(error) if error.refusal().is_some() => Ok(None),
+            report => report,
+        }
+    }
+
+    /// The next telemetry line of this finger, or of any for `None`; waits for each line at most `timeout`. A device with one finger
+    /// sends lines without one, which are taken.
+    ///
+    /// # Errors
+    /// As [`next_telemetry`](Self::next_telemetry).
+    pub fn next_telemetry_of(
+        &mut self,
+        finger: Option<u8>,
+        timeout: Duration,
+    ) -> Result<Option<ReceivedTelemetry>, LinkError> {
+        loop {
+            let line = self.next_telemetry(timeout)?;
+            let is_other = |line: &ReceivedTelemetry| {
+                finger.is_some() && line.finger.is_some() && line.finger != finger
+            };
+            if !line.as_ref().is_some_and(is_other) {
+                return Ok(line);
+            }
+        }
+    }
+
     /// The next telemetry line; waits for it at most `timeout`.
     ///
     /// # Errors

@@ -147,6 +147,18 @@ impl PlainCommand {
     pub const fn stream(interval_ms: u32) -> Self {
         Self::Stream(interval_ms, TelemetryFields::DEFAULT)
     }
+
+    /// Telemetry at this interval, ms, with the fields of these names ([`TelemetryFields::NAMES`]).
+    #[must_use]
+    pub fn stream_fields(interval_ms: u32, names: &[&str]) -> Self {
+        let known = TelemetryFields::NAMES.iter().enumerate();
+        let chosen = known.filter(|(_, name)| names.contains(name));
+        let none = TelemetryFields::NONE;
+        Self::Stream(
+            interval_ms,
+            chosen.fold(none, |set, (index, _)| set.with(index)),
+        )
+    }
 }
 
 impl fmt::Display for PlainCommand {

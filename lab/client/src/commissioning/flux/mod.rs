@@ -6,12 +6,11 @@ use std::fmt;
 use std::time::Duration;
 
 use serde::Serialize;
-use thermal_device::TelemetryFields;
 use thermal_settings::FluxSensor;
 
 use super::procedure::arm;
 use super::{CommissionError, Surroundings};
-use crate::client::{Client, PlainCommand, QueryFlux, QueryState, ReceivedTelemetry};
+use crate::client::{Client, PlainCommand, QueryState, ReceivedTelemetry};
 use crate::link::Link;
 use fit::{Fit, STEP_S, Sample};
 
@@ -217,15 +216,12 @@ pub fn calibrate_flux<L: Link>(
     }
 }
 
-/// The heat-flux sensor of which the device was told; `None` without one, and from firmware from before there was one.
+/// The heat-flux sensor of which the device was told; `None` without one.
 pub(super) fn sensor_of<L: Link>(
     client: &mut Client<L>,
     finger: Option<u8>,
 ) -> Result<Option<FluxSensor>, CommissionError> {
-    let report = match client.ask_finger(finger, &QueryFlux) {
-        Err(error) if error.refusal().is_some() => None,
-        report => report?,
-    };
+    let report = client.flux_report(finger)?;
     Ok(report.map(|report| FluxSensor {
         counts_per_w_m2: report.counts_per_w_m2,
         zero_counts: report.zero_counts,
@@ -253,10 +249,7 @@ impl<L: Link> Session<'_, L> {
         if state.fault().is_some() {
             self.send(&PlainCommand::Clear)?;
         }
-        let fields = TelemetryFields::NAMES.iter().enumerate();
-        let fields = fields.filter(|(_, name)| FIELDS.contains(name));
-        let fields = fields.fold(TelemetryFields::NONE, |set, (index, _)| set.with(index));
-        self.send(&PlainCommand::Stream(STREAM_MS, fields))?;
+        self.send(&PlainCommand::stream_fields(STREAM_MS, &FIELDS))?;
         let alone = self.receive(1.0)?;
         let room_c = mean(&alone, "room", |line| line.telemetry.room_c)?;
         if !(ROOM_C.0..=ROOM_C.1).contains(&room_c) {
@@ -300,13 +293,10 @@ impl<L: Link> Session<'_, L> {
         let end = self.client.link().now() + Duration::from_secs_f64(for_s);
         let mut lines = Vec::new();
         while self.client.link().now() < end {
-            let line = self.client.next_telemetry(LINE_TIMEOUT)?;
+            let line = (self.client).next_telemetry_of(self.finger, LINE_TIMEOUT)?;
             let line = line.ok_or_else(|| {
                 FluxCalibrationError::Telemetry(format!("none came in {LINE_TIMEOUT:?}"))
             })?;
-            if self.finger.is_some() && line.finger.is_some() && line.finger != self.finger {
-                continue;
-            }
             if let Some(fault) = line.telemetry.state.fault() {
                 return Err(FluxCalibrationError::Tripped(fault.name()).into());
             }
