@@ -203,8 +203,8 @@ struct Session<'a, L> {
 impl<L: Link> Session<'_, L> {
     fn record(&mut self, options: &MeasurementOptions) -> Result<Recording, MeasurementError> {
         let finger = self.finger;
-        let sensor = self.client.flux_report(finger)?;
-        let sensor = sensor.ok_or(MeasurementError::NoSensor)?;
+        let report = self.client.flux_report(finger)?;
+        let sensor = report.ok_or(MeasurementError::NoSensor)?.sensor;
         let display = self.client.ask_finger(finger, &QueryDisplaySurface)?;
         let state = self.client.ask_finger(finger, &QueryState)?.state;
         if let Some(fault) = state.fault() {

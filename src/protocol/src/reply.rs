@@ -118,9 +118,7 @@ fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt:
         SessionReply::Tile(tile, margins) => {
             f.write_str("ok")?;
             let names = ["gain", "joule", "leak", "lag_s", "dead_s"];
-            for (name, value) in names.into_iter().zip(tile.to_array()) {
-                write!(f, " {name}={}", Rounded(value, 4))?;
-            }
+            write_named_numbers(f, &names, &tile.to_array(), &[4; 5])?;
             let (phase, margin) = (Rounded(margins.phase_deg, 1), Rounded(margins.gain, 2));
             write!(f, " phase_deg={phase} margin={margin}")
         }
@@ -130,7 +128,16 @@ fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt:
         }
         SessionReply::Flux(None) => f.write_str("ok flux=none"),
         SessionReply::Flux(Some((sensor, state))) => write_flux_answer(f, sensor, state),
-        SessionReply::DisplaySurface(display) => write_surface_answer(f, display),
+        SessionReply::DisplaySurface(display) => {
+            f.write_str("ok")?;
+            let values = display.to_array();
+            write_named_numbers(
+                f,
+                &DisplaySurface::NAMES,
+                &values,
+                &DisplaySurface::DECIMALS,
+            )
+        }
         SessionReply::SettingsLines(lines) => write!(f, "ok lines={lines}"),
         SessionReply::Setting(setting) => write_set_line(f, setting),
     }
@@ -142,16 +149,8 @@ fn write_flux_answer(
     state: &FluxState,
 ) -> fmt::Result {
     f.write_str("ok flux=fitted")?;
-    let names = [
-        "counts_per_w_m2",
-        "zero_counts",
-        "lag_ms",
-        "resistance_mm2k_w",
-    ];
-    let values = sensor.to_array().into_iter().zip(FluxSensor::DECIMALS);
-    for (name, (value, decimals)) in names.into_iter().zip(values) {
-        write!(f, " {name}={}", Rounded(value, decimals as usize))?;
-    }
+    let values = sensor.to_array();
+    write_named_numbers(f, &FluxSensor::NAMES, &values, &FluxSensor::DECIMALS)?;
     match state.flux {
         Some(flux) => {
             let flux_w_m2 = units_to_f64(flux.to_bits().into(), Flux::FRAC_NBITS);
@@ -162,12 +161,15 @@ fn write_flux_answer(
     write!(f, " finger={}", state.knowledge.name())
 }
 
-fn write_surface_answer(f: &mut fmt::Formatter<'_>, display: &DisplaySurface) -> fmt::Result {
-    f.write_str("ok")?;
-    let names = ["conductivity_w_mk", "roughness_um", "slope_rad"];
-    let values = (display.to_array().into_iter()).zip(DisplaySurface::DECIMALS);
-    for (name, (value, decimals)) in names.into_iter().zip(values) {
-        write!(f, " {name}={}", Rounded(value, decimals as usize))?;
+/// Writes a word with a name for each of these values.
+fn write_named_numbers(
+    f: &mut fmt::Formatter<'_>,
+    names: &[&str],
+    values: &[f64],
+    decimals: &[i32],
+) -> fmt::Result {
+    for ((name, value), decimals) in names.iter().zip(values).zip(decimals) {
+        write!(f, " {name}={}", Rounded(*value, *decimals as usize))?;
     }
     Ok(())
 }

@@ -13,6 +13,9 @@ impl DisplaySurface {
     /// The surface of the reference design.
     pub const NOMINAL: Self = Self(REFERENCE_DISPLAY);
 
+    /// Names of conductivity, roughness and slope in an answer.
+    pub const NAMES: [&str; 3] = ["conductivity_w_mk", "roughness_um", "slope_rad"];
+
     /// Decimals of conductivity, W/(m K), roughness, µm, and slope, rad, in a line of settings and in the record in flash.
     pub const DECIMALS: [i32; 3] = [3, 4, 5];
 

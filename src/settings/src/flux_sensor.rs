@@ -24,6 +24,14 @@ impl FluxSensor {
         resistance_mm2k_w: 30.0,
     };
 
+    /// Names of gain, zero, lag and resistance in an answer.
+    pub const NAMES: [&str; 4] = [
+        "counts_per_w_m2",
+        "zero_counts",
+        "lag_ms",
+        "resistance_mm2k_w",
+    ];
+
     /// Decimals of gain, zero, lag and resistance in a line of settings and in the record in flash.
     pub const DECIMALS: [i32; 4] = [6, 3, 3, 3];
 

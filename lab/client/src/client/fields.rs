@@ -6,6 +6,7 @@ use serde::Serializer;
 use thermal_device::StateName;
 use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
+use thermal_settings::FluxSensor;
 
 /// The words of an answer after `ok`.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +36,15 @@ impl<'a> Fields<'a> {
     /// The number behind `name=`.
     pub(super) fn number<T: FromStr>(&self, name: &str) -> Option<T> {
         self.word(name)?.parse().ok()
+    }
+
+    /// The numbers behind these names.
+    pub(super) fn numbers<const N: usize>(&self, names: [&str; N]) -> Option<[f64; N]> {
+        let mut numbers = [0.0; N];
+        for (number, name) in numbers.iter_mut().zip(names) {
+            *number = self.number(name)?;
+        }
+        Some(numbers)
     }
 
     /// The number behind `name=`, or `Some(None)` for `-`.
@@ -107,6 +117,14 @@ pub fn fault_word<S: Serializer>(fault: &Fault, serializer: S) -> Result<S::Ok, 
 /// Serializes a state as its word.
 pub fn state_word<S: Serializer>(state: &StateName, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(state.name())
+}
+
+/// Serializes a heat-flux sensor as its numbers by their names.
+pub fn flux_sensor_numbers<S: Serializer>(
+    sensor: &FluxSensor,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(FluxSensor::NAMES.into_iter().zip(sensor.to_array()))
 }
 
 /// Serializes what is known of a finger as its word.

@@ -77,12 +77,7 @@ queries! {
     QueryPersons = "persons" => Vec<PersonCode>, read_codes;
     /// Surface of the display.
     QueryDisplaySurface = "surface" => DisplaySurface, |reply: &Fields<'_>| {
-        let values = [
-            reply.number("conductivity_w_mk")?,
-            reply.number("roughness_um")?,
-            reply.number("slope_rad")?,
-        ];
-        Some(DisplaySurface::from_array_rounded(values))
+        (reply.numbers(DisplaySurface::NAMES)).map(DisplaySurface::from_array_rounded)
     };
     /// State of the board.
     QueryBoard = "board" => BoardReport, BoardReport::read;

@@ -10,10 +10,12 @@ use thermal_device::learning::{FingerKnowledge, FluxSensorTest};
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_protocol::{CONTACT_MODEL_WORDS, Request};
-use thermal_settings::Settings;
+use thermal_settings::{FluxSensor, Settings};
 
 use super::Fields;
-use super::fields::{fault, fault_word, finite, in_table, knowledge_word, state, state_word};
+use super::fields::{
+    fault, fault_word, finite, flux_sensor_numbers, in_table, knowledge_word, state, state_word,
+};
 
 /// Answer to `id`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -383,14 +385,9 @@ impl RawReadings {
 /// Answer to `flux`: the heat-flux sensor, and what the device knows by it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FluxReport {
-    /// Gain, counts of its converter (of 4096) per W/m².
-    pub counts_per_w_m2: f64,
-    /// Code without flux, counts.
-    pub zero_counts: f64,
-    /// Lag, ms.
-    pub lag_ms: f64,
-    /// Thermal resistance, mm² K/W.
-    pub resistance_mm2k_w: f64,
+    /// The sensor.
+    #[serde(flatten, serialize_with = "flux_sensor_numbers")]
+    pub sensor: FluxSensor,
     /// Flux out of the finger in the last tick, W/m²; `None` if the sensor's code cannot be right.
     pub w_m2: Option<f64>,
     /// What is known of the finger.
@@ -405,10 +402,7 @@ impl FluxReport {
             return Some(None);
         }
         Some(Some(Self {
-            counts_per_w_m2: reply.number("counts_per_w_m2")?,
-            zero_counts: reply.number("zero_counts")?,
-            lag_ms: reply.number("lag_ms")?,
-            resistance_mm2k_w: reply.number("resistance_mm2k_w")?,
+            sensor: FluxSensor::from_array_rounded(reply.numbers(FluxSensor::NAMES)?),
             w_m2: reply.number_or_unknown("w_m2")?,
             finger: in_table(&FingerKnowledge::PROTOCOL_WORDS, reply.word("finger")?)?,
         }))

@@ -7,7 +7,6 @@ use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
 use thermal_settings::{CODES_PER_ADC_SEGMENT, Settings};
 
-use super::flux::sensor_of;
 use super::{
     CalibrationPoint, CommissionError, CommissioningEvent, CommissioningRecord, FluxCalibration,
     Surroundings, calibrate_flux,
@@ -229,7 +228,7 @@ impl<L: Link> Procedure<'_, L> {
         // Before the phantom, so that nothing else is lost if it fails.
         let mut settings = self.save()?;
         let mut flux = None;
-        if sensor_of(self.client, self.finger)?.is_some() {
+        if self.client.flux_report(self.finger)?.is_some() {
             flux = Some(self.calibrate_flux()?);
             settings = self.save()?;
         }

@@ -15,7 +15,7 @@ use thermal_device::learning::{FingerKnowledge, FluxSensorTest};
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_device::stimulus::TemperatureKind;
 use thermal_device::{StateName, TelemetryFields};
-use thermal_settings::{DisplaySurface, Person, PersonCode};
+use thermal_settings::{DisplaySurface, FluxSensor, Person, PersonCode};
 
 use crate::fake_device::{FakeDevice, answers, knows};
 
@@ -455,10 +455,10 @@ fn the_answers_for_diagnosis_are_read() {
     };
     for (word, finger) in FingerKnowledge::PROTOCOL_WORDS {
         let report = FluxReport {
-            counts_per_w_m2: 0.1192,
-            zero_counts: 2051.25,
-            lag_ms: 5.0,
-            resistance_mm2k_w: 30.0,
+            sensor: FluxSensor {
+                zero_counts: 2051.25,
+                ..FluxSensor::DESIGNED
+            },
             w_m2: Some(-3.2),
             finger,
         };

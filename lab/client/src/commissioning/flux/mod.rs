@@ -192,7 +192,8 @@ pub fn calibrate_flux<L: Link>(
     surroundings: &mut dyn Surroundings<L>,
 ) -> Result<FluxCalibration, CommissionError> {
     client.ask_finger(finger, &PlainCommand::Abort)?;
-    let before = sensor_of(client, finger)?.ok_or(FluxCalibrationError::NoSensor)?;
+    let report = client.flux_report(finger)?;
+    let before = report.ok_or(FluxCalibrationError::NoSensor)?.sensor;
     let mut session = Session {
         client,
         finger,
@@ -214,20 +215,6 @@ pub fn calibrate_flux<L: Link>(
             Err(error)
         }
     }
-}
-
-/// The heat-flux sensor of which the device was told; `None` without one.
-pub(super) fn sensor_of<L: Link>(
-    client: &mut Client<L>,
-    finger: Option<u8>,
-) -> Result<Option<FluxSensor>, CommissionError> {
-    let report = client.flux_report(finger)?;
-    Ok(report.map(|report| FluxSensor {
-        counts_per_w_m2: report.counts_per_w_m2,
-        zero_counts: report.zero_counts,
-        lag_ms: report.lag_ms,
-        resistance_mm2k_w: report.resistance_mm2k_w,
-    }))
 }
 
 struct Session<'a, L> {
@@ -345,7 +332,8 @@ impl<L: Link> Session<'_, L> {
             })
         });
         let samples = samples.collect::<Result<Vec<_>, _>>()?;
-        let set = sensor_of(self.client, self.finger)?.ok_or(FluxCalibrationError::NoSensor)?;
+        let report = self.client.flux_report(self.finger)?;
+        let set = report.ok_or(FluxCalibrationError::NoSensor)?.sensor;
         let effusivity = GEL.0 + GEL.1 * (room_c - 25.0);
         let fitted = resting(&samples, fitted_from - landed);
         let fit = Fit::new(&samples, &fitted, effusivity).ok_or(FluxCalibrationError::NoFlux)?;
