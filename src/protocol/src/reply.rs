@@ -316,8 +316,8 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
     match setting {
         Setting::Steps { first, counts } => {
             write!(f, "steps {first}")?;
-            let decimals = Calibration::ADC_ERROR_STEP_DECIMALS as usize;
-            write_numbers(f, counts, &[decimals; CONVERTER_STEPS_PER_LINE_MAX])
+            let decimals = [Calibration::ADC_ERROR_STEP_DECIMALS; CONVERTER_STEPS_PER_LINE_MAX];
+            write_numbers(f, counts, &decimals)
         }
         Setting::Correction(sensor, correction) => {
             write!(
@@ -325,22 +325,19 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
                 "correction {}",
                 THERMISTOR_WORDS[sensor % THERMISTOR_WORDS.len()]
             )?;
-            let decimals = Calibration::CORRECTION_DECIMALS.map(|decimals| decimals as usize);
-            write_numbers(f, &correction.to_array(), &decimals)
+            write_numbers(f, &correction.to_array(), &Calibration::CORRECTION_DECIMALS)
         }
         Setting::FluxSensor(None) => f.write_str("flux none"),
         Setting::FluxSensor(Some(sensor)) => {
             f.write_str("flux")?;
-            let decimals = FluxSensor::DECIMALS.map(|decimals| decimals as usize);
-            write_numbers(f, &sensor.to_array(), &decimals)
+            write_numbers(f, &sensor.to_array(), &FluxSensor::DECIMALS)
         }
         Setting::DisplaySurface(DisplaySurface::NOMINAL) => {
             write!(f, "surface {NOMINAL_SURFACE_WORD}")
         }
         Setting::DisplaySurface(display) => {
             f.write_str("surface")?;
-            let decimals = DisplaySurface::DECIMALS.map(|decimals| decimals as usize);
-            write_numbers(f, &display.to_array(), &decimals)
+            write_numbers(f, &display.to_array(), &DisplaySurface::DECIMALS)
         }
         Setting::Tile(tile) => {
             f.write_str("tile")?;
@@ -351,7 +348,8 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
 }
 
 /// Writes each number after a space, with its number of decimals.
-fn write_numbers(f: &mut fmt::Formatter<'_>, numbers: &[f64], decimals: &[usize]) -> fmt::Result {
+fn write_numbers(f: &mut fmt::Formatter<'_>, numbers: &[f64], decimals: &[i32]) -> fmt::Result {
     let mut numbers = numbers.iter().zip(decimals);
-    numbers.try_for_each(|(number, decimals)| write!(f, " {}", Rounded(*number, *decimals)))
+    numbers
+        .try_for_each(|(number, decimals)| write!(f, " {}", Rounded(*number, *decimals as usize)))
 }

@@ -128,7 +128,7 @@ impl StoredSettings {
                 let values = correction.to_array().into_iter();
                 values.zip(Calibration::CORRECTION_DECIMALS)
             }))
-            .chain(tile.map(|value| (value, Tile::DECIMALS as i32)))
+            .chain(tile.map(|value| (value, Tile::DECIMALS)))
             .chain(flux_sensor.into_iter().zip(FluxSensor::DECIMALS))
             .chain(display.into_iter().zip(DisplaySurface::DECIMALS))
     }
@@ -147,7 +147,7 @@ impl StoredSettings {
                     Correction::from_array(Calibration::CORRECTION_DECIMALS.map(&mut next))
                 }),
             },
-            tile: Tile::from_array_rounded([(); 5].map(|()| next(Tile::DECIMALS as i32))),
+            tile: Tile::from_array_rounded([(); 5].map(|()| next(Tile::DECIMALS))),
             flux_sensor: Some(FluxSensor::DECIMALS.map(&mut next))
                 .filter(|values| *values != NO_FLUX_SENSOR)
                 .map(FluxSensor::from_array_rounded),

@@ -40,7 +40,7 @@ impl Tile {
 
     /// Number of decimals, 6, of each of the tile's parameters in a `set tile` line and in the record in flash.
     /// Parameters are rounded to it, so that line and record hold them exactly.
-    pub const DECIMALS: usize = 6;
+    pub const DECIMALS: i32 = 6;
 
     /// Gain (K/s per A), Joule term (1/A), leak (1/s), sensor lag (s) and dead time (s), in the order in which a
     /// `set tile` line and the record in flash hold them.
@@ -60,7 +60,7 @@ impl Tile {
     #[must_use]
     pub fn from_array_rounded(values: [f64; 5]) -> Self {
         let [gain_k_s_a, joule_per_a, leak_1_s, sensor_lag_s, dead_time_s] =
-            values.map(|value| round_to_decimals(value, Self::DECIMALS as i32));
+            values.map(|value| round_to_decimals(value, Self::DECIMALS));
         Self {
             gain_k_s_a,
             joule_per_a,
