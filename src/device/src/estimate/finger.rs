@@ -452,10 +452,10 @@ impl FingerEstimator {
 
     /// Advances the thermal state of the skin by one tick, in contact with a display whose surface has the temperature
     /// `surface`, °C, or without contact. Returns the heat flow from the finger into the display, W: negative if the
-    /// display is warmer than the skin's surface, 0 without contact. It is that of the sensed skin, also while another
-    /// one is assumed, with [`Self::set_flux_beyond_model`]. Computes the contact conductances again if the mean force has changed by
-    /// more than 1/1024. Of
-    /// `pair` only the properties of skin and display matter here, so the caller may give a pair with any object.
+    /// display is warmer than the skin's surface, 0 without contact. It is the flow out of the sensed skin, also while another
+    /// skin is assumed, plus the flux set by [`Self::set_flux_beyond_model`] over the contact's area. Computes the contact
+    /// conductances again if the mean force has changed by more than 1/1024. Of `pair` only the properties of skin and display
+    /// matter here, so the caller may give a pair with any object.
     pub fn step_skin_heat_flow(
         &mut self,
         pair: &ContactPair,
