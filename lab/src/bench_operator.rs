@@ -134,10 +134,7 @@ fn device_reads_c<L: Link>(
 ) -> Result<Option<f64>, ClientError> {
     while client.next_telemetry(Duration::ZERO)?.is_some() {}
     client.ask_finger(finger, &PlainCommand::stream(TELEMETRY_MS))?;
-    let mut line = client.next_telemetry(TELEMETRY_TIMEOUT)?;
-    while line.is_some_and(|line| finger.is_some() && line.finger != finger) {
-        line = client.next_telemetry(TELEMETRY_TIMEOUT)?;
-    }
+    let line = client.next_telemetry_of(finger, TELEMETRY_TIMEOUT)?;
     client.ask_finger(finger, &PlainCommand::stream(WATCHED_STREAM_MS))?;
     Ok(line.and_then(|line| match thermistor {
         ThermistorId::Display | ThermistorId::Check => line.telemetry.display_c,
