@@ -94,7 +94,7 @@ impl Answer {
             flux_w_m2: None,
             contact: None,
         });
-        let trusts = FingerKnowledge::PROTOCOL_WORDS.map(|(_, knowledge)| match knowledge {
+        let trusts = FingerKnowledge::ALL.map(|knowledge| match knowledge {
             FingerKnowledge::Learnt(trust) => trust,
             _ => Trust::Learning,
         });

@@ -85,7 +85,11 @@ fn fault_case(row: &Row, table: &Table) -> anyhow::Result<FaultCase> {
     let learning = match (row.assumed_k, row.learnt_k) {
         (None, None) => None,
         (assumed_k, learnt_k) => Some(LearningExpected {
-            knowledge: expand(&row.knowledge, &table.knowledge, knowledge)?,
+            knowledge: expand(
+                &row.knowledge,
+                &table.knowledge,
+                named(&FingerKnowledge::ALL, FingerKnowledge::name),
+            )?,
             assumes: assumed_k.is_some(),
             skin_max_k: (assumed_k.xor(learnt_k)).context("has two limits of the skin")?,
         }),
@@ -129,15 +133,6 @@ fn named<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> impl Fn(Value) -> O
         let mut all = all.iter().copied();
         all.find(|value| word.as_str() == Some(name(*value)))
     }
-}
-
-/// The knowledge of a finger that a word of the protocol names.
-fn knowledge(word: Value) -> Option<FingerKnowledge> {
-    let known = FingerKnowledge::PROTOCOL_WORDS.into_iter();
-    known
-        .filter(|(name, _)| word.as_str() == Some(name))
-        .map(|(_, knowledge)| knowledge)
-        .next()
 }
 
 #[cfg(test)]

@@ -109,6 +109,12 @@ pub fn in_table<T: Copy>(table: &[(&str, T)], word: &str) -> Option<T> {
     found.map(|(_, value)| *value)
 }
 
+/// What is known of a finger, by its word.
+pub fn knowledge(word: &str) -> Option<FingerKnowledge> {
+    let mut all = FingerKnowledge::ALL.into_iter();
+    all.find(|knowledge| knowledge.name() == word)
+}
+
 /// Serializes a fault as its word.
 pub fn fault_word<S: Serializer>(fault: &Fault, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(fault.name())

@@ -14,7 +14,8 @@ use thermal_settings::{FluxSensor, Settings};
 
 use super::Fields;
 use super::fields::{
-    fault, fault_word, finite, flux_sensor_numbers, in_table, knowledge_word, state, state_word,
+    fault, fault_word, finite, flux_sensor_numbers, in_table, knowledge, knowledge_word, state,
+    state_word,
 };
 
 /// Answer to `id`.
@@ -404,7 +405,7 @@ impl FluxReport {
         Some(Some(Self {
             sensor: FluxSensor::from_array_rounded(reply.numbers(FluxSensor::NAMES)?),
             w_m2: reply.number_or_unknown("w_m2")?,
-            finger: in_table(&FingerKnowledge::PROTOCOL_WORDS, reply.word("finger")?)?,
+            finger: knowledge(reply.word("finger")?)?,
         }))
     }
 }

@@ -7,7 +7,7 @@ use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
 use thermal_device::{StateName, TelemetryFields};
 
-use super::fields::{in_table, knowledge_word_if_known, number_or_unknown, state, state_word};
+use super::fields::{knowledge, knowledge_word_if_known, number_or_unknown, state, state_word};
 
 /// The fields of a telemetry line; what the device does not know, or was not asked for, is `None`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -125,7 +125,7 @@ impl Telemetry {
             surface_c: number_or_unknown(surface)?,
             finger: match finger {
                 "-" => None,
-                word => Some(in_table(&FingerKnowledge::PROTOCOL_WORDS, word)?),
+                word => Some(knowledge(word)?),
             },
             limited: remark == "limited",
         })

@@ -453,7 +453,8 @@ fn the_answers_for_diagnosis_are_read() {
             "counts_per_w_m2=0.119200 zero_counts=2051.250 lag_ms=5.000 resistance_mm2k_w=30.000";
         format!("ok flux=fitted {values} w_m2={flux} finger={finger}")
     };
-    for (word, finger) in FingerKnowledge::PROTOCOL_WORDS {
+    for finger in FingerKnowledge::ALL {
+        let word = finger.name();
         let report = FluxReport {
             sensor: FluxSensor {
                 zero_counts: 2051.25,
@@ -463,7 +464,6 @@ fn the_answers_for_diagnosis_are_read() {
             finger,
         };
         assert_eq!(flux(fitted("-3.2", word)).unwrap(), Some(report));
-        assert_eq!(finger.name(), word);
         let unknown = flux(fitted("-", word)).unwrap().unwrap();
         assert_eq!(unknown.w_m2, None);
     }
@@ -560,10 +560,8 @@ fn fields_of_the_flux_sensor_are_read() {
     client.wait(Duration::from_millis(10)).unwrap();
     let mut next = || Some(client.next_telemetry(Duration::ZERO).unwrap()?.telemetry);
     let values = |line: Telemetry| (line.force_n, line.flux_w_m2, line.surface_c, line.finger);
-    let known = FingerKnowledge::PROTOCOL_WORDS
-        .into_iter()
-        .find(|(word, _)| *word == "wet");
-    let (_, known) = known.unwrap();
+    let mut all = FingerKnowledge::ALL.into_iter();
+    let known = all.find(|known| known.name() == "wet").unwrap();
     assert_eq!(
         next().map(values),
         Some((Some(0.512), Some(-1234.5), Some(24.0125), Some(known)))

@@ -54,26 +54,19 @@ pub enum FingerKnowledge {
 }
 
 impl FingerKnowledge {
-    /// All, with their words in the protocol. With all but the first two the device has gone back to the assumed finger, or is on the way
-    /// there.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 11] = [
-        ("learning", Self::Learnt(Trust::Learning)),
-        ("trusted", Self::Learnt(Trust::Trusted)),
-        ("no-code", Self::NoCode),
-        ("sensor-range", Self::SensorFault),
-        ("sensor", Self::Learnt(Trust::Mean(Distrust::Sensor))),
-        ("between", Self::Learnt(Trust::Mean(Distrust::Between))),
-        ("wet", Self::Learnt(Trust::Mean(Distrust::Wet))),
-        ("contact", Self::Learnt(Trust::Mean(Distrust::Contact))),
-        (
-            "unexplained",
-            Self::Learnt(Trust::Mean(Distrust::Unexplained)),
-        ),
-        (
-            "arithmetic",
-            Self::Learnt(Trust::Mean(Distrust::Arithmetic)),
-        ),
-        ("late", Self::Late),
+    /// All of it. With all but the first two the device has gone back to the assumed finger, or is on the way there.
+    pub const ALL: [Self; 11] = [
+        Self::Learnt(Trust::Learning),
+        Self::Learnt(Trust::Trusted),
+        Self::NoCode,
+        Self::SensorFault,
+        Self::Learnt(Trust::Mean(Distrust::Sensor)),
+        Self::Learnt(Trust::Mean(Distrust::Between)),
+        Self::Learnt(Trust::Mean(Distrust::Wet)),
+        Self::Learnt(Trust::Mean(Distrust::Contact)),
+        Self::Learnt(Trust::Mean(Distrust::Unexplained)),
+        Self::Learnt(Trust::Mean(Distrust::Arithmetic)),
+        Self::Late,
     ];
 
     /// Whether what the sensor reads can be right. Also for a finger that is not trusted: the finger is in doubt then, not the flux.
