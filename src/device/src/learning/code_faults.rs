@@ -36,13 +36,13 @@ pub struct CodeFaults {
 
 impl CodeFaults {
     /// Judges the codes of a window: their sum, the last one, and whether one was missing; and whether a flux beyond the range is
-    /// likely. Returns their sum; a mean at a rail counts as the nearest code of sound wires.
+    /// likely, which is asked at a rail only. Returns their sum; a mean at a rail counts as the nearest code of sound wires.
     pub fn judge(
         &mut self,
         sum: u32,
         last: u16,
         is_one_missing: bool,
-        is_beyond_likely: bool,
+        is_beyond_likely: impl FnOnce() -> bool,
     ) -> u32 {
         let counted = |count: u8, is_so| if is_so { count.saturating_add(1) } else { 0 };
         let is_unchanged = sum == self.last_sum && sum == WINDOW_TICKS * u32::from(last);
@@ -53,13 +53,9 @@ impl CodeFaults {
             WINDOW_TICKS * u32::from(HIGHEST),
         );
         self.at_rail_windows = counted(self.at_rail_windows, within != sum);
-        let at_rail_windows_max = if is_beyond_likely {
-            AT_RAIL_WINDOWS_MAX_IF_LIKELY
-        } else {
-            AT_RAIL_WINDOWS_MAX
-        };
-        let is_beyond = self.at_rail_windows >= at_rail_windows_max
-            || self.unchanged_windows >= UNCHANGED_WINDOWS_MAX;
+        let is_at_rail = self.is_saturated()
+            && (self.at_rail_windows >= AT_RAIL_WINDOWS_MAX_IF_LIKELY || !is_beyond_likely());
+        let is_beyond = is_at_rail || self.unchanged_windows >= UNCHANGED_WINDOWS_MAX;
         self.present = match (is_one_missing, is_beyond) {
             (true, _) => Some(CodeFault::Missing),
             (false, true) => Some(CodeFault::Range),
@@ -98,18 +94,18 @@ mod tests {
             for _ in 0..3 {
                 for window in 1..=8 {
                     // The last code differs, as with noise.
-                    assert_eq!(faults.judge(sum, 1, false, false), within);
+                    assert_eq!(faults.judge(sum, 1, false, || false), within);
                     let fault = (window >= 5).then_some(CodeFault::Range);
                     assert_eq!(faults.present(), fault, "{sum}, {window}");
                 }
-                assert_eq!(faults.judge(20_485, 2048, false, false), 20_485);
+                assert_eq!(faults.judge(20_485, 2048, false, || false), 20_485);
                 assert_eq!(faults.present(), None);
             }
         }
         let mut faults = CodeFaults::default();
         for _ in 0..20 {
             for sum in [640, 40_310] {
-                assert_eq!(faults.judge(sum, 1, false, false), sum);
+                assert_eq!(faults.judge(sum, 1, false, || false), sum);
                 assert_eq!(faults.present(), None);
             }
         }
@@ -119,12 +115,12 @@ mod tests {
     fn a_flux_that_is_likely_to_be_beyond_the_range_may_be_there_for_longer() {
         let mut faults = CodeFaults::default();
         for window in 1..=40 {
-            faults.judge(40_950, 1, false, true);
+            faults.judge(40_950, 1, false, || true);
             let fault = (window >= 30).then_some(CodeFault::Range);
             assert_eq!(faults.present(), fault, "{window}");
             assert_eq!(faults.is_saturated(), window >= 5, "{window}");
         }
-        faults.judge(20_485, 1, false, true);
+        faults.judge(20_485, 1, false, || true);
         assert!(!faults.is_saturated() && faults.present().is_none());
     }
 
@@ -133,16 +129,16 @@ mod tests {
         let mut faults = CodeFaults::default();
         for _ in 0..3 {
             for window in 0..20 {
-                faults.judge(20_480, 2048, false, false);
+                faults.judge(20_480, 2048, false, || false);
                 let fault = (window >= 10).then_some(CodeFault::Range);
                 assert_eq!(faults.present(), fault, "{window}");
             }
-            faults.judge(20_480, 2047, false, false);
+            faults.judge(20_480, 2047, false, || false);
             assert_eq!(faults.present(), None);
-            faults.judge(20_490, 2049, false, false);
+            faults.judge(20_490, 2049, false, || false);
         }
         for window in 0..40 {
-            faults.judge(20_480 + window % 2, 2048, false, false);
+            faults.judge(20_480 + window % 2, 2048, false, || false);
             assert_eq!(faults.present(), None);
         }
     }
@@ -151,7 +147,7 @@ mod tests {
     fn a_missing_code_is_a_fault_of_its_window() {
         let mut faults = CodeFaults::default();
         for is_missing in [true, true, false, true, false] {
-            faults.judge(20_485, 2048, is_missing, false);
+            faults.judge(20_485, 2048, is_missing, || false);
             assert_eq!(faults.present(), is_missing.then_some(CodeFault::Missing));
         }
     }

@@ -270,9 +270,11 @@ impl FingerLearning {
         }
         let sums = &self.sums;
         // At least half of what was measured.
-        let measured = flux_per_mm2(self.parameters.mean_flux(sums.codes()));
-        let is_beyond_likely = (modelled.saturating_mul_int(2).abs() >= measured.abs())
-            && modelled.is_negative() == measured.is_negative();
+        let is_beyond_likely = || {
+            let measured = flux_per_mm2(self.parameters.mean_flux(sums.codes()));
+            modelled.saturating_mul_int(2).abs() >= measured.abs()
+                && modelled.is_negative() == measured.is_negative()
+        };
         let codes = (self.faults).judge(
             sums.codes(),
             self.code,
