@@ -332,8 +332,7 @@ class Commands:
             raise ValueError(f"unknown fields {', '.join(sorted(unknown))}; known: {', '.join(ALL_FIELDS)}")
         if int(interval_ms) != interval_ms:
             raise ValueError(f"interval_ms is {interval_ms}; allowed are whole numbers from 0 to 60000")
-        in_order = tuple(name for name in ALL_FIELDS if name in chosen)
-        self._connection.set_stream(self._finger, Stream(int(interval_ms), in_order or TELEMETRY_FIELDS))
+        self._connection.set_stream(self._finger, Stream.of(int(interval_ms), chosen))
 
     def trigger_out(self, *kinds: TriggerEvent) -> None:
         """The events that give a pulse of 10 ms at the trigger output; without any, none does."""

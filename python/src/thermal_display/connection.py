@@ -36,7 +36,7 @@ from .events import Event, EventLog, Trip, parse_event
 from .link import Link
 from .replies import Cause, Fields, Identity, Reply, Status
 from .telemetry import LineCounts, Stream, TelemetryBuffer, parse_line
-from .words import ALL_FIELDS, TELEMETRY_FIELDS, TelemetryField
+from .words import TELEMETRY_FIELDS
 
 log = logging.getLogger("thermal_display")
 
@@ -597,9 +597,8 @@ class Connection:
         finger, content = wire.split_finger(line)
         words = content.split()
         if words[0] == "stream":
-            chosen: list[TelemetryField] = [name for name in ALL_FIELDS if name in words[2:]]
             # The device rounds a fraction of a millisecond up.
-            stream = Stream(math.ceil(float(words[1])), tuple(chosen) or TELEMETRY_FIELDS)
+            stream = Stream.of(math.ceil(float(words[1])), words[2:])
             if finger is None:
                 self._stream_all, self._stream_own = stream, {}
             else:

@@ -19,7 +19,7 @@ from .link import Link, SerialLink, TcpLink
 from .replies import BoardReport, Identity
 from .simulator import Simulator, Speed
 from .telemetry import LineCounts, Stream, Telemetry
-from .words import ALL_FIELDS, TELEMETRY_FIELDS, TelemetryField
+from .words import TELEMETRY_FIELDS, TelemetryField
 
 log = logging.getLogger("thermal_display")
 
@@ -83,8 +83,7 @@ class Display(Commands):
         )
         self.simulator = simulator
         """The simulated device, of `Display.simulated`."""
-        chosen = set(fields)
-        stream = Stream(stream_ms, tuple(name for name in ALL_FIELDS if name in chosen))
+        stream = Stream.of(stream_ms, fields)
         try:
             self.identity: Identity = self._connection.attach(
                 checksums=checksums, stream=stream, events=events

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -99,6 +99,12 @@ class Stream:
     """0 if it does not stream."""
     fields: tuple[TelemetryField, ...]
     """In the order of a line."""
+
+    @classmethod
+    def of(cls, interval_ms: int, names: Iterable[str]) -> Stream:
+        """With these fields, or with those of `TELEMETRY_FIELDS` if there are none."""
+        chosen = set(names)
+        return cls(interval_ms, tuple(name for name in ALL_FIELDS if name in chosen) or TELEMETRY_FIELDS)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import Literal
+from typing import Literal, get_args
 
 
 class State(str, Enum):
@@ -115,22 +115,12 @@ TelemetryField = Literal[
 ]
 """Fields of telemetry that `stream` can choose."""
 
-TELEMETRY_FIELDS: tuple[TelemetryField, ...] = (
-    "setpoint",
-    "display",
-    "sink",
-    "skin",
-    "room",
-    "force",
-    "demand",
-    "current",
-    "evaluations",
-)
-"""The fields of a line if none is chosen, in its order."""
+ALL_FIELDS: tuple[TelemetryField, ...] = get_args(TelemetryField)
+"""All fields, in the order of a line."""
 
 FLUX_FIELDS: tuple[TelemetryField, ...] = ("flux", "surface", "finger")
 """The fields of the heat-flux sensor, which follow the others in a line if they are chosen: flux, estimate of the display's
 surface, and what is known of the finger."""
 
-ALL_FIELDS = TELEMETRY_FIELDS + FLUX_FIELDS
-"""All fields, in the order of a line."""
+TELEMETRY_FIELDS = tuple(field for field in ALL_FIELDS if field not in FLUX_FIELDS)
+"""The fields of a line if none is chosen, in its order."""
