@@ -147,7 +147,7 @@ impl AssumedFinger {
 /// A contact law that the host has chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChosenContactLaw {
-    /// The law as the host told it.
+    /// The law as the host sent it.
     pub told: ContactLaw,
     /// The same for the control path; `None` for Eq. 6-8.
     pub own: Option<OwnContactLaw>,
@@ -355,7 +355,7 @@ pub enum Refused {
     NoMaterial,
     /// The command with this name, `contact` or `person`, was sent, and the assumed finger is the thesis's.
     NeedsLayeredFinger(&'static str),
-    /// A person was to be chosen or enrolled, and this contact law was told. The factor on the contact resistance that is stored of
+    /// A person was to be chosen or enrolled while this contact law is set. The factor on the contact resistance that is stored of
     /// a person is relative to the nominal law.
     OtherContactLaw(ContactLaw),
     /// `start` was sent while an object is already presented.

@@ -4,24 +4,25 @@ use contact_model::fixed_point::WEIGHTS;
 
 use crate::estimate::Estimate;
 use crate::output::LearnerOutput;
-use crate::parameters::{Place, RESISTANCE, Scale, relative_weights};
+use crate::parameters::{PlaceBeforeContact, RESISTANCE, Scale, relative_weights};
 use crate::person::PersonPrior;
 use crate::recent::Recent;
 use crate::regressors::{Lagged, Signals, to_float};
 use crate::sensor::FluxSensor;
 use crate::signals::BankOutput;
 use crate::trust::{Distrust, Judge, Trust};
-use crate::window::{Contact, LearnerInput, Resistance, Restart, WINDOW_TICKS};
+use crate::window::{ContactInput, LearnerInput, Resistance, Restart, WINDOW_TICKS};
 
 /// Ticks after landing from which a contact is learnt from.
 const LEARNT_FROM_TICKS: u32 = 10;
 /// Ticks after landing from which the display's surface and the sensor have settled.
 const SETTLED_TICKS: u32 = 20;
-/// Error of the model before that, K: small enough that the contact resistance shows already. Innovations then count as 0 in [`Judge`],
-/// so that they cannot cause a distrust.
+/// Error of the model before [`SETTLED_TICKS`], K: small enough that the contact resistance can be learnt already. [`Judge`] takes
+/// innovations for 0 until then, so that they cannot cause a distrust.
 const UNSETTLED_ERROR_K: f32 = 0.3;
-/// Up to these ticks after landing every window, every second one, and every fourth is learnt from; later every eighth. One in
-/// place of two has half of the variance; later the error of the model changes so slowly that a window is worth no more than one.
+/// Until these ticks after landing the learner uses every window, every second one, and every fourth; later every eighth. A window that
+/// stands for two has half of the variance. From 1 s on the error of the model changes so slowly that windows left out would add nothing,
+/// and the variance is that of one window.
 const ALL_WINDOWS_UNTIL_TICKS: u32 = 300;
 const ONE_IN_TWO_UNTIL_TICKS: u32 = 1000;
 const ONE_IN_FOUR_UNTIL_TICKS: u32 = 3000;
@@ -31,25 +32,25 @@ const MODEL_ERROR_K: f32 = 20e-3;
 const MODEL_VARIANCE_DOUBLED_TICKS: f32 = 50.0;
 /// Error of the surface of the display, K.
 const SURFACE_ERROR_K: f32 = 1.5e-3;
-/// Part of the display's change of the last second by which its surface may be off: what the model of the plate has wrong is seen
-/// by the thermistor of the display later.
+/// Error of the display's surface over its change in the last second: the display's thermistor shows errors of the plate's model only
+/// later.
 const DISPLAY_CHANGE_ERROR: f32 = 0.05;
-/// Shares per window of the low-passes from which display and contact resistance have changed: in 1 s, and in 20 ms, which are
-/// the lags of force and sensor.
+/// Coefficients per window of the low-passes from which changes of display and contact resistance are measured: of 1 s, and of 20 ms, the
+/// lags of force and sensor.
 const DISPLAY_SHARE: f32 = 0.01;
 const RESISTANCE_SHARE: f32 = 0.5;
-/// Part of a change of the nominal resistance by which the factor on it may become another one: the force has an error.
+/// Relative change of the learnt factor on the contact resistance over that of the nominal resistance: the force has an error.
 const FACTOR_CHANGE: f32 = 0.2;
 /// Error of the sensor's zero, W/m²: two of its deviations.
 const ZERO_ERROR_W_M2: f32 = 7.0;
-/// Ticks of a contact after which the finger is well enough known to be stored.
+/// Ticks of contact after which a finger may be stored.
 const STORED_FROM_TICKS: u32 = 8000;
 /// Factor by which the parameters shrink in each window after a distrust: towards 0, the mean finger.
 const DECAY_PER_WINDOW_IF_DISTRUSTED: f32 = 0.75;
 /// Unit of [`Resistance`], m² K/W.
 const M2K_W_PER_BIT: f32 = 1e-6 / (1u32 << Resistance::FRAC_NBITS) as f32;
 
-/// So many ticks after landing one window of so many is learnt from.
+/// Number of windows of which one is learnt from, by the ticks since landing.
 const fn windows_per_update(ticks: u32) -> u8 {
     match ticks {
         ..ALL_WINDOWS_UNTIL_TICKS => 1,
@@ -62,7 +63,7 @@ const fn windows_per_update(ticks: u32) -> u8 {
 /// Learns a finger from the flux into the display. All methods are total, take bounded time and do not panic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Learner {
-    place: Place,
+    place: PlaceBeforeContact,
     sensor: FluxSensor,
     person: Option<PersonPrior>,
     scale: Scale,
@@ -74,7 +75,7 @@ pub struct Learner {
     resistance: Recent,
     /// The resistance at which the finger was last learnt from; 0 before.
     learnt_resistance_m2k_w: f32,
-    /// Of the present contact, modulo 256.
+    /// Windows of the present contact, modulo 256; `None` without one.
     windows_in_contact: Option<u8>,
     /// Ticks of the last contact.
     ticks_since_landing: u32,
@@ -97,7 +98,7 @@ impl Learner {
     /// A learner for an input with a [`Restart`], which must be its first.
     #[must_use]
     pub const fn new() -> Self {
-        let (place, sensor) = (Place::Air, FluxSensor::UNKNOWN);
+        let (place, sensor) = (PlaceBeforeContact::Air, FluxSensor::UNKNOWN);
         Self {
             scale: Scale::new(place, sensor.lag_deviation()),
             place,
@@ -118,7 +119,7 @@ impl Learner {
         }
     }
 
-    /// Begins anew with these place, sensor and person. Their copy is no reference, which would keep all of an input in memory.
+    /// Begins anew with this place, sensor and person, by value: a reference would keep the whole input in memory.
     #[inline(always)]
     pub(crate) fn restart(&mut self, restart: Restart) {
         self.place = restart.place;
@@ -154,7 +155,7 @@ impl Learner {
             self.restart(restart);
         }
         let mut person = None;
-        // Of how many windows one is learnt from, if this is one.
+        // Number of windows that this one stands for, if it is learnt from.
         let mut every = None;
         match &input.contact {
             Some(contact) => {
@@ -210,7 +211,7 @@ impl Learner {
     }
 
     /// Follows display and force.
-    fn follow(&mut self, contact: &Contact, lands: bool) {
+    fn follow(&mut self, contact: &ContactInput, lands: bool) {
         let touching = f32::from(contact.touching_ticks.max(1)) / WINDOW_TICKS as f32;
         let above_k = to_float(contact.skin_above_display_k) / touching;
         let share = |share: f32| if lands { 1.0 } else { share };
@@ -228,8 +229,8 @@ impl Learner {
         })
     }
 
-    /// Learns from one window of so many.
-    fn learn(&mut self, contact: &Contact, every: u8, lagged: &Lagged) {
+    /// Learns from a window, one of `every`.
+    fn learn(&mut self, contact: &ContactInput, every: u8, lagged: &Lagged) {
         let ticks = contact.ticks_since_landing;
         let resistance_m2k_w = resistance_m2k_w(contact);
         let parameters = self.estimate.parameters;
@@ -309,6 +310,6 @@ impl Learner {
 }
 
 /// The nominal contact resistance, m² K/W.
-fn resistance_m2k_w(contact: &Contact) -> f32 {
+fn resistance_m2k_w(contact: &ContactInput) -> f32 {
     contact.resistance_mm2k_w.to_bits() as f32 * M2K_W_PER_BIT
 }

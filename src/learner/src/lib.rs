@@ -20,11 +20,11 @@ mod window;
 
 pub use learner::Learner;
 pub use output::LearnerOutput;
-pub use parameters::{PARAMETERS, Place};
+pub use parameters::{PARAMETERS, PlaceBeforeContact};
 pub use person::PersonPrior;
 pub use sensor::FluxSensor;
 pub use trust::{Distrust, Trust};
-pub use window::{Contact, Flux, LearnerInput, Resistance, Restart, WINDOW_TICKS};
+pub use window::{ContactInput, Flux, LearnerInput, Resistance, Restart, WINDOW_TICKS};
 
 #[cfg(test)]
 mod tests;

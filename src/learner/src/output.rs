@@ -10,7 +10,7 @@ use crate::person::PersonPrior;
 use crate::signals::BankOutput;
 use crate::trust::Trust;
 
-/// Differences of a finger from the applied one that are not worth the device's time.
+/// Differences from the applied finger below which a new one is not applied.
 const WEIGHT_TOLERANCE: U2F30 = U2F30::lit("0x.002");
 const AIR_TOLERANCE: U4F28 = U4F28::lit("0x.008");
 const SKIN_TOLERANCE_K: U10F22 = U10F22::lit("0.0005");
@@ -37,7 +37,7 @@ pub struct LearnerOutput {
     pub parameters: [I4F28; PARAMETERS],
     /// Their variances, in prior variances: above 0, at most 1.25.
     pub variances: [I2F30; PARAMETERS],
-    /// What to store of the finger. Some in the first window after a contact of 8 s or more which was trusted to its end.
+    /// What to store of the finger; only in the first window after a contact of 8 s or more that was trusted to its end.
     pub person: Option<PersonPrior>,
 }
 
@@ -113,7 +113,7 @@ impl LearnerOutput {
     }
 }
 
-/// Leaves three quarters of the change from the mean value; of one of three units or less nothing. Returns whether it has changed.
+/// Reduces the distance from the mean value to three quarters, and one of three units or less to 0. Returns whether it has changed.
 fn approach<T: Fixed<Bits = i32>>(value: &mut T, mean: T) -> bool {
     let next = approached(value.to_bits(), mean.to_bits());
     let has_changed = next != value.to_bits();

@@ -64,9 +64,9 @@ pub const PRIOR: Parameters = [
     0.0,
 ];
 
-/// Whether the finger is in air or on an insulating pad before its contacts, which decides how much heat its skin loses there.
+/// Where the finger is before each contact, on which the heat that its skin loses there depends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum PlaceBeforeContact {
     /// In air.
     Air,
     /// On an insulating pad.
@@ -84,9 +84,9 @@ pub struct Scale {
     pub high: Parameters,
 }
 
-/// Limits of the components (the second one takes strong perfusion of the dermis, too: 5.6 in a finger of scenario G), of the
-/// relative change of the air's flux (below -1 for a finger on a pad whose blood the force stops), of the skin's temperature, K, of the factor on the contact resistance, and of the relative
-/// change of the lag.
+/// Limits of the components (the second one also represents strong perfusion of the dermis: 5.6 in a finger of scenario G), of the
+/// relative change of the air's flux (below -1 for a finger on a pad whose blood the force stops), of the error of the skin's
+/// thermistor, K, of the relative change of the contact resistance, and of that of the lag.
 const LIMITS: [(f32, f32); PARAMETERS] = [
     (-3.5, 3.5),
     (-7.0, 7.0),
@@ -98,10 +98,10 @@ const LIMITS: [(f32, f32); PARAMETERS] = [
 
 impl Scale {
     /// For a finger at this place, and a sensor whose lag has this relative deviation.
-    pub const fn new(place: Place, lag_deviation: f32) -> Self {
+    pub const fn new(place: PlaceBeforeContact, lag_deviation: f32) -> Self {
         let air = match place {
-            Place::Air => 0.33,
-            Place::Pad => 0.48,
+            PlaceBeforeContact::Air => 0.33,
+            PlaceBeforeContact::Pad => 0.48,
         };
         let deviations = [1.0, 1.0, air, 0.05, 0.45, lag_deviation];
         let (mut low, mut high) = ([0.0; PARAMETERS], [0.0; PARAMETERS]);

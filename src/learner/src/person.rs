@@ -1,14 +1,15 @@
-//! What is stored of a finger that was learnt, and how it becomes the prior of another day.
+//! A finger that was learnt, as it is stored, and as the prior of later contacts.
 
 use crate::estimate::Estimate;
 use crate::parameters::{
-    AIR, FIRST_COMPONENT, PARAMETERS, Place, RESISTANCE, SECOND_COMPONENT, Scale, clamped,
+    AIR, FIRST_COMPONENT, PARAMETERS, PlaceBeforeContact, RESISTANCE, SECOND_COMPONENT, Scale,
+    clamped,
 };
 
 /// The parameters that are stored. The others belong to the device: the error of its skin thermistor, and its sensor's lag.
 const STORED: [usize; 4] = [FIRST_COMPONENT, SECOND_COMPONENT, AIR, RESISTANCE];
 
-/// Whether a parameter is one of these. With a table the compiler would unroll the loops, and check indices.
+/// Whether a parameter is one of [`STORED`]. Loops over that table would be unrolled, with checks of indices.
 const fn is_stored(index: usize) -> bool {
     matches!(index, FIRST_COMPONENT | SECOND_COMPONENT | AIR | RESISTANCE)
 }
@@ -23,7 +24,7 @@ const SHRINKING: f32 = 0.9;
 /// After so many, no correlation is above 0.29, so that the matrix has a dominant diagonal.
 const SHRINKINGS_MAX: u32 = 12;
 
-/// A finger that was learnt, to begin with on another day or device:
+/// A finger that was learnt, as the prior on another day or device:
 ///
 /// | bytes | content |
 /// |---|---|
@@ -58,8 +59,8 @@ impl PersonPrior {
     pub fn deviations(&self) -> [f32; STORED.len()] {
         let mut deviations = [0.0; STORED.len()];
         let levels = self.0.iter().skip(2 * STORED.len());
-        for (place, level) in deviations.iter_mut().zip(levels) {
-            *place = deviation(*level);
+        for (one, level) in deviations.iter_mut().zip(levels) {
+            *one = deviation(*level);
         }
         deviations
     }
@@ -73,16 +74,16 @@ impl PersonPrior {
 
     /// Where the finger was before these contacts.
     #[must_use]
-    pub const fn place(&self) -> Place {
+    pub const fn place(&self) -> PlaceBeforeContact {
         match self.0 {
-            [.., 0] => Place::Air,
-            _ => Place::Pad,
+            [.., 0] => PlaceBeforeContact::Air,
+            _ => PlaceBeforeContact::Pad,
         }
     }
 
     /// What is to be stored of an estimate.
     #[inline(never)]
-    pub(crate) fn new(estimate: &Estimate, contacts: u8, place: Place) -> Self {
+    pub(crate) fn new(estimate: &Estimate, contacts: u8, place: PlaceBeforeContact) -> Self {
         let mut bytes = [0; Self::BYTES];
         let (parameters, rest) = bytes.split_at_mut(2 * STORED.len());
         let (levels, rest) = rest.split_at_mut(STORED.len());
@@ -91,31 +92,31 @@ impl PersonPrior {
         let mut rest = rest.iter_mut();
         for i in (0..PARAMETERS).filter(|i| is_stored(*i)) {
             let parameter = estimate.parameters[i] * UNITS_PER_DEVIATION;
-            if let Some(place) = parameters.next() {
-                *place = (rounded(parameter) as i16).to_le_bytes();
+            if let Some(bytes) = parameters.next() {
+                *bytes = (rounded(parameter) as i16).to_le_bytes();
             }
             let own = level(estimate.covariance[i][i]);
-            if let Some(place) = levels.next() {
-                *place = own;
+            if let Some(byte) = levels.next() {
+                *byte = own;
             }
             for j in (i + 1..PARAMETERS).filter(|j| is_stored(*j)) {
                 let other = level(estimate.covariance[j][j]);
                 let largest = deviation(own) * deviation(other);
                 let correlation = estimate.covariance[i][j] / largest * UNITS_OF_CORRELATION;
-                if let Some(place) = rest.next() {
-                    *place = rounded(correlation) as i8 as u8;
+                if let Some(byte) = rest.next() {
+                    *byte = rounded(correlation) as i8 as u8;
                 }
             }
         }
-        for (place, byte) in rest.zip([contacts, place as u8]) {
-            *place = byte;
+        for (byte, value) in rest.zip([contacts, place as u8]) {
+            *byte = value;
         }
         Self(bytes)
     }
 
-    /// The estimate with which to begin at this place; at another one than that of the record nothing is known of the air.
+    /// The prior of a finger at this place. At another place than that of the record nothing is known of the air's flux.
     #[inline(never)]
-    pub(crate) fn estimate(&self, place: Place, scale: &Scale) -> Estimate {
+    pub(crate) fn estimate(&self, place: PlaceBeforeContact, scale: &Scale) -> Estimate {
         let mut estimate = Estimate::PRIOR;
         let mut deviations = [1.0; PARAMETERS];
         let known = self.parameters().into_iter().zip(self.deviations());
@@ -144,6 +145,7 @@ impl PersonPrior {
         }
         estimate
     }
+
     /// The correlations, shrunk until their matrix is positive.
     fn positive_correlations(&self) -> Correlations {
         let mut correlations = [0.0; 6];

@@ -14,7 +14,7 @@ impl Recent {
         change: 0.0,
     };
 
-    /// Takes the signal of a window; the low-pass goes this share of the way to it, all of it in the window of a landing.
+    /// Takes the signal of a window; `share` is the coefficient of the low-pass, 1 in the window of a landing.
     pub fn advance(&mut self, signal: f32, share: f32) {
         self.followed += (signal - self.followed) * share;
         let distance = signal - self.followed;

@@ -118,7 +118,7 @@ impl Signals {
 /// One measurement: `residual = regressors . parameters + error`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
-    /// What the mean finger leaves of the temperature difference of skin and display, K.
+    /// Part of the temperature difference of skin and display that the mean finger does not explain, K.
     pub residual_k: f32,
     /// Change of the residual per prior deviation of each parameter, K.
     pub regressors: Parameters,

@@ -3,7 +3,7 @@
 use crate::parameters::{FIRST_COMPONENT, Parameters, RESISTANCE, Scale};
 use crate::regressors::Measurement;
 
-/// Why a contact is not learnt from. What the words name is the most likely cause; the learner sees the flux only.
+/// Why a contact is not learnt from: the most likely cause, since the learner sees the flux only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Distrust {
     /// Flux is missing or has the wrong sign: the sensor.
@@ -37,8 +37,8 @@ pub enum Trust {
 const TRUSTED_TICKS: u32 = 500;
 /// Time constant, in updates, of the filter of squared innovations over their variance.
 const INNOVATION_UPDATES: f32 = 8.0;
-/// Largest filtered innovation. Innovations are over a variance that includes the error of the model, so that those of fingers
-/// are far below 1, but for a few.
+/// Largest filtered innovation. The variance includes the error of the model, so that for most fingers it is far
+/// below 1.
 const INNOVATION_MAX: f32 = 4.0;
 /// The same under a light force, where the contact resistance hides the finger.
 const INNOVATION_MAX_LIGHT: f32 = 20.0;
@@ -48,12 +48,12 @@ pub const LIGHT_RESISTANCE_M2K_W: f32 = 2.4e-3;
 const STRANGE_IN_A_ROW: u8 = 3;
 /// Updates in a row with a parameter at a limit that distrust needs.
 const AT_LIMIT_IN_A_ROW: u8 = 30;
-/// A parameter's limit counts if the square of what its prior deviation makes is above so many variances of the measurement's
-/// error in a quiet contact, and the force is not light: else the flux does not tell the parameter.
-const TELLING: f32 = 4.0;
-/// Temperature drop, K, from which it is asked how much of it the measured flux explains.
+/// Least ratio of the square of a parameter's regressor to the variance of the measurement's error in a quiet contact. Below it the
+/// measurement hardly depends on the parameter, so that its limit does not count; nor does it under a light force.
+const SENSITIVITY_MIN: f32 = 4.0;
+/// Least temperature difference, K, of which the part that the measured flux explains is computed.
 const DROP_MIN_K: f32 = 1.0;
-/// Least part of the temperature difference that the measured flux must make in the mean finger; below it the flux is missing.
+/// Least part of the temperature difference that the measured flux explains in the mean finger; below it the flux is missing.
 const EXPLAINED_PART_MIN: f32 = 0.05;
 
 /// Counts of what does not fit.
@@ -121,7 +121,7 @@ impl Judge {
         let is_strange = self.filtered_innovation > largest;
         let limit = |index: usize| {
             let regressor_k = measurement.regressors[index];
-            if is_light || regressor_k * regressor_k < TELLING * error_k2 {
+            if is_light || regressor_k * regressor_k < SENSITIVITY_MIN * error_k2 {
                 None
             } else if parameters[index] == scale.low[index] {
                 Some(Limit::Low)
@@ -132,7 +132,7 @@ impl Judge {
             }
         };
         let resistance = limit(RESISTANCE);
-        // The second component is small, and takes what else is special about a finger.
+        // The second component may be at its limit: it is small, and takes up whatever else differs in a finger.
         let is_at_limit = resistance.is_some() || limit(FIRST_COMPONENT).is_some();
         if counted(&mut self.strange_innovations, is_strange) >= STRANGE_IN_A_ROW {
             self.distrust(self.cause(explained(measurement), ticks, resistance));
@@ -166,8 +166,8 @@ enum Limit {
     High,
 }
 
-/// Drop of temperature that the measured flux makes in the mean finger with its contact, over the drop that there is; none if
-/// that one is small.
+/// Temperature difference that the measured flux makes in the mean finger and its contact, over the present one; `None` if
+/// that is small.
 fn explained(measurement: &Measurement) -> Option<f32> {
     let open_circuit_difference_k = measurement.open_circuit_difference_k;
     (!(-DROP_MIN_K..=DROP_MIN_K).contains(&open_circuit_difference_k))

@@ -3,7 +3,7 @@
 use contact_model::fixed_point::Celsius;
 use fixed::types::{I20F12, U16F16};
 
-use crate::parameters::Place;
+use crate::parameters::PlaceBeforeContact;
 use crate::person::PersonPrior;
 use crate::sensor::FluxSensor;
 
@@ -19,8 +19,8 @@ pub type Resistance = U16F16;
 /// Begins to learn another finger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Restart {
-    /// Where the finger is before its contacts.
-    pub place: Place,
+    /// Where the finger is before each contact.
+    pub place: PlaceBeforeContact,
     /// The sensor that measures its flux.
     pub sensor: FluxSensor,
     /// What is known of the finger; `None` for nothing.
@@ -38,12 +38,12 @@ pub struct LearnerInput {
     /// the sensor after lifting. `None` if the sensor was beyond its range or faulty in a tick.
     pub flux_w_m2: Option<Flux>,
     /// The contact; `None` if no tick of the window had one.
-    pub contact: Option<Contact>,
+    pub contact: Option<ContactInput>,
 }
 
-/// The contact in a window.
+/// Measurements of a window with contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Contact {
+pub struct ContactInput {
     /// Ticks with contact, 1 to 10.
     pub touching_ticks: u8,
     /// Skin temperature before contact less that of the display's surface, below the flux sensor, K; mean of the ten ticks,

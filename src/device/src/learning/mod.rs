@@ -18,7 +18,7 @@ mod self_test;
 mod window_sums;
 
 use thermal_learner::{
-    Distrust, Flux, LearnerInput, LearnerOutput, Place, Restart, Trust, WINDOW_TICKS,
+    Distrust, Flux, LearnerInput, LearnerOutput, PlaceBeforeContact, Restart, Trust, WINDOW_TICKS,
 };
 use thermal_settings::Person;
 
@@ -38,7 +38,7 @@ pub use window_sums::{MeasuredTick, StateAtEnd};
 const APPLIED_SELDOM_FROM_TICKS: u64 = 1000;
 const SELDOM_WINDOWS: u16 = 8;
 
-/// What the host is told about the finger that is learnt.
+/// What the device reports to the host of the finger that is learnt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FingerKnowledge {
     /// A conversion had not ended in this window: a step towards the assumed finger. In contact the learner then distrusts the sensor
@@ -119,10 +119,10 @@ pub struct FingerLearning {
     counting_windows: u32,
     /// Number of the last window.
     sequence: u16,
-    /// The place of another finger that may follow, until the learner has taken it with an input.
-    restart: Option<Place>,
-    /// Whether this finger has not been seen lifted: its contact has warmed or cooled it before the learner looked, so that nothing is
-    /// learnt from it.
+    /// Where another finger that may follow is before its contacts, until the learner has taken it with an input.
+    restart: Option<PlaceBeforeContact>,
+    /// Whether the finger has not lifted since the last restart: its contact had warmed or cooled its skin before learning began, so that
+    /// nothing is learnt from it.
     has_unknown_history: bool,
     /// Whether the learner must answer that input before the present window ends, and its answer.
     is_asked: bool,
@@ -139,9 +139,9 @@ pub struct FingerLearning {
 }
 
 impl FingerLearning {
-    /// Learning with this sensor of a finger that is at `place` before its contacts.
+    /// Learning with this sensor, of a finger that is at `place` before its contacts.
     #[must_use]
-    pub fn new(parameters: &FluxParameters, place: Place) -> Self {
+    pub fn new(parameters: &FluxParameters, place: PlaceBeforeContact) -> Self {
         Self {
             sums: WindowSums::default(),
             code: 0,
@@ -167,7 +167,7 @@ impl FingerLearning {
 
     /// Forgets the finger, because another one may follow, which is at `place` before its contacts: that of a person, or of an
     /// unknown one.
-    pub fn restart(&mut self, place: Place, person: Option<Person>) {
+    pub fn restart(&mut self, place: PlaceBeforeContact, person: Option<Person>) {
         self.restart = Some(place);
         self.has_unknown_history = true;
         self.input = None;
@@ -269,7 +269,7 @@ impl FingerLearning {
             return Some(Flux::ZERO);
         }
         let sums = &self.sums;
-        // At least half of what was measured.
+        // The modelled flux is at least half of the measured one.
         let is_beyond_likely = || {
             let measured = flux_per_mm2(self.parameters.mean_flux(sums.codes()));
             modelled.saturating_mul_int(2).abs() >= measured.abs()

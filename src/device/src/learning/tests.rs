@@ -31,7 +31,10 @@ fn tick(number: u32, presses: bool) -> MeasuredTick {
 }
 
 fn learning() -> FingerLearning {
-    FingerLearning::new(&FluxParameters::new(&FluxSensor::DESIGNED), Place::Air)
+    FingerLearning::new(
+        &FluxParameters::new(&FluxSensor::DESIGNED),
+        PlaceBeforeContact::Air,
+    )
 }
 
 /// An answer to the last input with another finger than the mean one.
@@ -202,7 +205,7 @@ fn a_missing_answer_and_one_for_another_window_end_in_the_mean_finger() {
 fn an_answer_from_before_a_restart_is_void_and_nothing_is_late() {
     let mut learning = taught();
     let input = learning.take_input().expect("an input");
-    learning.restart(Place::Pad, None);
+    learning.restart(PlaceBeforeContact::Pad, None);
     learning.put_output(&answer(&input));
     assert_eq!(window(&mut learning, true), None);
     assert_eq!(
@@ -211,21 +214,21 @@ fn an_answer_from_before_a_restart_is_void_and_nothing_is_late() {
     );
     let input = learning.take_input().expect("an input");
     let place = input.restart.map(|restart| restart.place);
-    assert_eq!(place, Some(Place::Pad));
+    assert_eq!(place, Some(PlaceBeforeContact::Pad));
 }
 
 /// Its place and person must reach the learner, whatever windows it misses.
 #[test]
 fn a_restart_stays_until_the_learner_has_taken_it() {
     let mut learning = taught();
-    learning.restart(Place::Pad, None);
+    learning.restart(PlaceBeforeContact::Pad, None);
     for _ in 0..3 {
         window(&mut learning, false);
     }
     let restart = |learning: &mut FingerLearning| learning.take_input().expect("an input").restart;
     assert_eq!(
         restart(&mut learning).map(|restart| restart.place),
-        Some(Place::Pad)
+        Some(PlaceBeforeContact::Pad)
     );
     window(&mut learning, false);
     assert_eq!(restart(&mut learning), None);
@@ -235,7 +238,7 @@ fn a_restart_stays_until_the_learner_has_taken_it() {
 #[test]
 fn nothing_is_learnt_from_a_finger_that_rests_during_a_restart() {
     let mut learning = taught();
-    learning.restart(Place::Air, None);
+    learning.restart(PlaceBeforeContact::Air, None);
     let state = StateAtEnd {
         resistance: Some(U16F16::ONE),
         ..STATE

@@ -2,7 +2,7 @@
 
 use contact_model::fixed_point::Celsius;
 use fixed::types::{I10F22, I20F12, U16F16};
-use thermal_learner::{Contact, Flux, Resistance, WINDOW_TICKS};
+use thermal_learner::{ContactInput, Flux, Resistance, WINDOW_TICKS};
 
 use crate::estimate::FluxPerMm2;
 use crate::sense::CONTACT_DEBOUNCE_TICKS;
@@ -113,7 +113,7 @@ impl WindowSums {
 
     /// The contact of the window, if it had one.
     #[must_use]
-    pub fn contact(&self, state: &StateAtEnd) -> Option<Contact> {
+    pub fn contact(&self, state: &StateAtEnd) -> Option<ContactInput> {
         if !self.has_contact() {
             return None;
         }
@@ -126,7 +126,7 @@ impl WindowSums {
         let resistance = state.resistance.map_or(Resistance::ZERO, |scaled| {
             scaled.saturating_mul(MM2K_W_PER_SCALED)
         });
-        Some(Contact {
+        Some(ContactInput {
             touching_ticks: self.touching_ticks as u8,
             skin_above_display_k: of_tick.saturating_mul_int(self.touching_ticks as i32),
             air_flux_w_m2: Flux::from_bits(air_bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32),

@@ -20,7 +20,7 @@ pub struct ChosenObject {
     pub material: Option<ChosenMaterial>,
     /// The finger that is assumed for the one that touches.
     finger: AssumedFinger,
-    /// The contact law that the host has told.
+    /// The contact law that the host has set.
     pub contact_law: ContactLaw,
     /// Whether the object is the half-space of its material.
     is_half_space: bool,
@@ -133,7 +133,7 @@ impl ChosenObject {
         self.bodies.are_half_spaces = self.is_half_space && finger == AssumedFinger::Thesis;
     }
 
-    /// Discards what was learnt of the finger that touches. A contact law that was told stays.
+    /// Discards what was learnt of the finger that touches. A contact law that was set stays.
     pub const fn restore_assumed_finger(&mut self) {
         self.bodies.finger = *self.finger.body();
         self.bodies.resistances.skin_factor = OwnResistances::NONE.skin_factor;

@@ -2,7 +2,7 @@
 
 use contact_model::fixed_point::{Celsius, TissueStateFactors, TissueWeights, product};
 use fixed::types::{U10F22, U16F16};
-use thermal_learner::{LearnerInput, LearnerOutput, Place, WINDOW_TICKS};
+use thermal_learner::{LearnerInput, LearnerOutput, PlaceBeforeContact, WINDOW_TICKS};
 use thermal_settings::Person;
 
 use super::{DueWork, Station};
@@ -17,10 +17,10 @@ use crate::learning::{
 const FLUX_ZERO_ROOM_DIFFERENCE_MAX: U10F22 = U10F22::lit("0.3");
 
 /// Where the assumed finger is before its contacts.
-const fn place(finger: AssumedFinger) -> Place {
+const fn place_before_contact(finger: AssumedFinger) -> PlaceBeforeContact {
     match finger {
-        AssumedFinger::MeanOnPad => Place::Pad,
-        AssumedFinger::Mean | AssumedFinger::Thesis => Place::Air,
+        AssumedFinger::MeanOnPad => PlaceBeforeContact::Pad,
+        AssumedFinger::Mean | AssumedFinger::Thesis => PlaceBeforeContact::Air,
     }
 }
 
@@ -30,7 +30,7 @@ impl Station {
         if self.learning.is_none() && sensor.is_none() {
             return;
         }
-        let place = place(self.object.assumed_finger());
+        let place = place_before_contact(self.object.assumed_finger());
         self.learning = sensor.map(|sensor| FingerLearning::new(sensor, place));
         let layer = sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer);
         self.object.set_display_layer(layer);
@@ -127,7 +127,7 @@ impl Station {
     /// Begins to learn another finger.
     pub(super) fn forget_learnt_finger(&mut self, finger: AssumedFinger) {
         if let Some(learning) = &mut self.learning {
-            learning.restart(place(finger), None);
+            learning.restart(place_before_contact(finger), None);
             self.estimator.finger.set_skin_offset(Celsius::ZERO);
         }
     }
@@ -147,7 +147,7 @@ impl Station {
             return Err(Refused::NeedsLayeredFinger("person"));
         }
         let learning = (self.learning.as_mut()).ok_or(Refused::NoFluxSensor("person"))?;
-        learning.restart(place(finger), person);
+        learning.restart(place_before_contact(finger), person);
         self.estimator.finger.set_skin_offset(Celsius::ZERO);
         Ok(())
     }

@@ -20,7 +20,7 @@ mod state;
 
 use contact_model::fixed_point::to_fixed;
 use fixed::types::U16F16;
-use thermal_learner::Place;
+use thermal_learner::PlaceBeforeContact;
 use thermal_settings::Settings;
 
 pub use state::{ArmedTask, Event, State};
@@ -168,7 +168,8 @@ impl Station {
                 settings.display.surface(),
                 flux_sensor.map_or(U16F16::ZERO, |sensor| sensor.display_layer),
             ),
-            learning: flux_sensor.map(|sensor| FingerLearning::new(sensor, Place::Air)),
+            learning: flux_sensor
+                .map(|sensor| FingerLearning::new(sensor, PlaceBeforeContact::Air)),
             reference: ReferenceGenerator::default(),
             due: DueWork::default(),
             controller: Controller::new(&parameters, limit),

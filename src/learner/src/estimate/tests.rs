@@ -4,7 +4,7 @@ use std::println;
 use std::vec::Vec;
 
 use super::*;
-use crate::parameters::{Place, relative_weights};
+use crate::parameters::{PlaceBeforeContact, relative_weights};
 use crate::regressors::Signals;
 use crate::tests::contacts::sensor;
 use crate::tests::matrix::least_pivot;
@@ -65,7 +65,7 @@ fn covariance_stays_positive_over_a_million_updates() {
 
 #[test]
 fn measurements_that_are_no_numbers_are_refused() {
-    let scale = Scale::new(Place::Air, 0.3);
+    let scale = Scale::new(PlaceBeforeContact::Air, 0.3);
     for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX] {
         for in_regressor in [false, true] {
             let mut measurement = Measurement {

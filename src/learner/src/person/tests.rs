@@ -74,13 +74,16 @@ fn the_record_has_the_documented_layout() {
     // With the rounded deviations of 0.5 and 0.101 56, a correlation of 64.2 / 128.
     let between = 0.025_47;
     (estimate.covariance[0][1], estimate.covariance[1][0]) = (between, between);
-    let person = PersonPrior::new(&estimate, 3, Place::Pad);
+    let person = PersonPrior::new(&estimate, 3, PlaceBeforeContact::Pad);
     let expected = [
         0, 8, 0, 0xf0, 0, 4, 1, 0, 32, 108, 139, 6, 64, 0, 0, 0, 0, 0, 3, 1,
     ];
     assert_eq!(person.0, expected);
     assert_eq!(person.parameters(), [0.5, -1.0, 0.25, 1.0 / 4096.0]);
-    assert_eq!((person.contacts(), person.place()), (3, Place::Pad));
+    assert_eq!(
+        (person.contacts(), person.place()),
+        (3, PlaceBeforeContact::Pad)
+    );
 }
 
 #[test]
@@ -191,9 +194,9 @@ fn an_enrolled_finger_is_known_when_it_lands() {
 
 #[test]
 fn only_trusted_contacts_of_eight_seconds_are_stored() {
-    let finger = Finger::mean(Place::Air);
+    let finger = Finger::mean(PlaceBeforeContact::Air);
     let mut random = Random(0);
-    let mut learner = learner_of(Place::Air, None);
+    let mut learner = learner_of(PlaceBeforeContact::Air, None);
     let [copper, granite, ..] = OBJECTS;
     let mut last = |object, ticks, finger: &Finger| {
         let outputs = touch(
@@ -224,12 +227,12 @@ fn a_distrusted_finger_is_the_enrolled_one_again_at_the_next_landing() {
             ..Estimate::PRIOR
         },
         2,
-        Place::Air,
+        PlaceBeforeContact::Air,
     );
-    let mut learner = learner_of(Place::Air, Some(person));
+    let mut learner = learner_of(PlaceBeforeContact::Air, Some(person));
     let first = *learner.advance(&LIFTED);
     let dead = Scene {
-        finger: &Finger::mean(Place::Air),
+        finger: &Finger::mean(PlaceBeforeContact::Air),
         object: OBJECTS[0],
         force_n: 2.0,
         ticks: 500,
@@ -260,9 +263,9 @@ fn of_another_place_the_air_is_not_adopted() {
             estimate.covariance[i][j] = if i == j { 0.04 } else { 0.02 };
         }
     }
-    let person = PersonPrior::new(&estimate, 2, Place::Air);
-    let scale = Scale::new(Place::Pad, 0.3);
-    let adopted = person.estimate(Place::Pad, &scale);
+    let person = PersonPrior::new(&estimate, 2, PlaceBeforeContact::Air);
+    let scale = Scale::new(PlaceBeforeContact::Pad, 0.3);
+    let adopted = person.estimate(PlaceBeforeContact::Pad, &scale);
     assert_eq!(adopted.parameters, [1.0, -0.5, 0.0, 0.0, 0.5, 0.0]);
     for i in 0..PARAMETERS {
         let expected = if i == AIR { 1.0 } else { 0.0 };
@@ -285,7 +288,7 @@ proptest! {
         if let Some(correlations) = correlations {
             bytes[12..18].copy_from_slice(&correlations);
         }
-        let place = if on_pad { Place::Pad } else { Place::Air };
+        let place = if on_pad { PlaceBeforeContact::Pad } else { PlaceBeforeContact::Air };
         let scale = Scale::new(place, 0.3);
         let person = PersonPrior(bytes);
         let estimate = person.estimate(place, &scale);
@@ -316,8 +319,8 @@ proptest! {
         parameters in prop::array::uniform6(any::<f32>()),
         covariance in prop::array::uniform6(prop::array::uniform6(any::<f32>())),
     ) {
-        let person = PersonPrior::new(&Estimate { parameters, covariance }, 1, Place::Air);
-        let estimate = person.estimate(Place::Air, &Scale::new(Place::Air, 0.3));
+        let person = PersonPrior::new(&Estimate { parameters, covariance }, 1, PlaceBeforeContact::Air);
+        let estimate = person.estimate(PlaceBeforeContact::Air, &Scale::new(PlaceBeforeContact::Air, 0.3));
         prop_assert!(estimate.parameters.iter().all(|one| one.is_finite()));
     }
 }

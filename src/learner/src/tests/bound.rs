@@ -6,7 +6,7 @@ use std::vec::Vec;
 use super::contacts::{first_component, learnt};
 use super::random::Random;
 use super::simulation::*;
-use crate::Place;
+use crate::PlaceBeforeContact;
 
 const FORCE_N: f64 = 2.0;
 /// Noise of the sensor, W/m² a tick.
@@ -44,7 +44,7 @@ fn scene(finger: &Finger, object: Object, ticks: usize, errors: Errors) -> Scene
 /// Least deviations of resistance and impedance, relative, by the sensor's noise alone.
 fn bound(object: Object, ticks: usize) -> [f64; 2] {
     let flux = |parameter, by| -> Vec<f64> {
-        let mut finger = Finger::mean(Place::Air);
+        let mut finger = Finger::mean(PlaceBeforeContact::Air);
         change(&mut finger, parameter, by);
         let simulated = scene(&finger, object, ticks, Errors::NONE).simulate();
         simulated[20..].iter().map(|(flux, _)| *flux).collect()
@@ -88,7 +88,7 @@ const DRAWS: u64 = 20;
 
 /// A finger drawn from the prior, within 1.5 deviations.
 fn drawn(random: &mut Random) -> Finger {
-    let mut finger = Finger::mean(Place::Air);
+    let mut finger = Finger::mean(PlaceBeforeContact::Air);
     for (parameter, deviation) in PRIOR.iter().enumerate() {
         change(
             &mut finger,

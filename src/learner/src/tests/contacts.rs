@@ -11,7 +11,8 @@ use relaxation_fit::{Back, impedance};
 use super::random::Random;
 use super::simulation::*;
 use crate::{
-    Distrust, FluxSensor, Learner, LearnerOutput, PersonPrior, Place, Resistance, Restart, Trust,
+    Distrust, FluxSensor, Learner, LearnerOutput, PersonPrior, PlaceBeforeContact, Resistance,
+    Restart, Trust,
 };
 
 const FINGERS: u64 = 40;
@@ -24,12 +25,12 @@ pub fn sensor() -> FluxSensor {
 }
 
 /// A learner with that sensor of a finger at this place.
-pub fn new_learner(place: Place) -> Learner {
+pub fn new_learner(place: PlaceBeforeContact) -> Learner {
     learner_of(place, None)
 }
 
 /// A learner with that sensor of a finger at this place, of which this is known.
-pub fn learner_of(place: Place, person: Option<PersonPrior>) -> Learner {
+pub fn learner_of(place: PlaceBeforeContact, person: Option<PersonPrior>) -> Learner {
     let mut learner = Learner::new();
     learner.restart(Restart {
         place,

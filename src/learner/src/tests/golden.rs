@@ -7,7 +7,7 @@ use contact_model::fixed_point::Celsius;
 use documented_figures::run_generator;
 
 use super::contacts::new_learner;
-use crate::{Contact, Flux, LearnerInput, Place, Resistance, Trust};
+use crate::{ContactInput, Flux, LearnerInput, PlaceBeforeContact, Resistance, Trust};
 
 /// Largest difference, in prior deviations and prior variances: rounding of `f32`.
 const TOLERANCE: f64 = 5e-4;
@@ -22,21 +22,21 @@ fn committed_golden_values_are_those_that_the_generator_writes() {
 fn learner_follows_the_independent_estimator() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/contacts.csv");
     let mut rows = csv::Reader::from_path(path).expect("golden table");
-    let (mut finger, mut learner) = (String::new(), new_learner(Place::Air));
+    let (mut finger, mut learner) = (String::new(), new_learner(PlaceBeforeContact::Air));
     let (mut worst, mut windows) = (0.0f64, 0);
     for row in rows.records() {
         let row = row.expect("golden row");
         let number = |column: usize| row[column].parse::<f64>().expect("a number");
         let place = if &row[1] == "air" {
-            Place::Air
+            PlaceBeforeContact::Air
         } else {
-            Place::Pad
+            PlaceBeforeContact::Pad
         };
         if finger != row[0] {
             finger = row[0].into();
             learner = new_learner(place);
         }
-        let contact = (number(3) > 0.0).then(|| Contact {
+        let contact = (number(3) > 0.0).then(|| ContactInput {
             touching_ticks: number(3) as u8,
             skin_above_display_k: Celsius::from_bits(number(4) as i32),
             air_flux_w_m2: Flux::from_bits(number(5) as i32),

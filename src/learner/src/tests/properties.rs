@@ -9,12 +9,12 @@ use super::contacts::{learner_of, learnt, new_learner, sensor};
 use super::random::Random;
 use super::simulation::*;
 use crate::{
-    Contact, Distrust, Flux, FluxSensor, Learner, LearnerInput, LearnerOutput, PersonPrior, Place,
-    Resistance, Restart, Trust,
+    ContactInput, Distrust, Flux, FluxSensor, Learner, LearnerInput, LearnerOutput, PersonPrior,
+    PlaceBeforeContact, Resistance, Restart, Trust,
 };
 
-fn place() -> impl Strategy<Value = Place> {
-    prop_oneof![Just(Place::Air), Just(Place::Pad)]
+fn place() -> impl Strategy<Value = PlaceBeforeContact> {
+    prop_oneof![Just(PlaceBeforeContact::Air), Just(PlaceBeforeContact::Pad)]
 }
 
 /// Nothing, or any bytes.
@@ -33,7 +33,7 @@ fn bits() -> impl Strategy<Value = i32> {
     ]
 }
 
-fn contact() -> impl Strategy<Value = Contact> {
+fn contact() -> impl Strategy<Value = ContactInput> {
     (
         any::<u8>(),
         bits(),
@@ -43,13 +43,15 @@ fn contact() -> impl Strategy<Value = Contact> {
         any::<bool>(),
     )
         .prop_map(
-            |(touching_ticks, above, air, resistance, ticks_since_landing, is_steady)| Contact {
-                touching_ticks,
-                skin_above_display_k: Celsius::from_bits(above),
-                air_flux_w_m2: Flux::from_bits(air),
-                resistance_mm2k_w: Resistance::from_bits(resistance as u32),
-                ticks_since_landing,
-                is_steady,
+            |(touching_ticks, above, air, resistance, ticks_since_landing, is_steady)| {
+                ContactInput {
+                    touching_ticks,
+                    skin_above_display_k: Celsius::from_bits(above),
+                    air_flux_w_m2: Flux::from_bits(air),
+                    resistance_mm2k_w: Resistance::from_bits(resistance as u32),
+                    ticks_since_landing,
+                    is_steady,
+                }
             },
         )
 }
@@ -114,7 +116,7 @@ proptest! {
 
 /// Inputs of the mean finger on copper; of a dead sensor if it is not sound.
 fn inputs(is_sound: bool) -> Vec<LearnerInput> {
-    let finger = Finger::mean(Place::Air);
+    let finger = Finger::mean(PlaceBeforeContact::Air);
     let reported = |flux: f64, _| if is_sound { flux } else { 0.0 };
     let scene = Scene {
         finger: &finger,
@@ -136,7 +138,7 @@ const LIFTED: LearnerInput = LearnerInput {
 
 #[test]
 fn distrusted_finger_becomes_the_mean_one_until_the_next_landing() {
-    let mut learner = new_learner(Place::Air);
+    let mut learner = new_learner(PlaceBeforeContact::Air);
     let outputs: Vec<_> = inputs(false)
         .iter()
         .map(|input| *learner.advance(input))
@@ -165,7 +167,7 @@ fn distrusted_finger_becomes_the_mean_one_until_the_next_landing() {
     again[2].contact.as_mut().expect("a contact").is_steady = false;
     let again: Vec<_> = again.iter().map(|input| *learner.advance(input)).collect();
     // So all is as before the first contact.
-    let new = *new_learner(Place::Air).advance(&LIFTED);
+    let new = *new_learner(PlaceBeforeContact::Air).advance(&LIFTED);
     assert_eq!(again[2].trust, Trust::Learning);
     assert_eq!(
         (again[2].parameters, again[2].variances),
@@ -179,7 +181,7 @@ fn distrusted_finger_becomes_the_mean_one_until_the_next_landing() {
 
 #[test]
 fn finger_is_kept_between_contacts_with_wider_deviations_until_a_restart() {
-    let mut learner = new_learner(Place::Air);
+    let mut learner = new_learner(PlaceBeforeContact::Air);
     let new = *learner.clone().advance(&LIFTED);
     let last = (inputs(true).iter()).fold(new, |_, input| *learner.advance(input));
     let lifted = *learner.advance(&LIFTED);
@@ -197,7 +199,7 @@ fn finger_is_kept_between_contacts_with_wider_deviations_until_a_restart() {
     assert_eq!(learner.advance(&LIFTED).variances, lifted.variances);
     let restart = LearnerInput {
         restart: Some(Restart {
-            place: Place::Air,
+            place: PlaceBeforeContact::Air,
             sensor: sensor(),
             person: None,
         }),
@@ -216,7 +218,11 @@ fn finger_is_kept_between_contacts_with_wider_deviations_until_a_restart() {
 
 #[test]
 fn a_restart_brings_place_sensor_and_person() {
-    let (place, sensor, person) = (Place::Pad, sensor(), Some(PersonPrior([77; 20])));
+    let (place, sensor, person) = (
+        PlaceBeforeContact::Pad,
+        sensor(),
+        Some(PersonPrior([77; 20])),
+    );
     let (mut restarted, mut begun) = (Learner::new(), learner_of(place, person));
     let first = LearnerInput {
         restart: Some(Restart {
@@ -234,7 +240,7 @@ fn a_restart_brings_place_sensor_and_person() {
 
 #[test]
 fn windows_that_are_not_steady_change_nothing_that_is_learnt() {
-    let mut learner = new_learner(Place::Air);
+    let mut learner = new_learner(PlaceBeforeContact::Air);
     let first = *learner.advance(&LIFTED);
     for mut input in inputs(false) {
         if let Some(contact) = &mut input.contact {
@@ -252,7 +258,7 @@ fn windows_that_are_not_steady_change_nothing_that_is_learnt() {
 /// The flux is unknown in one window of a contact: from then on the banks are wrong.
 #[test]
 fn contact_with_an_unknown_flux_ends_in_the_mean_finger() {
-    let mut learner = new_learner(Place::Air);
+    let mut learner = new_learner(PlaceBeforeContact::Air);
     for (window, input) in inputs(true).iter().enumerate() {
         let flux_w_m2 = input.flux_w_m2.filter(|_| window != 40);
         let trust = learner
@@ -268,7 +274,7 @@ fn contact_with_an_unknown_flux_ends_in_the_mean_finger() {
 
 #[test]
 fn wet_finger_keeps_its_low_resistance() {
-    let mut finger = Finger::mean(Place::Air);
+    let mut finger = Finger::mean(PlaceBeforeContact::Air);
     finger.resistance_factor = 0.3;
     let mut seen = 0;
     for object in OBJECTS {

@@ -14,7 +14,7 @@ use relaxation_fit::Layer;
 use relaxation_fit::fingers::MEAN_LAYERS;
 
 use super::random::Random;
-use crate::{Contact, Flux, LearnerInput, Place, Resistance};
+use crate::{ContactInput, Flux, LearnerInput, PlaceBeforeContact, Resistance};
 
 pub const SKIN_C: f64 = 34.0;
 pub const ROOM_C: f64 = 24.0;
@@ -178,7 +178,7 @@ pub struct Finger {
     /// Blood flow in contact, over that before.
     pub flow: f64,
     pub film_w_m2k: f64,
-    pub place: Place,
+    pub place: PlaceBeforeContact,
     pub resistance_factor: f64,
     /// Skin less what its thermistor says, K.
     pub skin_offset_k: f64,
@@ -186,13 +186,13 @@ pub struct Finger {
 
 impl Finger {
     /// The mean finger, which the device assumes.
-    pub fn mean(place: Place) -> Self {
+    pub fn mean(place: PlaceBeforeContact) -> Self {
         Self {
             layers: MEAN_LAYERS.into(),
             flow: 0.0,
             film_w_m2k: match place {
-                Place::Air => 10.0,
-                Place::Pad => 1.75,
+                PlaceBeforeContact::Air => 10.0,
+                PlaceBeforeContact::Pad => 1.75,
             },
             place,
             resistance_factor: 1.0,
@@ -226,9 +226,9 @@ impl Finger {
             layer.capacity_j_m3k *= effusivity_factor;
         }
         let place = if random.between(0.0, 1.0) < 0.5 {
-            Place::Air
+            PlaceBeforeContact::Air
         } else {
-            Place::Pad
+            PlaceBeforeContact::Pad
         };
         Self {
             layers,
@@ -238,8 +238,8 @@ impl Finger {
                 1.0
             },
             film_w_m2k: match place {
-                Place::Air => random.between(5.0, 15.0),
-                Place::Pad => random.between(0.5, 3.0),
+                PlaceBeforeContact::Air => random.between(5.0, 15.0),
+                PlaceBeforeContact::Pad => random.between(0.5, 3.0),
             },
             place,
             resistance_factor: 2f64.powf(random.between(-1.0, 1.0)),
@@ -431,7 +431,7 @@ impl Scene<'_> {
                 let mean = |of: fn(&(f64, f64)) -> f64| {
                     touching.iter().map(|one| of(one)).sum::<f64>() / 10.0
                 };
-                let contact = (!touching.is_empty()).then(|| Contact {
+                let contact = (!touching.is_empty()).then(|| ContactInput {
                     touching_ticks: touching.len() as u8,
                     skin_above_display_k: Celsius::from_num(mean(|one| one.1)),
                     air_flux_w_m2: Flux::from_num(air_w_m2),

@@ -150,8 +150,8 @@ fn another_finger_is_assumed_at_once_and_learnt_from_the_next_window_on() {
         }
         if let Some(input) = station.take_learner_input() {
             let place = match tick {
-                9 => Some(Place::Air),
-                49 => Some(Place::Pad),
+                9 => Some(PlaceBeforeContact::Air),
+                49 => Some(PlaceBeforeContact::Pad),
                 _ => None,
             };
             let restarted = input.restart.map(|restart| restart.place);
