@@ -4,11 +4,12 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use super::device::arm;
+use super::device::{arm, samples};
+use crate::commissioning::StorageOrder;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, FingerIndex};
 use crate::protocol::CommandHandler;
-use crate::settings::Settings;
+use crate::settings::{Settings, decode_settings_record};
 
 /// Lines that hold all commissioned settings, as a device reports them.
 const SETTINGS: [&str; 8] = [
@@ -45,6 +46,17 @@ impl<const FINGERS: usize> Bench<FINGERS> {
         answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }
 
+    /// A device that has started with what this one stores.
+    pub fn restarted(&self) -> Self {
+        let record = self.handler.record_to_save_or_forget(StorageOrder::Save);
+        let stored = decode_settings_record::<FINGERS>(&record).expect("a valid record");
+        let stored = stored.expect("settings rather than factory defaults");
+        let mut restarted = Self::new();
+        restarted.handler = CommandHandler::from_stored(&stored);
+        restarted.device.restore_settings(&stored.fingers);
+        restarted
+    }
+
     /// The answers that report the settings of the finger that `address` names.
     fn settings(&mut self, address: &str) -> Vec<String> {
         (1..=8)
@@ -74,6 +86,19 @@ impl<const FINGERS: usize> Bench<FINGERS> {
                 self.device.step_finger(finger, &samples);
             }
         }
+    }
+}
+
+impl Bench<1> {
+    /// An armed device.
+    pub fn armed() -> Self {
+        let mut one = Self::new();
+        for tick in 0..10 {
+            one.device
+                .step_finger(FingerIndex::FIRST, &samples(tick % 2));
+        }
+        arm(&mut one.device, FingerIndex::FIRST);
+        one
     }
 }
 

@@ -9,7 +9,6 @@ use super::commissioning::Bench;
 use super::device::samples;
 use crate::commissioning::StorageOrder;
 use crate::device::FingerIndex;
-use crate::protocol::CommandHandler;
 use crate::settings::decode_settings_record;
 
 const SENSOR: &str = "flux set 0.1192 2048 5 30";
@@ -205,12 +204,7 @@ fn stored_persons_are_there_after_a_restart_and_gone_after_a_forget() {
     let mut two = Bench::<2>::new();
     two.send(&format!("person P07 {DATA}"));
     two.send(&format!("person P08 {DATA}"));
-    let record = two.handler.record_to_save_or_forget(StorageOrder::Save);
-    let stored = decode_settings_record::<2>(&record).expect("a valid record");
-    let stored = stored.expect("settings rather than factory defaults");
-    let mut restarted = Bench::<2>::new();
-    restarted.handler = CommandHandler::from_stored(&stored);
-    assert_eq!(restarted.send("persons"), "ok persons=P07,P08");
+    assert_eq!(two.restarted().send("persons"), "ok persons=P07,P08");
     let record = two.handler.record_to_save_or_forget(StorageOrder::Forget);
     assert_eq!(decode_settings_record::<2>(&record), Ok(None));
 }

@@ -3,22 +3,14 @@
 use std::string::String;
 
 use super::commissioning::Bench;
-use super::device::{arm, samples};
-use crate::commissioning::StorageOrder;
+use super::device::samples;
 use crate::device::FingerIndex;
-use crate::protocol::CommandHandler;
-use crate::settings::decode_settings_record;
 
 const NOMINAL: &str = "ok conductivity_w_mk=36.000 roughness_um=1.0000 slope_rad=0.13800";
 
 /// The set-point at which an armed finger 0 waits, C, after these lines.
 fn waits_at_c(lines: &[&str]) -> f64 {
-    let mut one = Bench::<1>::new();
-    for tick in 0..10 {
-        one.device
-            .step_finger(FingerIndex::FIRST, &samples(tick % 2));
-    }
-    arm(&mut one.device, FingerIndex::FIRST);
+    let mut one = Bench::armed();
     for line in lines.iter().chain(&["start"]) {
         assert_eq!(one.send(line), "ok", "{line}");
     }
@@ -69,16 +61,16 @@ fn a_surface_is_set_by_either_line_reported_and_made_nominal() {
 }
 
 #[test]
-fn the_display_waits_for_the_ratio_of_its_surface_whether_told_before_or_after_the_material() {
+fn the_display_waits_for_the_ratio_of_its_surface_whether_set_before_or_after_the_material() {
     let granite = [2.79, 0.46, 0.048];
-    let told = [1.2, 4.0, 0.05];
+    let rough = [1.2, 4.0, 0.05];
     let surface = "surface set 1.2 4 0.05";
     let contact = ["finger thesis", "skin 34", "object 20", "material granite"];
     let nominal = waits_at_c(&contact);
     let before = waits_at_c(&[&[surface], &contact[..]].concat());
     let after = waits_at_c(&[&contact[..], &[surface]].concat());
     assert_eq!(before, after);
-    for (waits, display) in [(nominal, [36.0, 1.0, 0.138]), (before, told)] {
+    for (waits, display) in [(nominal, [36.0, 1.0, 0.138]), (before, rough)] {
         // Eq. 6-12 at landing.
         let expected = 34.0 - ratio(granite, display) * (34.0 - 20.0);
         assert!((waits - expected).abs() < 0.01, "{waits} for {expected}");
@@ -105,12 +97,7 @@ fn a_material_without_an_address_is_chosen_for_each_surface() {
 
 #[test]
 fn a_surface_is_refused_while_an_object_is_presented_and_with_a_material_that_it_does_not_suit() {
-    let mut one = Bench::<1>::new();
-    for tick in 0..10 {
-        one.device
-            .step_finger(FingerIndex::FIRST, &samples(tick % 2));
-    }
-    arm(&mut one.device, FingerIndex::FIRST);
+    let mut one = Bench::armed();
     assert_eq!(one.send("material custom 4000 8000 400 0.1 1.5"), "ok");
     let refused = one.send("surface set 0.2 30 0.001");
     let expected = "err R_display / R_object is ";
@@ -131,12 +118,7 @@ fn a_surface_is_refused_while_an_object_is_presented_and_with_a_material_that_it
 fn a_stored_surface_is_there_after_a_restart() {
     let mut two = Bench::<2>::new();
     assert_eq!(two.send("@1 surface set 30 1.25 0.11"), "@1 ok");
-    let record = two.handler.record_to_save_or_forget(StorageOrder::Save);
-    let stored = decode_settings_record::<2>(&record).expect("a valid record");
-    let stored = stored.expect("settings rather than factory defaults");
-    let mut restarted = Bench::<2>::new();
-    restarted.handler = CommandHandler::from_stored(&stored);
-    restarted.device.restore_settings(&stored.fingers);
+    let mut restarted = two.restarted();
     let line = "@1 ok conductivity_w_mk=30.000 roughness_um=1.2500 slope_rad=0.11000";
     assert_eq!(restarted.send("@1 surface"), line);
     assert_eq!(restarted.send("@0 settings"), "@0 ok lines=8");
