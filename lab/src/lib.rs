@@ -6,6 +6,7 @@ pub mod bring_up;
 pub mod contact;
 pub mod enrolment;
 pub mod link;
+pub mod step_screen;
 pub mod terminal_people;
 pub mod watched;
 

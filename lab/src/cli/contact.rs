@@ -9,7 +9,8 @@ use clap::Args;
 use contact_law_fit::{Measurement, MeasurementOptions, Sample, Step, fit, force_n, measure};
 use thermal_client::client::{Client, PlainCommand};
 use thermal_client::link::Link;
-use thermal_lab::contact::{Report, Screen};
+use thermal_lab::contact::Report;
+use thermal_lab::step_screen::StepScreen;
 use thermal_settings::PersonCode;
 
 use super::{Failure, Target, enrol, print_text};
@@ -35,7 +36,7 @@ pub struct Arguments {
 
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let mut out = stderr();
-    let mut screen = Screen::new(&mut out);
+    let mut screen = StepScreen::new(&mut out);
     if target.simulated {
         // The simulated finger follows the ramps exactly.
         return target.with_device_of_scene("contact", |client| {

@@ -10,7 +10,8 @@ use clap::Args;
 use serde::{Deserialize, Serialize};
 use thermal_client::client::{Client, PlainCommand, QueryBoard, QueryDisplaySurface, person_data};
 use thermal_client::link::Link;
-use thermal_lab::enrolment::{EnrolmentOptions, Screen, Step, enrol};
+use thermal_lab::enrolment::{EnrolmentOptions, Step, enrol};
+use thermal_lab::step_screen::StepScreen;
 use thermal_settings::{Person, PersonCode};
 
 use super::{Failure, Target, print_text};
@@ -75,7 +76,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::input(problem));
     }
     let mut out = stderr();
-    let mut screen = Screen::new(&mut out);
+    let mut screen = StepScreen::new(&mut out);
     if target.simulated {
         // The simulated finger does what is asked.
         return target.with_device_of_scene("enrol", |client| {

@@ -5,4 +5,3 @@ mod report;
 mod screen;
 
 pub use report::Report;
-pub use screen::Screen;

@@ -1,70 +1,41 @@
 //! What the person at the display sees while the contact law is measured.
 
-use std::io::Write;
+use std::borrow::Cow;
 
 use contact_law_fit::{Step, TOTAL_S};
+
+use crate::step_screen::{ShownStep, force_text};
 
 /// Places of the bar, and the forces at its ends, N.
 const PLACES: usize = 48;
 const ENDS_N: (f64, f64) = (0.05, 4.0);
-/// Calls between two lines of readings; a call comes every 10 ms.
-const CALLS_PER_LINE: u32 = 5;
 
-/// A terminal.
-pub struct Screen<'a> {
-    out: &'a mut dyn Write,
-    /// What was said last; a step is said once.
-    said: Option<&'static str>,
-    calls: u32,
-}
-
-impl<'a> Screen<'a> {
-    /// A terminal that shows nothing yet.
-    pub fn new(out: &'a mut dyn Write) -> Self {
-        Self {
-            out,
-            said: None,
-            calls: 0,
-        }
-    }
-
-    /// Shows a step; to be called for each.
-    pub fn show(&mut self, step: &Step) {
-        let text = match step {
-            Step::Lift => "Take the finger off the display, and touch nothing.",
-            Step::Wait(_) => "The display goes to 24 C. Keep the finger in still air.",
-            Step::Land => {
+impl ShownStep for Step {
+    fn instruction(&self) -> Cow<'static, str> {
+        match self {
+            Self::Lift => "Take the finger off the display, and touch nothing.",
+            Self::Wait(_) => "The display goes to 24 C. Keep the finger in still air.",
+            Self::Land => {
                 "When the finger has been in still air for three minutes: land lightly, with 0.1 N, and keep * at |."
             }
-            Step::Follow { .. } => "Up in 4 s, down in 4 s, up in 6 s, down in 6 s.",
-            Step::End => "Thank you. Lift the finger.",
-        };
-        if self.said != Some(text) {
-            self.tell(&format!("\n{text}\n"));
-            (self.said, self.calls) = (Some(text), 0);
+            Self::Follow { .. } => "Up in 4 s, down in 4 s, up in 6 s, down in 6 s.",
+            Self::End => "Thank you. Lift the finger.",
         }
-        self.calls += 1;
-        if self.calls % CALLS_PER_LINE != 1 {
-            return;
-        }
-        match step {
-            Step::Wait(Some(surface_c)) => self.tell(&format!("\r  display {surface_c:5.2} C ")),
-            Step::Follow { since_s, force_n } => {
-                let target_n = step.target_n();
-                let force = force_n.map_or("    -".into(), |force_n| format!("{force_n:5.2}"));
-                let bar = bar(target_n, *force_n);
-                self.tell(&format!(
-                    "\r {since_s:5.1} of {TOTAL_S:.0} s  {target_n:5.2} N asked, {force} N  {bar}"
-                ));
-            }
-            _ => {}
-        }
+        .into()
     }
 
-    fn tell(&mut self, text: &str) {
-        // What is on the screen changes nothing of the measurement.
-        let _ignored = self.out.write_all(text.as_bytes());
-        let _ignored = self.out.flush();
+    fn readings(&self) -> Option<String> {
+        match self {
+            Self::Wait(Some(surface_c)) => Some(format!(" display {surface_c:5.2} C ")),
+            Self::Follow { since_s, force_n } => {
+                let target_n = self.target_n();
+                let (force, bar) = (force_text(*force_n), bar(target_n, *force_n));
+                Some(format!(
+                    "{since_s:5.1} of {TOTAL_S:.0} s  {target_n:5.2} N asked, {force} N  {bar}"
+                ))
+            }
+            _ => None,
+        }
     }
 }
 
@@ -85,6 +56,7 @@ fn bar(target_n: f64, force_n: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::step_screen::StepScreen;
 
     #[test]
     fn the_bar_is_logarithmic_and_keeps_its_ends() {
@@ -100,7 +72,7 @@ mod tests {
     #[test]
     fn a_step_is_said_once_and_readings_are_shown() {
         let mut out = Vec::new();
-        let mut screen = Screen::new(&mut out);
+        let mut screen = StepScreen::new(&mut out);
         for _ in 0..20 {
             screen.show(&Step::Lift);
         }

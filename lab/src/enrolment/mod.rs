@@ -14,8 +14,6 @@ use thermal_client::link::{Link, LinkError};
 use thermal_device::learning::FingerKnowledge;
 use thermal_settings::PersonCode;
 
-pub use screen::Screen;
-
 /// Length of a contact, s: the device stores what it has learnt from contacts of 8 s or more.
 pub const CONTACT_S: f64 = 10.0;
 /// Time in still air before each contact, s, in which the skin recovers from the last one.
