@@ -97,7 +97,7 @@ pub enum MeasurementError {
     #[error("the display cannot be driven: {0}")]
     NotArmed(#[from] CommissionError),
     /// There is no heat-flux sensor.
-    #[error("the device has no heat-flux sensor, or was not told of it (`flux set`)")]
+    #[error("the device has no heat-flux sensor, or none is set (`flux set`)")]
     NoSensor,
     /// The sensor cannot be right.
     #[error(
@@ -179,11 +179,10 @@ pub fn measure<L: Link>(
     }
     .record(options);
     // Also after a failure: the bridge may be driven.
-    let off = client.ask_finger(options.finger, &PlainCommand::Abort);
-    let no_stream = client.ask_finger(options.finger, &PlainCommand::stream(0));
+    let ended = client.abort_and_end_stream(options.finger);
     let no_events = client.ask_finger(options.finger, &PlainCommand::Events(false));
     let recording = recorded?;
-    off.and(no_stream).and(no_events)?;
+    ended.and(no_events)?;
     recording.check()?;
     let force_tracking = ForceTracking::of(&recording)?;
     Ok(Measurement {

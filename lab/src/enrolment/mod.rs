@@ -62,11 +62,11 @@ pub enum EnrolmentError {
     #[error("the display cannot be driven: {0}")]
     NotArmed(#[from] CommissionError),
     /// There is no heat-flux sensor.
-    #[error("the device has no heat-flux sensor, or was not told of it (`flux set`)")]
+    #[error("the device has no heat-flux sensor, or none is set (`flux set`)")]
     NoSensor,
-    /// The device was told of a measured contact law.
+    /// A measured contact law is set.
     #[error(
-        "the device was told of a contact law; what is learnt of a person holds with the nominal one only (`contact nominal`)"
+        "a contact law is set; what is learnt of a person holds with the nominal one only (`contact nominal`)"
     )]
     OtherContactLaw,
     /// Telemetry does not come.
@@ -127,10 +127,9 @@ pub fn enrol<L: Link>(
     }
     .enrol(options);
     // Also after a failure: the bridge may be driven.
-    let off = client.ask_finger(finger, &PlainCommand::Abort);
-    let quiet = client.ask_finger(finger, &PlainCommand::stream(0));
+    let ended = client.abort_and_end_stream(finger);
     let report = done?;
-    off.and(quiet)?;
+    ended?;
     Ok(report)
 }
 

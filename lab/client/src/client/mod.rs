@@ -272,7 +272,7 @@ impl<L: Link> Client<L> {
         Ok(())
     }
 
-    /// The heat-flux sensor of which the finger's device was told, its flux and what is known by it; `None` without one, and from
+    /// The heat-flux sensor that is set for the finger, its flux and what is known of the finger by it; `None` without one, and from
     /// firmware from before there was one.
     ///
     /// # Errors
@@ -282,6 +282,16 @@ impl<L: Link> Client<L> {
             Err(error) if error.refusal().is_some() => Ok(None),
             report => report,
         }
+    }
+
+    /// Switches the finger's bridge off and ends its telemetry: each also if the device refuses the other.
+    ///
+    /// # Errors
+    /// As [`ask`](Self::ask).
+    pub fn abort_and_end_stream(&mut self, finger: Option<u8>) -> Result<(), ClientError> {
+        let off = self.ask_finger(finger, &PlainCommand::Abort);
+        let no_stream = self.ask_finger(finger, &PlainCommand::stream(0));
+        off.and(no_stream)
     }
 
     /// The next telemetry line of this finger, or of any for `None`; waits for each line at most `timeout`. A device with one finger

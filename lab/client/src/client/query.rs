@@ -53,7 +53,7 @@ queries! {
     /// The finger that the device assumes.
     QueryAssumedFinger = "finger" => AssumedFinger,
         |reply: &Fields<'_>| in_table(&AssumedFinger::PROTOCOL_WORDS, reply.word("finger")?);
-    /// The contact law that the device was told of.
+    /// The contact law that is set.
     QueryContactLaw = "contact" => ContactLaw, |reply: &Fields<'_>| Some(ContactLaw {
         exponent: reply.number("exponent")?,
         hardness_pa: reply.number("hardness_pa")?,

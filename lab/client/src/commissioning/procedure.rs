@@ -49,7 +49,7 @@ const ROOM_C: [f64; 5] = [17.7, 20.5, 23.5, 26.7, 30.5];
 const SINK_C: [f64; 5] = [17.7, 23.5, 29.3, 35.0, 40.7];
 
 /// Calibrates all sensors of a device, or of one of its fingers, in its place of use, and makes it tune itself and store the
-/// result. A heat-flux sensor is among them if the device was told of it. If anything fails, the bridge is switched off.
+/// result. A heat-flux sensor is among them if one is set. If anything fails, the bridge is switched off.
 ///
 /// # Errors
 /// The device cannot be commissioned, or the person has ended the procedure.

@@ -114,7 +114,7 @@ impl fmt::Display for FluxCalibration {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FluxCalibrationError {
     /// There is no sensor.
-    #[error("the device has no heat-flux sensor, or was not told of it (`flux set`)")]
+    #[error("the device has no heat-flux sensor, or none is set (`flux set`)")]
     NoSensor,
     /// The sensor's code cannot be right.
     #[error("the heat-flux sensor's code is at a rail or does not change: look at its wires")]
@@ -201,11 +201,10 @@ pub fn calibrate_flux<L: Link>(
     };
     let calibrated = session.calibrate();
     // Also after a failure. A link that is gone fails here, too.
-    let off = client.ask_finger(finger, &PlainCommand::Abort);
-    let quiet = client.ask_finger(finger, &PlainCommand::stream(0));
+    let ended = client.abort_and_end_stream(finger);
     match calibrated {
         Ok((sensor, calibration)) => {
-            off.and(quiet)?;
+            ended?;
             client.ask_finger(finger, &PlainCommand::FluxSensor(Some(sensor)))?;
             surroundings.move_phantom(client, PhantomPlace::Away)?;
             Ok(calibration)
