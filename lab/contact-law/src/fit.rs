@@ -71,7 +71,7 @@ pub struct Fit {
     pub gap_interval_w_m2k: Interval,
     /// Weighted sum of squares without a gap less that with one. The gap is kept if this is more than 9.
     pub chi2_reduction_by_gap: f64,
-    /// Root of the mean square of what is left, K.
+    /// RMS of the residuals, K.
     pub residual_k: f64,
 }
 
@@ -114,7 +114,7 @@ impl Problem {
         }
     }
 
-    /// Normal equations of the next step, and the sum of squares; each ramp counts so many times.
+    /// Normal equations of the next step, and the sum of squares, in which each ramp counts `times` times.
     fn normal(
         &self,
         unknowns: &Unknowns,
@@ -211,7 +211,7 @@ impl Problem {
     }
 }
 
-/// How often each of the ramps counts in each resample of four out of four, and how likely the resample is.
+/// The resamples of four ramps out of four: how often each has each ramp, and its probability.
 fn resamples() -> impl Iterator<Item = ([f64; RAMPS], f64)> {
     let factorial = |n: usize| (1..=n).product::<usize>() as f64;
     (0..(RAMPS + 1).pow(RAMPS as u32)).filter_map(move |code| {
@@ -227,9 +227,10 @@ fn resamples() -> impl Iterator<Item = ([f64; RAMPS], f64)> {
     })
 }
 
-/// Mean and standard deviation of weighted values become an interval around the fitted one.
+/// The interval around a fitted value, from its values in resamples and their probabilities.
 fn interval(fitted: f64, values: impl Iterator<Item = (f64, f64)> + Clone) -> Interval {
-    /// Two-sided 95 % of Student's t with three degrees of freedom, and the loss of one of four by the mean.
+    /// Two-sided 95 % of Student's t with three degrees of freedom, times `sqrt(4/3)`, by which resamples of four values
+    /// underestimate the deviation.
     const HALF_WIDTH_PER_DEVIATION: f64 = 3.182 * 1.1547;
     let mean: f64 = values.clone().map(|(value, weight)| weight * value).sum();
     let variance: f64 = values

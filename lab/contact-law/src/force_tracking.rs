@@ -3,23 +3,22 @@
 use crate::ramps::{RAMPS, force_n, ramp_at};
 use crate::recording::Recording;
 
-/// Forces that each ramp must have reached below and above, N: half of its way in the logarithm, and the two at which a gap and
-/// the spots are told apart.
+/// Forces below and above which each ramp must go, N: half of the ramp in the logarithm, over which the conductance of a gap and that of
+/// the spots differ enough to be separated.
 const REACHED_N: (f64, f64) = (0.2, 1.0);
-/// Largest root of the mean square of the logarithm of the force over that which was asked: a person who is off by more has done
-/// something else.
+/// Largest RMS of the logarithm of the force over its target; above it the person did not follow the ramps.
 const LOG_RMS_MAX: f64 = 0.4;
 
 /// How closely a force has followed the target of the ramps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceTracking {
-    /// Typical deviation of the force from that which was asked, %.
+    /// Typical deviation of the force from its target, %.
     pub deviation_percent: f64,
     /// Least and largest force of each ramp, N.
     pub reached_n: [(f64, f64); RAMPS],
 }
 
-/// In what a force has not followed the ramps.
+/// How a force did not follow the ramps.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ForceTrackingError {
     /// A ramp did not reach far enough.

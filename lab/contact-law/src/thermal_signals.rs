@@ -1,4 +1,4 @@
-//! What the flux out of the skin does to its surface, by the tissue of the mean finger and its two components.
+//! Temperature of the skin's surface under the measured flux, by the tissue of the mean finger and its two components.
 
 use contact_model::finger::{COMPONENTS, MEAN};
 use contact_model::impedance::Relaxation;

@@ -122,9 +122,9 @@ fn fingers_with_a_gap_are_measured_at_a_device() {
     assert_measured("gap", "", true);
 }
 
-/// A display of glazed ceramic, of which the device was told: the law must give the plant's resistance on that surface.
+/// A display of glazed ceramic that was set in the device: the law must give the plant's resistance on that surface.
 #[test]
-fn law_is_relative_to_the_surface_that_the_device_was_told_of() {
+fn law_is_relative_to_the_surface_that_is_set() {
     let glazed = "contact.gap_w_m2k = 0.0\ndisplay.conductivity_w_mk = 1.0\ndisplay.roughness_um = 1.0\ndisplay.slope_rad = 0.138\n";
     let scene = scene(0, glazed);
     let recording = with_device(&scene, |client| {

@@ -28,7 +28,7 @@ pub struct Arguments {
     /// simulated there, and nobody is asked
     #[arg(long, value_name = "ADDR")]
     surroundings: Option<String>,
-    /// Calibrate only the heat-flux sensor, with a phantom: of a device that is commissioned otherwise and was told of it
+    /// Calibrate only the heat-flux sensor, with a phantom: of a device that is commissioned otherwise and has one set
     #[arg(long)]
     only_flux_sensor: bool,
     /// Print one JSON object: points, tile with margins, heat-flux sensor, settings

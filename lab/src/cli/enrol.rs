@@ -61,7 +61,7 @@ struct PersonFile {
     device: Option<String>,
     #[serde(default)]
     objects: Vec<String>,
-    /// Surface of the display that the device was told of, as on the line `surface set`: the factor on the contact resistance was
+    /// Surface of the display that was set, as on the line `surface set`: the factor on the contact resistance was
     /// learnt with it.
     #[serde(default)]
     display_surface: Option<String>,

@@ -11,7 +11,7 @@ use super::{Failure, print_text};
 
 #[derive(Args)]
 pub struct Arguments {
-    /// In place of all else, in which per cent of trials the touches of this file are told from touches of the objects themselves:
+    /// Print only the per cent correct in discriminating the touches of this file from touches of the objects themselves:
     /// populations.csv of `hil-sim fidelity --out`
     #[arg(long, value_name = "CSV")]
     touches: Option<PathBuf>,
@@ -49,7 +49,7 @@ struct Line {
     skin_max_after_500ms_mk: f64,
 }
 
-/// The touches whose device was told of object and finger.
+/// The touches whose object and finger were described to the device.
 fn read(file: &Path) -> anyhow::Result<Vec<RenderedTouch>> {
     let context = |problem: csv::Error| anyhow::anyhow!("{}: {problem}", file.display());
     let mut touches = Vec::new();

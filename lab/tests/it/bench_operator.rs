@@ -161,14 +161,6 @@ impl<'b> Surroundings<Bench<'b>> for WrongBath {
         Ok(if is_skin { shown_c + 8.0 } else { shown_c })
     }
 
-    fn put_probe_on_display(
-        &mut self,
-        _client: &mut Client<Bench<'b>>,
-        _on: bool,
-    ) -> Result<(), SurroundingsError> {
-        Ok(())
-    }
-
     fn put_into_bath(
         &mut self,
         client: &mut Client<Bench<'b>>,

@@ -1,7 +1,7 @@
-//! Per cent of trials in which touches on a display are told from touches of the objects themselves.
+//! Per cent correct in discriminating a touch on a display from a touch of the object itself.
 //!
-//! A lasting difference of the largest error of the skin is assumed, so that the per cent are upper bounds: the error is smaller at
-//! most times, and at the depth of the receptors.
+//! The largest error of the skin is assumed to last for the whole touch, so that the results are upper bounds: the error is smaller most
+//! of the time, and at the depth of the receptors.
 
 use std::fmt;
 
