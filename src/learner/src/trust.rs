@@ -1,6 +1,6 @@
 //! Whether the measured flux fits any finger on the display.
 
-use crate::parameters::{FIRST_COMPONENT, Parameters, RESISTANCE, Scale};
+use crate::parameters::{FIRST_COMPONENT, Parameters, RESISTANCE, SKIN, Scale};
 use crate::regressors::Measurement;
 
 /// Why a contact is not learnt from: the most likely cause, since the learner sees the flux only.
@@ -51,6 +51,9 @@ const AT_LIMIT_IN_A_ROW: u8 = 30;
 /// Least ratio of the square of a parameter's regressor to the variance of the measurement's error in a quiet contact. Below it the
 /// measurement hardly depends on the parameter, so that its limit does not count; nor does it under a light force.
 const SENSITIVITY_MIN: f32 = 4.0;
+/// Error of the skin's thermistor, in prior deviations, above which the limit of the first component counts at any sensitivity: a small
+/// flux that is missing or reversed late in a contact looks like both.
+const SKIN_MAX: f32 = 2.0;
 /// Least temperature difference, K, of which the part that the measured flux explains is computed.
 const DROP_MIN_K: f32 = 1.0;
 /// Least part of the temperature difference that the measured flux explains in the mean finger; below it the flux is missing.
@@ -119,9 +122,10 @@ impl Judge {
             INNOVATION_MAX
         };
         let is_strange = self.filtered_innovation > largest;
-        let limit = |index: usize| {
+        let sensitive_k2 = SENSITIVITY_MIN * error_k2;
+        let limit = |index: usize, least_k2: f32| {
             let regressor_k = measurement.regressors[index];
-            if is_light || regressor_k * regressor_k < SENSITIVITY_MIN * error_k2 {
+            if is_light || regressor_k * regressor_k < least_k2 {
                 None
             } else if parameters[index] == scale.low[index] {
                 Some(Limit::Low)
@@ -131,9 +135,11 @@ impl Judge {
                 None
             }
         };
-        let resistance = limit(RESISTANCE);
+        let resistance = limit(RESISTANCE, sensitive_k2);
+        let is_skin_strange = !(-SKIN_MAX..=SKIN_MAX).contains(&parameters[SKIN]);
+        let component_k2 = if is_skin_strange { 0.0 } else { sensitive_k2 };
         // The second component may be at its limit: it is small, and takes up whatever else differs in a finger.
-        let is_at_limit = resistance.is_some() || limit(FIRST_COMPONENT).is_some();
+        let is_at_limit = resistance.is_some() || limit(FIRST_COMPONENT, component_k2).is_some();
         if counted(&mut self.strange_innovations, is_strange) >= STRANGE_IN_A_ROW {
             self.distrust(self.cause(explained(measurement), ticks, resistance));
         } else if counted(&mut self.at_limit, is_at_limit) >= AT_LIMIT_IN_A_ROW {

@@ -274,7 +274,7 @@ impl Fault {
     fn distrust(
         &self,
         finger: &Finger,
-        (object, force_n): (Object, f64),
+        (object, force_n, ticks): (Object, f64, usize),
         random: &mut Random,
     ) -> Option<(Distrust, usize)> {
         let mut finger = finger.clone();
@@ -283,7 +283,7 @@ impl Fault {
             finger: &finger,
             object,
             force_n,
-            ticks: 1500,
+            ticks,
             errors: Errors::drawn(random),
             reported: &self.reported,
         };
@@ -303,7 +303,7 @@ impl Fault {
             let mut random = Random(1000 + seed);
             let finger = Finger::drawn(&mut random);
             for object in OBJECTS {
-                let found = self.distrust(&finger, (object, 2.0), &mut random);
+                let found = self.distrust(&finger, (object, 2.0, 1500), &mut random);
                 if object.name == "foam" {
                     on_foam += usize::from(found.is_some());
                     continue;
@@ -341,6 +341,44 @@ fn what_is_no_finger_on_the_display_is_distrusted() {
             on_foam >= fault.on_foam,
             "{}: {on_foam} on foam",
             fault.name
+        );
+    }
+}
+
+/// On foam 2 s after landing the model may be off by 0.13 K, and a wrong flux makes no more. No innovation is strange, and the flux tells
+/// no parameter: but the finger that fits it is none.
+#[test]
+fn small_flux_that_becomes_wrong_late_in_a_contact_is_distrusted() {
+    type Reported = fn(f64, usize) -> f64;
+    let reversed: Reported = |flux, tick| if tick < 2000 { flux } else { -flux };
+    let missing: Reported = |flux, tick| if tick < 2000 { flux } else { 0.0 };
+    let foam = OBJECTS.into_iter().find(|object| object.name == "foam");
+    for (name, reported, contacts, within_ticks) in [
+        ("reversed", reversed, 8, 10_000),
+        ("missing", missing, 5, 18_000),
+    ] {
+        let fault = Fault {
+            name,
+            change: NO_CHANGE,
+            reported,
+            from_tick: 2000,
+            distrust: None,
+            within_ticks,
+            contacts,
+            on_foam: 0,
+        };
+        let mut found = Vec::new();
+        for seed in 0..FOOLED {
+            let mut random = Random(3000 + seed);
+            let finger = Finger::drawn(&mut random);
+            let contact = (foam.expect("foam"), 2.0, 20_000);
+            found.extend(fault.distrust(&finger, contact, &mut random));
+        }
+        println!("foam, {name} after 2 s: {found:?}");
+        assert!(found.len() >= contacts, "{name}: {found:?}");
+        assert!(
+            found.iter().all(|(_, tick)| *tick <= within_ticks),
+            "{name}: {found:?}"
         );
     }
 }
@@ -390,7 +428,7 @@ fn wrong_flux_is_distrusted_under_light_force() {
             let mut random = Random(2000 + seed);
             let finger = Finger::drawn(&mut random);
             for object in OBJECTS.into_iter().filter(|object| object.name != "foam") {
-                let found = fault.distrust(&finger, (object, 0.1), &mut random);
+                let found = fault.distrust(&finger, (object, 0.1, 1500), &mut random);
                 let (_, tick) =
                     found.unwrap_or_else(|| panic!("{name}, finger {seed}, {object:?}"));
                 ticks = ticks.max(tick);
