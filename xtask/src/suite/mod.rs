@@ -203,6 +203,8 @@ fn whole(
                     title: "image on the emulated microcontroller",
                     commands: tests(on_image),
                 },
+                // It waits for devices in real time, so while the other lane has enough to do.
+                package(python),
                 check("fuzzers: inputs of the repository, 2 s a target", [&fuzz]),
                 Check {
                     title: "circuits",
@@ -212,7 +214,6 @@ fn whole(
                     title: "tests for a bare board, on the emulated one",
                     commands: Ok(vec![on_target]),
                 },
-                package(python),
                 Check {
                     title: "examples of the documentation",
                     commands: tests("--workspace --doc"),
