@@ -28,23 +28,35 @@ impl Figure {
         println!("{}: measured {measured:?} {}, {self}", self.key, self.unit);
     }
 
+    /// What is wrong with a measured number that is not within what is demanded.
+    pub(crate) fn beyond(&self, measured: f64) -> Option<&'static str> {
+        match self.demand {
+            _ if measured.is_nan() => Some("is no number"),
+            Demand::AtMost(bound) | Demand::Between(_, bound) if measured > bound.get() => {
+                Some("is too large")
+            }
+            Demand::AtLeast(least) | Demand::Between(least, _) if measured < least.get() => {
+                Some("is too small")
+            }
+            Demand::Exactly if measured != self.value() => Some("is another number"),
+            _ => None,
+        }
+    }
+
     /// Compares a measured number.
     #[must_use]
     pub fn judge(&self, measured: f64) -> Verdict {
         let value = self.value();
         // What leaves its bound far from its value varies.
         let tight = self.why.is_none();
-        let problem = match self.demand {
-            _ if measured.is_nan() => "is no number",
-            Demand::AtMost(bound) | Demand::Between(_, bound) if measured > bound.get() => {
-                "is too large"
+        let problem = match (self.beyond(measured), &self.demand) {
+            (Some(problem), _) => problem,
+            (_, Demand::AtMost(_)) if tight && measured * HEADROOM < value => {
+                "is smaller: state less"
             }
-            Demand::AtLeast(least) | Demand::Between(least, _) if measured < least.get() => {
-                "is too small"
+            (_, Demand::AtLeast(_)) if tight && measured > value * HEADROOM => {
+                "is larger: state more"
             }
-            Demand::AtMost(_) if tight && measured * HEADROOM < value => "is smaller: state less",
-            Demand::AtLeast(_) if tight && measured > value * HEADROOM => "is larger: state more",
-            Demand::Exactly if measured != value => "is another number",
             _ => return Verdict::Holds,
         };
         let Self { key, unit, .. } = self;

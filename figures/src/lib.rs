@@ -3,10 +3,12 @@
 use std::fmt;
 use std::sync::LazyLock;
 
+mod cases;
 mod check;
 mod generator;
 mod parse;
 
+pub use cases::one_case_in;
 pub use check::Verdict;
 pub use generator::{GENERATORS_REQUIRED, VIRTUAL_ENVIRONMENT, python_with_mpmath, run_generator};
 
@@ -131,6 +133,23 @@ pub fn assert_figure(key: &str, measured: f64) {
     );
     if let Verdict::Differs(why) = figure.judge(measured) {
         panic!("{why}");
+    }
+}
+
+/// The same as [`assert_figure`] for what is measured over steps of [`one_case_in`]: on some of the figure's cases it may be
+/// any better than stated.
+///
+/// # Panics
+/// It is beyond the bound; or as [`assert_figure`], if all cases are asked for.
+#[track_caller]
+pub fn assert_sampled(key: &str, measured: f64) {
+    if cases::takes_all_cases() {
+        return assert_figure(key, measured);
+    }
+    let figure = figure(key);
+    figure.print(measured);
+    if let Some(problem) = figure.beyond(measured) {
+        panic!("{key}, some of its cases: {measured:?} {problem}; {figure}");
     }
 }
 

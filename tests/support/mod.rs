@@ -11,16 +11,6 @@ use thermal_sim::run::{Outcome, run};
 use thermal_sim::scene::Scene;
 use thermal_sim::trace::TraceRow;
 
-/// A variable of the environment: with `all`, tests that otherwise take one of so many similar cases take each of them.
-const CASES_VARIABLE: &str = "THERMAL_CASES";
-
-/// The step through similar cases: `suite`, or 1 where all of them are asked for (`cargo xtask soak --only cases`).
-#[must_use]
-pub fn one_case_in(suite: usize) -> usize {
-    let all = std::env::var(CASES_VARIABLE).is_ok_and(|cases| cases == "all");
-    if all { 1 } else { suite }
-}
-
 /// A scene with a finger of 34 °C on `material`, room and object at 24 °C; `keys` and `tables` are appended to the scene's text.
 ///
 /// # Panics

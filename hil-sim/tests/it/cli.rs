@@ -442,13 +442,13 @@ fn fidelity_compares_laws_and_is_reproducible_by_seed() {
     }
     let drawn = || {
         let mut report: serde_json::Value = serde_json::from_str(&good(
-            &["fidelity", "--box", "3", "--seed", "9", "--json"],
+            &["fidelity", "--box", "2", "--seed", "9", "--json"],
             "",
         ))
         .expect("JSON");
         report["box"].take()
     };
     let first = drawn();
-    assert_eq!(first["draws"], 3);
+    assert_eq!(first["draws"], 2);
     assert_eq!(first, drawn());
 }

@@ -1,16 +1,25 @@
 //! `hil-sim thesis`: what it prints and writes.
 
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
 use thermal_thesis::chapters;
 use thermal_thesis::row::Row;
 
 use super::{good, refused, temporary};
 
-fn all_rows() -> Vec<Row> {
-    chapters()
-        .into_iter()
-        .flat_map(|chapter| chapter.rows)
-        .collect()
-}
+/// All rows, computed once.
+static ROWS: LazyLock<Vec<Row>> = LazyLock::new(|| {
+    let chapters = chapters().into_iter();
+    chapters.flat_map(|chapter| chapter.rows).collect()
+});
+
+/// What one run of the command prints, and the folder that it writes.
+static PRINTED: LazyLock<(String, PathBuf)> = LazyLock::new(|| {
+    let folder = temporary("thesis-out");
+    let text = good(&["thesis", "--out", folder.to_str().expect("a path")], "");
+    (text, folder)
+});
 
 fn count_of(rows: &[Row], word: &str) -> usize {
     rows.iter()
@@ -20,8 +29,8 @@ fn count_of(rows: &[Row], word: &str) -> usize {
 
 #[test]
 fn the_table_ends_with_the_counts_of_its_lines() {
-    let text = good(&["thesis"], "");
-    let rows = all_rows();
+    let (text, _) = &*PRINTED;
+    let rows = &*ROWS;
     let lines = text.lines().filter(|line| line.starts_with("  ")).count();
     assert_eq!(lines, rows.len());
     assert_eq!(
@@ -30,8 +39,9 @@ fn the_table_ends_with_the_counts_of_its_lines() {
             .count(),
         9
     );
-    let count = |word: &str| count_of(&rows, word);
-    let last = text.lines().last().expect("a last line");
+    let count = |word: &str| count_of(rows, word);
+    // The line after the table names the page.
+    let last = text.lines().nth_back(1).expect("a last line");
     let expected = format!(
         "{} numbers: {} agree, {} cut instead of rounded, {} damaged in the text, {} wrong in the thesis, {} differ",
         rows.len(),
@@ -52,7 +62,7 @@ fn json_is_one_object_with_all_rows() {
     let object: serde_json::Value =
         serde_json::from_str(&good(&["thesis", "--json"], "")).expect("JSON");
     let rows = object["rows"].as_array().expect("rows");
-    assert_eq!(rows.len(), all_rows().len());
+    assert_eq!(rows.len(), ROWS.len());
     for word in ["agrees", "cut", "differs", "damaged", "wrong"] {
         let found = rows.iter().filter(|row| row["verdict"] == word).count();
         assert_eq!(object["counts"][word], found, "{word}");
@@ -85,20 +95,19 @@ fn json_is_one_object_with_all_rows() {
 
 #[test]
 fn out_writes_a_page_that_needs_no_other_file_and_all_rows_as_csv() {
-    let folder = temporary("thesis-out");
-    let text = good(&["thesis", "--out", folder.to_str().expect("a path")], "");
+    let (text, folder) = &*PRINTED;
     assert!(text.ends_with(&format!(
         "report: {}\n",
         folder.join("thesis.html").display()
     )));
-    let rows = all_rows();
+    let rows = &*ROWS;
     let page = std::fs::read_to_string(folder.join("thesis.html")).expect("the page");
     assert_eq!(page.matches("<figure>").count(), 15);
     assert_eq!(page.matches("<svg").count(), 15);
     assert_eq!(page.matches("<td class=\"v ").count(), rows.len());
     assert_eq!(
         page.matches(">wrong in the thesis<").count(),
-        count_of(&rows, "wrong")
+        count_of(rows, "wrong")
     );
     for link in ["href", "src=", "url(", "@import"] {
         assert!(!page.contains(link), "{link} in the page");
@@ -113,7 +122,7 @@ fn out_writes_a_page_that_needs_no_other_file_and_all_rows_as_csv() {
     );
     let records: Vec<_> = reader.records().collect::<Result<_, _>>().expect("records");
     assert_eq!(records.len(), rows.len());
-    for (record, row) in records.iter().zip(&rows) {
+    for (record, row) in records.iter().zip(rows) {
         assert_eq!(&record[2], row.quantity);
         assert_eq!(record[5].parse(), Ok(row.computed), "{}", row.quantity);
         assert_eq!(record[6], row.verdict().to_string());

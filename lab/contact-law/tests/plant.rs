@@ -6,6 +6,7 @@ use contact_law_fit::{FORCES_N, Recording, Sample, TOTAL_S, fit, force_n};
 use contact_model::material::{SKIN, find};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::conductance_at_hardness;
+use documented_figures::assert_figure;
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::finger::FingerParams;
 use thermal_plant::object::ObjectConfig;
@@ -97,7 +98,7 @@ fn assert_fits(kind: &str, sensor: fn(FluxParams) -> FluxParams, has_gap: bool, 
         }
         deviations.add(&fit, &Exact::of(&params));
     }
-    deviations.assert_figures(&format!("contact-fit.{kind}"), has_gap);
+    deviations.assert_figures(assert_figure, &format!("contact-fit.{kind}"), has_gap);
 }
 
 /// The sensor that was designed, within its tolerances.

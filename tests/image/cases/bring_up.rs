@@ -1,8 +1,8 @@
 //! The release image on a board that is brought up: sound, and with errors of assembly.
 
+use documented_figures::one_case_in;
 use image_tests::image;
 use stm32_emulator::{Firmware, OneFingerBoard};
-use system_tests::one_case_in;
 use thermal_client::client::Client;
 use thermal_lab::bring_up::{EmulatedBench, Report, SimulatedBoard, Verdict, bring_up};
 use thermal_sim::World;

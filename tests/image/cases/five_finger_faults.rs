@@ -1,7 +1,7 @@
 //! Faults on the image for five fingers: some of the matrix, whose other runs take minutes.
 
+use documented_figures::one_case_in;
 use stm32_emulator::Firmware;
-use system_tests::one_case_in;
 use thermal_campaigns::faults::{FiveFingerRun, Reference, five_finger_cases};
 use thermal_campaigns::parallel_map;
 use thermal_sim::five_fingers::FINGERS;

@@ -1,7 +1,7 @@
 //! A single flipped bit anywhere in the settings' flash loses nothing that was stored.
 
+use documented_figures::one_case_in;
 use system_tests::flash::{BYTES, Flash, SECTOR, erased, loaded, numbered, saved};
-use system_tests::one_case_in;
 use thermal_display::settings::SettingsStore;
 
 /// Bits of a sector's header.

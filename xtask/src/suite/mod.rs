@@ -15,7 +15,7 @@ use lanes::{Check, Lane};
 use members::Member;
 
 /// Time for each target of the fuzzers, after all inputs of the repository, s.
-const FUZZ_S: &str = "4";
+const FUZZ_S: &str = "2";
 
 const NO_CLIPPY: &str = "the active toolchain has no clippy";
 
@@ -87,14 +87,11 @@ fn package(python: Option<&str>) -> Check {
     }
 }
 
-/// What the windows show, without a display and without optimisations, which take minutes for the toolkit. The windows themselves
-/// are checked by a job of `cargo xtask soak`.
+/// What the windows show, without a display. The windows themselves are checked by a job of `cargo xtask soak`. `hil-sim` is
+/// selected for the sake of the features of what the toolkit shares with the other programs.
 fn windows() -> Check {
-    let tests = cargo("test --package thermal-window --features views --lib --test views --quiet");
-    Check {
-        title: "windows, without a display",
-        commands: Ok(vec![tests.env("CARGO_PROFILE_DEV_DEBUG", "0")]),
-    }
+    let tests = "test --release -p thermal-window -p hil-sim --features thermal-window/views --lib --test views --quiet";
+    check("windows, without a display", [tests])
 }
 
 fn units(members: &[Member]) -> Check {
@@ -158,8 +155,6 @@ fn whole(
                 ]),
             },
         ),
-        // In another profile, so that it does not wait for the lock of the lane beside it.
-        windows(),
     ];
     // The emulator is selected beside it for the sake of its dependencies' features, with which the lints compile them.
     let without_emulator = "check --release -p hil-sim -p stm32-emulator --no-default-features";
@@ -196,16 +191,21 @@ fn whole(
     vec![
         vec![host, images],
         vec![
-            vec![Check {
-                title: "units, and the whole system natively",
-                commands: tests(others),
-            }],
+            vec![
+                Check {
+                    title: "units, and the whole system natively",
+                    commands: tests(others),
+                },
+                windows(),
+            ],
             vec![
                 Check {
                     title: "image on the emulated microcontroller",
                     commands: tests(on_image),
                 },
-                check("fuzzers: inputs of the repository, 4 s a target", [&fuzz]),
+                // It waits for devices in real time, so while the other lane has enough to do.
+                package(python),
+                check("fuzzers: inputs of the repository, 2 s a target", [&fuzz]),
                 Check {
                     title: "circuits",
                     commands: tests(circuits),
@@ -214,7 +214,6 @@ fn whole(
                     title: "tests for a bare board, on the emulated one",
                     commands: Ok(vec![on_target]),
                 },
-                package(python),
                 Check {
                     title: "examples of the documentation",
                     commands: tests("--workspace --doc"),

@@ -1,7 +1,6 @@
 //! What fits deviate from the laws of their plants.
 
 use contact_law_fit::{FORCES_N, Fit};
-use documented_figures::assert_figure;
 use thermal_plant::Params;
 
 /// The law of a plant's finger.
@@ -68,10 +67,10 @@ impl Deviations {
         }
     }
 
-    /// Prints all, and asserts the documented figures whose keys begin so. Gaps must be taken where there are some, and of the
+    /// Prints all, and asserts the documented figures whose keys begin so by `assert`. Gaps must be taken where there are some, and of the
     /// intervals, 95 in a hundred of which are to contain the plant's value, most must.
     #[track_caller]
-    pub fn assert_figures(&self, key: &str, has_gap: bool) {
+    pub fn assert_figures(&self, assert: fn(&str, f64), key: &str, has_gap: bool) {
         let fingers = self.exponent.len();
         println!("{key}, {fingers} fingers; median, 90 %, worst:");
         for (force_n, percent) in FORCES_N.iter().zip(&self.resistance_percent) {
@@ -91,13 +90,13 @@ impl Deviations {
         assert_eq!(self.gaps, if has_gap { fingers } else { 0 });
         let names = ["r_0n1", "r_0n5", "r_2n"].iter();
         for (name, percent) in names.zip(&self.resistance_percent) {
-            assert_figure(&format!("{key}_{name}"), three(percent)[2]);
+            assert(&format!("{key}_{name}"), three(percent)[2]);
         }
         let [_, most, worst] = exponent;
-        assert_figure(&format!("{key}_exponent_90"), 1e4 * most);
-        assert_figure(&format!("{key}_exponent"), 1e4 * worst);
+        assert(&format!("{key}_exponent_90"), 1e4 * most);
+        assert(&format!("{key}_exponent"), 1e4 * worst);
         if has_gap {
-            assert_figure(&format!("{key}_gap"), gap[2]);
+            assert(&format!("{key}_gap"), gap[2]);
         }
         let counted = if has_gap { 5 } else { 4 };
         for inside in &self.inside[..counted] {

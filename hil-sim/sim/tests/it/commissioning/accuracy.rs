@@ -1,6 +1,6 @@
 //! What a calibrated device reads, against what is.
 
-use documented_figures::assert_figure;
+use documented_figures::{assert_figure, assert_sampled, one_case_in};
 use thermal_sim::commissioning::{CommissioningSetup, settings_for_device};
 use thermal_sim::engine::NativeEngine;
 
@@ -84,7 +84,7 @@ fn calibrated_readings_are_within_millikelvins() {
         (Some(8), 8),
     ];
     let mut worst: [Errors; 2] = Default::default();
-    for (draw, seed) in devices {
+    for (draw, seed) in devices.into_iter().step_by(one_case_in(2)) {
         let plants = device(draw, seed);
         assert_eq!(plants.params().host, PERFECT);
         let settings = settings_for_device(plants.params(), ROOM_C, seed).expect("settings");
@@ -120,8 +120,8 @@ fn calibrated_readings_are_within_millikelvins() {
         }
     }
     for (group, worst) in ["display", "others"].iter().zip(&worst) {
-        assert_figure(&format!("calibration.{group}_rms"), worst.rms);
-        assert_figure(&format!("calibration.{group}_worst"), worst.worst);
+        assert_sampled(&format!("calibration.{group}_rms"), worst.rms);
+        assert_sampled(&format!("calibration.{group}_worst"), worst.worst);
     }
 }
 
