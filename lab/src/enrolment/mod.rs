@@ -93,7 +93,7 @@ pub enum EnrolmentError {
     },
     /// The device does not trust what it has learnt.
     #[error(
-        "the device does not trust what it learnt on {object}: {word}; press with 1 to 3 N, dry, and begin anew"
+        "the device does not trust what it learnt on {object}: {word}; let the finger rest for some minutes, press with 1 to 3 N, dry, and begin anew"
     )]
     NotTrusted {
         /// The object.

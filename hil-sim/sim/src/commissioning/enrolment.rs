@@ -20,8 +20,9 @@ use crate::scene::{Force, HostLine, Object, Scene};
 
 /// The code of the person.
 const CODE: &str = "P01";
-/// Objects that the finger touches for [`CONTACT_S`] each, with this force, from these times on.
-const CONTACTS: [(&str, f64); 2] = [("copper", 1.0), ("abs", 21.0)];
+/// Objects that the finger touches for [`CONTACT_S`] each, with this force, from these times on: first that which cools it less, because
+/// neither the skin nor what its thermistor shows has recovered at the second landing.
+const CONTACTS: [(&str, f64); 2] = [("abs", 1.0), ("copper", 21.0)];
 const CONTACT_S: f64 = 10.0;
 const FORCE_N: f64 = 2.0;
 /// Ramp of the force when the finger lifts, s.

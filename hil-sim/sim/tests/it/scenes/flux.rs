@@ -48,6 +48,14 @@ fn the_operator_tells_the_device_of_the_sensor_that_it_has() {
     assert_eq!(flux_events(&without), 0);
 }
 
+/// The first person that was answered.
+fn person(outcome: &Outcome) -> &str {
+    let answers = outcome.answers.iter();
+    let mut answers = answers.filter_map(|(_, line)| line.strip_prefix("ok person="));
+    let answer = answers.next().unwrap_or_default();
+    answer.split(' ').next().unwrap_or_default()
+}
+
 /// A finger with 1.6 times the mean contact resistance, of which the device knows before it lands, or not.
 #[test]
 fn an_enrolled_finger_is_known_and_trusted_in_its_first_contact() {
@@ -57,15 +65,8 @@ fn an_enrolled_finger_is_known_and_trusted_in_its_first_contact() {
         &format!("flux_sensor = true\nenrolled = true{PLANT}"),
         "person",
     );
-    let person = |outcome: &Outcome| {
-        let answers = outcome.answers.iter();
-        let mut answers = answers.filter_map(|(_, line)| line.strip_prefix("ok person="));
-        answers
-            .next()
-            .map(|person| person.get(..3).map(String::from))
-    };
-    assert_eq!(person(&known), Some(Some("P01".into())));
-    assert_eq!(person(&unknown), Some(Some("non".into())));
+    assert_eq!(person(&known), "P01");
+    assert_eq!(person(&unknown), "none");
     assert_eq!(word(&known), "finger=trusted");
     // From the word `learning` on, without a distrust.
     assert_eq!(flux_events(&known), 1);
@@ -77,6 +78,13 @@ fn an_enrolled_finger_is_known_and_trusted_in_its_first_contact() {
     };
     let off_k = before_landing(&known) - before_landing(&unknown);
     assert!(off_k > 0.05, "{off_k} K");
+}
+
+/// Its skin and what the thermistor shows of it have not recovered when the finger lands on the second object of the enrolment.
+#[test]
+fn a_finger_is_enrolled_whose_thermistor_sees_much_of_the_contact() {
+    let device = "flux_sensor = true\nenrolled = true\n[plant]\nsensors.skin_sees_contact = 0.32\n";
+    assert_eq!(person(&outcome(device, "person")), "P01");
 }
 
 /// Told of a sensor that its board has not, a device renders the finger that it assumes; told of none, it takes no notice of one.
