@@ -285,13 +285,15 @@ impl Learner {
     }
 
     /// Takes the parameters to those of the mean finger, in some 100 ms so that set-points do not jump. After [`Distrust::Wet`] the
-    /// contact resistance stays.
+    /// contact resistance goes to its lower limit.
     fn approach_mean(&mut self, why: Distrust) {
         self.has_changed = true;
-        for (index, parameter) in self.estimate.parameters.iter_mut().enumerate() {
-            if index != RESISTANCE || why != Distrust::Wet {
-                *parameter *= DECAY_PER_WINDOW_IF_DISTRUSTED;
-            }
+        for parameter in &mut self.estimate.parameters {
+            *parameter *= DECAY_PER_WINDOW_IF_DISTRUSTED;
+        }
+        if why == Distrust::Wet {
+            self.estimate.parameters[RESISTANCE] +=
+                (1.0 - DECAY_PER_WINDOW_IF_DISTRUSTED) * self.scale.low[RESISTANCE];
         }
     }
 

@@ -77,8 +77,7 @@ const CASES: &[Case] = &[
         plant: "finger.resistance_factor = 0.2",
         tables: "",
         t_s: LANDING_S,
-        // Its flux into copper and granite is beyond the sensor's range.
-        words: &["unexplained", "sensor"],
+        words: &["wet"],
     },
     Case {
         name: "sensor without its plug",
@@ -136,7 +135,8 @@ fn what_is_no_finger_ends_in_the_assumed_one_and_a_word() {
             let off_k = off_k.map(|(one, other)| (one - other).abs());
             let off_k = off_k.fold(0.0, f64::max);
             println!("{what}: {said} after {last_s:.3} s, {off_k:.3} K off");
-            assert!(off_k <= ASSUMED_K, "{what}: {off_k} K");
+            // A wet finger has another contact resistance than the assumed one.
+            assert!(said == "wet" || off_k <= ASSUMED_K, "{what}: {off_k} K");
         }
     }
 }
