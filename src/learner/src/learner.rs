@@ -196,8 +196,8 @@ impl Learner {
             self.learn(contact, every, &lagged);
         }
         self.signals.advance(&drive, &self.sensor);
-        if let Trust::Mean(why) = self.judge.trust() {
-            self.approach_mean(why);
+        if matches!(self.judge.trust(), Trust::Mean(_)) {
+            self.approach_mean();
             self.stored_contacts = 0;
         }
         self.output(input.sequence, person)
@@ -285,14 +285,11 @@ impl Learner {
         }
     }
 
-    /// Takes the parameters to those of the mean finger, in some 100 ms so that set-points do not jump. After [`Distrust::Wet`] the
-    /// contact resistance stays.
-    fn approach_mean(&mut self, why: Distrust) {
+    /// Takes the parameters to those of the mean finger, in some 100 ms so that set-points do not jump.
+    fn approach_mean(&mut self) {
         self.has_changed = true;
-        for (index, parameter) in self.estimate.parameters.iter_mut().enumerate() {
-            if index != RESISTANCE || why != Distrust::Wet {
-                *parameter *= DECAY_PER_WINDOW_IF_DISTRUSTED;
-            }
+        for parameter in &mut self.estimate.parameters {
+            *parameter *= DECAY_PER_WINDOW_IF_DISTRUSTED;
         }
     }
 

@@ -11,7 +11,7 @@ pub enum Distrust {
     /// The flux is less than fingers give, or the contact resistance stays at its upper limit: something lies between finger
     /// and display.
     Between,
-    /// The contact resistance stays at its lower limit: water.
+    /// The flux is more than fingers give, or the contact resistance stays at its lower limit: water.
     Wet,
     /// The flux fitted a finger, then no longer: the finger has rolled off, or the sensor has failed.
     Contact,
@@ -58,6 +58,9 @@ const SKIN_MAX: f32 = 2.0;
 const DROP_MIN_K: f32 = 1.0;
 /// Least part of the temperature difference that the measured flux explains in the mean finger; below it the flux is missing.
 const EXPLAINED_PART_MIN: f32 = 0.05;
+/// The part above which a flux that fits no finger is taken for that through water: a fifth of the contact resistance makes 1.9 or
+/// more of it.
+const EXPLAINED_PART_MAX: f32 = 1.5;
 
 /// Counts of what does not fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,6 +163,7 @@ impl Judge {
             (Some(part), _) if part < EXPLAINED_PART_MIN => Distrust::Sensor,
             _ if was_trusted => Distrust::Contact,
             (Some(part), Some(Limit::High)) if part < 1.0 => Distrust::Between,
+            (Some(part), _) if part > EXPLAINED_PART_MAX => Distrust::Wet,
             _ => Distrust::Unexplained,
         }
     }

@@ -191,11 +191,7 @@ fn a_contact_that_fits_no_finger_is_rendered_for_the_assumed_one_and_has_its_wor
             "finger.resistance_factor = 25\n",
             &["between", "sensor"],
         ),
-        (
-            "wet",
-            "finger.resistance_factor = 0.2\n",
-            &["wet", "unexplained"],
-        ),
+        ("wet", "finger.resistance_factor = 0.2\n", &["wet"]),
     ] {
         let device = format!("{no_layer}{keys}");
         let learns = outcome(&device, TOLD);
