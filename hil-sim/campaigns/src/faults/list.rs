@@ -41,6 +41,7 @@ struct Row {
     latent: bool,
     unchanged: bool,
     knowledge: Vec<Value>,
+    unnoticed_at: Vec<Value>,
     assumed_k: Option<f64>,
     learnt_k: Option<f64>,
     scenes: Vec<Value>,
@@ -86,6 +87,7 @@ fn fault_case(row: &Row, table: &Table) -> anyhow::Result<FaultCase> {
         (None, None) => None,
         (assumed_k, learnt_k) => Some(LearningExpected {
             knowledge: expand(&row.knowledge, &table.knowledge, knowledge)?,
+            unnoticed_at: scenes(&row.unnoticed_at)?,
             assumes: assumed_k.is_some(),
             skin_max_k: (assumed_k.xor(learnt_k)).context("has two limits of the skin")?,
         }),
