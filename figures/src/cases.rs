@@ -3,7 +3,7 @@
 /// A variable of the environment: with `all`, tests that otherwise take one of so many similar cases take each of them.
 const VARIABLE: &str = "THERMAL_CASES";
 
-/// The step through similar cases: `suite`, or 1 where all of them are asked for (`cargo xtask soak --only cases`).
+/// The step through similar cases: `suite`, 1 or more, or 1 where all of them are asked for (`cargo xtask soak --only cases`).
 #[must_use]
 pub fn one_case_in(suite: usize) -> usize {
     if takes_all_cases() { 1 } else { suite }

@@ -76,8 +76,8 @@ fn what_is_learnt_is_near_the_bound_of_cramer_and_rao() {
 /// What a finger of `finger.draw` has of its draw; the rest is the nominal layered finger.
 type Part = fn(&mut FingerParams, &FingerParams, &FingerDraw);
 
-/// Of six fingers on six objects, the suite takes one pair in so many: each finger, on two objects or one.
-const ONE_IN: usize = 4;
+/// Of six fingers on six objects, the suite takes one pair in so many: each finger once, and each object once.
+const ONE_IN: usize = 7;
 
 /// Median of the largest skin errors from 50 ms on, mK, with six fingers that differ from the device's in one respect, on the
 /// six objects and a nominal, commissioned device. `told` is whether the device is told of a pad.

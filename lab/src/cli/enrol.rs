@@ -24,7 +24,7 @@ pub struct Arguments {
     /// Code of the person, 1 to 8 of A to Z and 0 to 9; no name
     #[arg(value_parser = code)]
     code: PersonCode,
-    /// Materials to touch, two or more, that which takes least heat first
+    /// Materials to touch, two or more, the one that takes the least heat first
     #[arg(long, value_name = "NAME,NAME", value_delimiter = ',', default_values = ["abs", "copper"])]
     objects: Vec<String>,
     /// Take the zero of the heat-flux sensor before, with the display at the room's temperature

@@ -113,7 +113,7 @@ TelemetryField = Literal[
     "surface",
     "finger",
 ]
-"""Fields of telemetry that `stream` can choose."""
+"""Fields of telemetry that `stream` can choose, in the order of a line."""
 
 ALL_FIELDS: tuple[TelemetryField, ...] = get_args(TelemetryField)
 """All fields, in the order of a line."""
@@ -122,5 +122,5 @@ FLUX_FIELDS: tuple[TelemetryField, ...] = ("flux", "surface", "finger")
 """The fields of the heat-flux sensor, which follow the others in a line if they are chosen: flux, estimate of the display's
 surface, and what is known of the finger."""
 
-TELEMETRY_FIELDS = tuple(field for field in ALL_FIELDS if field not in FLUX_FIELDS)
+TELEMETRY_FIELDS: tuple[TelemetryField, ...] = tuple(field for field in ALL_FIELDS if field not in FLUX_FIELDS)
 """The fields of a line if none is chosen, in its order."""

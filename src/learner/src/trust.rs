@@ -11,7 +11,7 @@ pub enum Distrust {
     /// The flux is less than fingers give, or the contact resistance stays at its upper limit: something lies between finger
     /// and display.
     Between,
-    /// The flux is more than fingers give, or the contact resistance stays at its lower limit: water.
+    /// The flux is more than fingers give, or the contact resistance stays at its lower limit: water, or a gain that is far too large.
     Wet,
     /// The flux fitted a finger, then no longer: the finger has rolled off, or the sensor has failed.
     Contact,
@@ -53,13 +53,13 @@ const AT_LIMIT_IN_A_ROW: u8 = 30;
 const SENSITIVITY_MIN: f32 = 4.0;
 /// Error of the skin's thermistor, in prior deviations, above which the limit of the first component counts at any sensitivity: a small
 /// flux that is missing or reversed late in a contact looks like both.
-const SKIN_MAX: f32 = 2.0;
+const SKIN_ERROR_MAX_DEVIATIONS: f32 = 2.0;
 /// Least temperature difference, K, of which the part that the measured flux explains is computed.
-const DROP_MIN_K: f32 = 1.0;
+const DIFFERENCE_MIN_K: f32 = 1.0;
 /// Least part of the temperature difference that the measured flux explains in the mean finger; below it the flux is missing.
 const EXPLAINED_PART_MIN: f32 = 0.05;
-/// The part above which a flux that fits no finger is taken for that through water: a fifth of the contact resistance makes 1.9 or
-/// more of it.
+/// The part above which a flux that fits no finger is taken for one through water. With a fifth of the contact resistance it is 1.9
+/// or more in the tests.
 const EXPLAINED_PART_MAX: f32 = 1.5;
 
 /// Counts of what does not fit.
@@ -139,7 +139,8 @@ impl Judge {
             }
         };
         let resistance = limit(RESISTANCE, sensitive_k2);
-        let is_skin_strange = !(-SKIN_MAX..=SKIN_MAX).contains(&parameters[SKIN]);
+        let is_skin_strange =
+            !(-SKIN_ERROR_MAX_DEVIATIONS..=SKIN_ERROR_MAX_DEVIATIONS).contains(&parameters[SKIN]);
         let component_k2 = if is_skin_strange { 0.0 } else { sensitive_k2 };
         // The second component may be at its limit: it is small, and takes up whatever else differs in a finger.
         let is_at_limit = resistance.is_some() || limit(FIRST_COMPONENT, component_k2).is_some();
@@ -180,7 +181,7 @@ enum Limit {
 /// that is small.
 fn explained(measurement: &Measurement) -> Option<f32> {
     let open_circuit_difference_k = measurement.open_circuit_difference_k;
-    (!(-DROP_MIN_K..=DROP_MIN_K).contains(&open_circuit_difference_k))
+    (!(-DIFFERENCE_MIN_K..=DIFFERENCE_MIN_K).contains(&open_circuit_difference_k))
         .then(|| (open_circuit_difference_k - measurement.residual_k) / open_circuit_difference_k)
 }
 

@@ -7,7 +7,7 @@ use thermal_sim::named_enum;
 use thermal_sim::run::Outcome;
 use thermal_sim::trace::TraceRow;
 
-use super::{ExpectedReaction, FaultCase, FaultScene, InjectionPoint, LearningExpected};
+use super::{ExpectedReaction, FaultCase, InjectionPoint, LearningExpected};
 
 /// Allowed skin temperature, °C: between the thresholds of pain.
 const SKIN_C: std::ops::RangeInclusive<f64> = 13.0..=45.0;
@@ -176,13 +176,14 @@ impl RunAssessment {
             }
             None => fault_case.unchanged && setpoints_differ(rows, fault_free),
         };
-        assessment.judge((fault_case, point.scene), &rows[..from], before, changed);
+        assessment.judge(fault_case, &point, &rows[..from], before, changed);
         assessment
     }
 
     fn judge(
         &mut self,
-        (fault_case, scene): (&FaultCase, FaultScene),
+        fault_case: &FaultCase,
+        point: &InjectionPoint,
         rows_before: &[TraceRow],
         before: Option<&str>,
         changed: bool,
@@ -199,7 +200,7 @@ impl RunAssessment {
                 .is_some_and(|took_ms| took_ms <= SAFE_MS + 1e-6);
         let said = self.reason.as_str();
         let is_misjudged = (fault_case.learning)
-            .is_some_and(|learning| !learning.allows(self.knowledge.as_deref(), scene));
+            .is_some_and(|learning| !learning.allows(self.knowledge.as_deref(), point.scene));
         let right = match fault_case.expected {
             ExpectedReaction::Trip(faults) => {
                 let named = faults.iter().any(|fault| fault.name() == said);

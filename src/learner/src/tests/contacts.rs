@@ -345,8 +345,8 @@ fn what_is_no_finger_on_the_display_is_distrusted() {
     }
 }
 
-/// On foam 2 s after landing the model may be off by 0.13 K, and a wrong flux makes no more. No innovation is strange, and the flux tells
-/// no parameter: but the finger that fits it is none.
+/// On foam 2 s after landing the model's error is 0.13 K, and a wrong flux changes the measurement by no more. Innovations stay small, and
+/// the measurement hardly depends on a parameter; but the fit ends at a limit of the first component, with a skin thermistor that is far off.
 #[test]
 fn small_flux_that_becomes_wrong_late_in_a_contact_is_distrusted() {
     type Reported = fn(f64, usize) -> f64;
@@ -354,7 +354,7 @@ fn small_flux_that_becomes_wrong_late_in_a_contact_is_distrusted() {
     let missing: Reported = |flux, tick| if tick < 2000 { flux } else { 0.0 };
     let foam = OBJECTS.into_iter().find(|object| object.name == "foam");
     for (name, reported, contacts, within_ticks) in [
-        ("reversed", reversed, 8, 10_000),
+        ("reversed", reversed, 8, 4_500),
         ("missing", missing, 5, 18_000),
     ] {
         let fault = Fault {
@@ -376,10 +376,10 @@ fn small_flux_that_becomes_wrong_late_in_a_contact_is_distrusted() {
         }
         println!("foam, {name} after 2 s: {found:?}");
         assert!(found.len() >= contacts, "{name}: {found:?}");
-        assert!(
-            found.iter().all(|(_, tick)| *tick <= within_ticks),
-            "{name}: {found:?}"
-        );
+        for (why, tick) in &found {
+            assert!(matches!(why, Distrust::Contact | Distrust::Unexplained));
+            assert!(*tick <= within_ticks, "{name}: {found:?}");
+        }
     }
 }
 

@@ -287,7 +287,8 @@ fn wet_finger_ends_in_the_mean_finger() {
             reported: &sound,
         };
         let last = *learnt(&scene, &mut Random(0), 0).last().expect("an output");
-        if last.trust == Trust::Mean(Distrust::Wet) {
+        if let Trust::Mean(why) = last.trust {
+            assert_eq!(why, Distrust::Wet, "{object:?}");
             seen += 1;
             assert!((last.resistance_factor.to_num::<f64>() - 1.0).abs() < 1e-6);
             assert!(
