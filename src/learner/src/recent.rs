@@ -30,3 +30,21 @@ impl Recent {
         self.change
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One window at 1 K, all others at 0: the change is 0.99 K, and is forgotten as the low-pass forgets.
+    #[test]
+    fn a_change_is_forgotten_like_the_low_pass() {
+        let mut recent = Recent::NEW;
+        recent.advance(0.0, 1.0);
+        recent.advance(1.0, 0.01);
+        for windows in 0..300 {
+            let expected = 0.99_f64.powi(1 + windows);
+            assert!((f64::from(recent.change()) - expected).abs() < 1e-5);
+            recent.advance(0.0, 0.01);
+        }
+    }
+}

@@ -206,7 +206,12 @@ fn an_answer_from_before_a_restart_is_void_and_nothing_is_late() {
     let mut learning = taught();
     let input = learning.take_input().expect("an input");
     learning.restart(PlaceBeforeContact::Pad, None);
-    learning.put_output(&answer(&input));
+    learning.put_output(&LearnerOutput {
+        weights: [I2F30::lit("1.1"); 9],
+        trust: Trust::Trusted,
+        revision: 8,
+        ..answer(&input)
+    });
     assert_eq!(window(&mut learning, true), None);
     assert_eq!(
         learning.knowledge(),
