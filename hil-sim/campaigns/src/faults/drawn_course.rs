@@ -12,9 +12,9 @@ use super::scene_text;
 const ABSOLUTE_C: (f64, f64) = (15.0, 41.0);
 /// Range of relative temperatures, K above a skin of 34 °C.
 const RELATIVE_K: (f64, f64) = (-19.0, 7.0);
-/// Coldest temperature, °C, of courses for the law `pi-10hz`: after a step of 15 K with the slowest thermistors it overshoots by
-/// 3 K, and below 13 °C the device trips.
-const COLDEST_IF_OVERSHOOTING_C: f64 = 18.0;
+/// Range of temperatures, °C, for the laws `pi` and `pi-10hz`: after a step of 15 K with the slowest thermistors the second one
+/// overshoots by 3 K, and below 13 and above 43 °C the device trips.
+const OVERSHOOTING_C: (f64, f64) = (18.0, 39.0);
 /// Most points, so that a course is loaded within 60 ms.
 const POINTS_MAX: usize = 12;
 /// Range of the time between two points, s, drawn with a uniform logarithm.
@@ -25,8 +25,7 @@ const TIMES_MAX: u32 = 20;
 const TRIGGER_AFTER_S: (f64, f64) = (0.1, 6.0);
 
 /// Tables of a scene in which the host uploads and plays a drawn course from this time, s, on, with an edge at the trigger
-/// input if the course waits for one before `end_s`. With a skin, °C, the course stays above the coldest end of a law that
-/// overshoots.
+/// input if the course waits for one before `end_s`. With a skin, °C, the course stays within the range of a law that overshoots.
 pub(super) fn course_tables(
     seed: u64,
     t_s: f64,
@@ -34,7 +33,7 @@ pub(super) fn course_tables(
     skin_if_overshooting_c: Option<f64>,
 ) -> String {
     let mut draw = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let (temperatures, (low, high), zero_c) = if draw.random_bool(0.5) {
+    let (temperatures, (mut low, mut high), zero_c) = if draw.random_bool(0.5) {
         (TemperatureKind::Absolute, ABSOLUTE_C, Some(0.0))
     } else {
         (
@@ -43,9 +42,10 @@ pub(super) fn course_tables(
             skin_if_overshooting_c,
         )
     };
-    let coldest_c = skin_if_overshooting_c.map(|_| COLDEST_IF_OVERSHOOTING_C);
-    let coldest = coldest_c.zip(zero_c).map(|(coldest, zero)| coldest - zero);
-    let low = coldest.map_or(low, |coldest| low.max(coldest));
+    if let (Some(_), Some(zero_c)) = (skin_if_overshooting_c, zero_c) {
+        low = low.max(OVERSHOOTING_C.0 - zero_c);
+        high = high.min(OVERSHOOTING_C.1 - zero_c);
+    }
     let mut points = vec![(0.0, draw.random_range(low..=high))];
     for _ in 1..draw.random_range(2..=POINTS_MAX) {
         let (before_s, before) = points[points.len() - 1];

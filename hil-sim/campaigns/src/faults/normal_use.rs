@@ -104,7 +104,7 @@ impl UseSession {
             text += &scene_text::host_line(&format!("hold {held_c:.3}"), 0.1);
         }
         if plays {
-            let skin_if_overshooting_c = (law == Law::Pi10Hz).then_some(skin_c);
+            let skin_if_overshooting_c = matches!(law, Law::Pi | Law::Pi10Hz).then_some(skin_c);
             for part in 0..(SESSION_S / PLAYED_EVERY_S) as u32 {
                 let seed = stream_seed(course_seed, &format!("part {part}"));
                 let t_s = 0.1 + f64::from(part) * PLAYED_EVERY_S;
