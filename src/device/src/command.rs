@@ -148,7 +148,7 @@ impl AssumedFinger {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChosenContactLaw {
     /// The law as the host sent it.
-    pub told: ContactLaw,
+    pub sent: ContactLaw,
     /// The same for the control path; `None` for Eq. 6-8.
     pub own: Option<OwnContactLaw>,
 }
@@ -156,16 +156,16 @@ pub struct ChosenContactLaw {
 impl ChosenContactLaw {
     /// Eq. 6-8.
     pub const NOMINAL: Self = Self {
-        told: ContactLaw::NOMINAL,
+        sent: ContactLaw::NOMINAL,
         own: None,
     };
 
     /// Computes the constants of a law. Uses `f64`, which is slow on the microcontroller.
     #[must_use]
-    pub fn new(told: ContactLaw) -> Self {
+    pub fn new(sent: ContactLaw) -> Self {
         Self {
-            told,
-            own: OwnContactLaw::new(&told, TICK_S),
+            sent,
+            own: OwnContactLaw::new(&sent, TICK_S),
         }
     }
 }

@@ -33,16 +33,14 @@ pub(super) fn course_tables(
     skin_if_overshooting_c: Option<f64>,
 ) -> String {
     let mut draw = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let (temperatures, (mut low, mut high), zero_c) = if draw.random_bool(0.5) {
-        (TemperatureKind::Absolute, ABSOLUTE_C, Some(0.0))
+    let is_absolute = draw.random_bool(0.5);
+    let (temperatures, (mut low, mut high)) = if is_absolute {
+        (TemperatureKind::Absolute, ABSOLUTE_C)
     } else {
-        (
-            TemperatureKind::AboveSkin,
-            RELATIVE_K,
-            skin_if_overshooting_c,
-        )
+        (TemperatureKind::AboveSkin, RELATIVE_K)
     };
-    if let (Some(_), Some(zero_c)) = (skin_if_overshooting_c, zero_c) {
+    if let Some(skin_c) = skin_if_overshooting_c {
+        let zero_c = if is_absolute { 0.0 } else { skin_c };
         low = low.max(OVERSHOOTING_C.0 - zero_c);
         high = high.min(OVERSHOOTING_C.1 - zero_c);
     }

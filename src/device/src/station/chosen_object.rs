@@ -141,7 +141,7 @@ impl ChosenObject {
 
     /// Takes this for the contact law of the finger from now on; what was learnt of its resistance was learnt by another one.
     pub const fn choose_contact_law(&mut self, law: &ChosenContactLaw) {
-        self.contact_law = law.told;
+        self.contact_law = law.sent;
         self.bodies.resistances.law = law.own;
         self.bodies.resistances.skin_factor = OwnResistances::NONE.skin_factor;
     }
