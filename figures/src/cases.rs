@@ -4,7 +4,6 @@
 const VARIABLE: &str = "THERMAL_CASES";
 
 /// The step through similar cases: `suite`, 1 or more, or 1 where all of them are asked for (`cargo xtask soak --only cases`).
-#[must_use]
 pub fn one_case_in(suite: usize) -> usize {
     if takes_all_cases() { 1 } else { suite }
 }

@@ -15,7 +15,6 @@ pub enum Verdict {
 
 impl Figure {
     /// Whether it was recorded with a compiler, by the name that an ELF file has of it, or depends on none.
-    #[must_use]
     pub fn holds_for(&self, compiler: &str) -> bool {
         let name = compiler.replace(" version ", " ");
         let recorded = self.recorded_with.as_deref().unwrap_or_default();
@@ -44,7 +43,6 @@ impl Figure {
     }
 
     /// Compares a measured number.
-    #[must_use]
     pub fn judge(&self, measured: f64) -> Verdict {
         let value = self.value();
         // What leaves its bound far from its value varies.

@@ -9,7 +9,6 @@ pub const GENERATORS_REQUIRED: &str = "THERMAL_DISPLAY_GENERATORS_REQUIRED";
 pub const VIRTUAL_ENVIRONMENT: &str = "target/python";
 
 /// The interpreter with mpmath: `python3`, else that of the virtual environment.
-#[must_use]
 pub fn python_with_mpmath() -> Option<String> {
     let figures = env!("CARGO_MANIFEST_DIR");
     let installed = format!("{figures}/../{VIRTUAL_ENVIRONMENT}/bin/python3");

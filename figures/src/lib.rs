@@ -32,7 +32,6 @@ pub enum Number {
 
 impl Number {
     /// As a floating-point number.
-    #[must_use]
     pub const fn get(self) -> f64 {
         match self {
             Self::Whole(value) => value as f64,
@@ -90,13 +89,11 @@ pub struct Figure {
 
 impl Figure {
     /// The stated value, or the first of several.
-    #[must_use]
     pub fn value(&self) -> f64 {
         self.values.first().map_or(f64::NAN, |value| value.get())
     }
 
     /// As the documentation prints it; several as cells of a table.
-    #[must_use]
     pub fn shown(&self) -> String {
         let values: Vec<_> = self.values.iter().map(Number::to_string).collect();
         values.join(" | ")
@@ -104,7 +101,6 @@ impl Figure {
 }
 
 /// All figures, in the order of the file.
-#[must_use]
 pub fn all() -> &'static [Figure] {
     &ALL
 }
@@ -113,7 +109,6 @@ pub fn all() -> &'static [Figure] {
 ///
 /// # Panics
 /// There is none.
-#[must_use]
 pub fn figure(key: &str) -> &'static Figure {
     let found = all().iter().find(|figure| figure.key == key);
     found.unwrap_or_else(|| panic!("docs/figures.toml has no figure {key}"))

@@ -33,7 +33,6 @@ impl ContactLaw {
 
     /// Conductance under a pressure, W/(m² K), where that of the spots at a pressure equal to the microhardness is
     /// `at_hardness_w_m2k` ([`crate::reference::conductance_at_hardness`]).
-    #[must_use]
     pub fn conductance_w_m2k(&self, at_hardness_w_m2k: f64, pressure_pa: f64) -> f64 {
         at_hardness_w_m2k * Real::powf(pressure_pa / self.hardness_pa, self.exponent)
             + self.gap_w_m2k

@@ -21,7 +21,6 @@ pub struct Impedance<'a> {
 
 impl Impedance<'_> {
     /// Impedance, m² K/W, at the real Laplace variable `s_1_s`, 1/s, which must be above 0.
-    #[must_use]
     pub fn at(&self, s_1_s: f64) -> f64 {
         let terms = self.relaxations.iter();
         self.direct_m2k_w
@@ -31,7 +30,6 @@ impl Impedance<'_> {
     }
 
     /// Rise of the surface per flux, m² K/W, `t_s` seconds after a constant flux has begun.
-    #[must_use]
     pub fn step_response(&self, t_s: f64) -> f64 {
         let term = |one: &Relaxation| {
             let x = one.rate_1_s * t_s;

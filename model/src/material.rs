@@ -15,7 +15,6 @@ pub struct Surface {
 ///
 /// The factor 1.25 is `sqrt(pi / 2)`, for Gaussian surfaces; for a sinusoid it is 1.11. Where the profile itself is
 /// known, average its absolute slope instead.
-#[must_use]
 pub fn average_slope_rad(rms_slope_rad: f64) -> f64 {
     rms_slope_rad / 1.25
 }
@@ -33,19 +32,16 @@ pub struct Material {
 
 impl Material {
     /// Thermal effusivity `sqrt(k rho c)`, J/(m² s^½ K); the thesis's "contact coefficient".
-    #[must_use]
     pub fn effusivity(&self) -> f64 {
         libm::sqrt(self.surface.conductivity_w_mk * self.volumetric_heat_j_m3k())
     }
 
     /// Thermal diffusivity `k / (rho c)`, m²/s.
-    #[must_use]
     pub fn diffusivity_m2_s(&self) -> f64 {
         self.surface.conductivity_w_mk / self.volumetric_heat_j_m3k()
     }
 
     /// Heat capacity per volume `rho c`, J/(m³ K).
-    #[must_use]
     pub fn volumetric_heat_j_m3k(&self) -> f64 {
         self.density_kg_m3 * self.specific_heat_j_kgk
     }
@@ -99,7 +95,6 @@ pub const MATERIALS: [(&str, Material); 9] = [
 ];
 
 /// Looks up a material by its name in [`MATERIALS`].
-#[must_use]
 pub fn find(name: &str) -> Option<&'static Material> {
     MATERIALS
         .iter()

@@ -13,7 +13,6 @@ pub const THESIS_PRESSURES: [(f64, f64); 5] = [
 ];
 
 /// Contact area in m² of a fingertip pressed with `force_n` (N, not negative); relative error below 1e-15.
-#[must_use]
 pub fn contact_area_m2(force_n: f64) -> f64 {
     let area = |(force, pressure): (f64, f64)| force / pressure;
     let mut previous = THESIS_PRESSURES[0];
@@ -32,7 +31,6 @@ pub fn contact_area_m2(force_n: f64) -> f64 {
 }
 
 /// Mean contact pressure in Pa under `force_n` (N, not negative); relative error below 1e-15.
-#[must_use]
 pub fn pressure_pa(force_n: f64) -> f64 {
     force_n / contact_area_m2(force_n)
 }

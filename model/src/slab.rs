@@ -52,7 +52,6 @@ pub struct SlabRelaxations {
 
 impl SlabRelaxations {
     /// The impedance that they add up to.
-    #[must_use]
     pub fn impedance(&self) -> Impedance<'_> {
         Impedance {
             direct_m2k_w: self.direct_m2k_w,
@@ -104,7 +103,6 @@ impl Slab {
 
     /// The relaxations of the slab, the slowest first. If there are more than [`RELAXATIONS_MAX`], the static impedance of the
     /// fastest is added to the direct term.
-    #[must_use]
     #[inline]
     pub fn relaxations(&self) -> SlabRelaxations {
         let mut all = SlabRelaxations {

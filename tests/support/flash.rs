@@ -36,13 +36,11 @@ impl NorFlashError for Dead {
 
 impl Flash {
     /// A flash with these cells.
-    #[must_use]
     pub fn new(cells: FlashCells) -> Self {
         Self(Rc::new(RefCell::new(cells)))
     }
 
     /// The cells as they are now.
-    #[must_use]
     pub fn cells(&self) -> FlashCells {
         self.0.borrow().clone()
     }
@@ -105,7 +103,6 @@ impl NorFlash for Flash {
 
 /// Settings that differ from number to number in every value, from 1000 on with heat-flux sensors, surfaces of the display and up to
 /// 16 persons; for some numbers none, which stands for factory defaults.
-#[must_use]
 pub fn numbered<const FINGERS: usize>(number: u32) -> Option<StoredDevice<FINGERS>> {
     if number % 50 == 17 {
         return None;
@@ -163,7 +160,6 @@ pub fn append(cells: &mut FlashCells, record: &[u8]) -> bool {
 }
 
 /// Three erased sectors.
-#[must_use]
 pub fn erased() -> FlashCells {
     FlashCells::new(vec![0xff; BYTES])
 }
@@ -177,7 +173,6 @@ fn store<const FINGERS: usize>(cells: FlashCells) -> (SettingsStore<Flash, FINGE
 ///
 /// # Panics
 /// They are not valid.
-#[must_use]
 pub fn loaded<const FINGERS: usize>(cells: &FlashCells) -> Option<StoredDevice<FINGERS>> {
     store(cells.clone()).0.load().expect("valid settings")
 }
@@ -186,7 +181,6 @@ pub fn loaded<const FINGERS: usize>(cells: &FlashCells) -> Option<StoredDevice<F
 ///
 /// # Panics
 /// The save fails with power, or succeeds without.
-#[must_use]
 pub fn saved<const FINGERS: usize>(
     cells: &FlashCells,
     settings: Option<&StoredDevice<FINGERS>>,
@@ -205,7 +199,6 @@ pub fn saved<const FINGERS: usize>(
 }
 
 /// Whether a save began a new page: the header of its sector is written, that of the next one erased.
-#[must_use]
 pub fn changes_page(before: &FlashCells, after: &FlashCells) -> bool {
     let headers = |cells: &FlashCells| {
         [0, 1, 2].map(|sector| cells.bytes()[sector * SECTOR..][..24].to_vec())

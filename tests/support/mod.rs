@@ -15,7 +15,6 @@ use thermal_sim::trace::TraceRow;
 ///
 /// # Panics
 /// The scene is wrong.
-#[must_use]
 pub fn scene(material: &str, duration_s: f64, keys: &str, tables: &str) -> Scene {
     let text = format!(
         "duration_s = {duration_s}\nskin_c = 34\nroom_c = 24\nseed = 1\n{keys}\n\
@@ -25,7 +24,6 @@ pub fn scene(material: &str, duration_s: f64, keys: &str, tables: &str) -> Scene
 }
 
 /// A scene's `[[force]]` tables of pairs of time, s, and force, N.
-#[must_use]
 pub fn forces(pairs: &[(f64, f64)]) -> String {
     let table =
         |(t_s, force_n): &(f64, f64)| format!("[[force]]\nt_s = {t_s}\nforce_n = {force_n}\n");
@@ -33,7 +31,6 @@ pub fn forces(pairs: &[(f64, f64)]) -> String {
 }
 
 /// A scene's `[[host]]` tables of pairs of time, s, and line.
-#[must_use]
 pub fn host(lines: &[(f64, &str)]) -> String {
     lines
         .iter()
@@ -45,7 +42,6 @@ pub fn host(lines: &[(f64, &str)]) -> String {
 ///
 /// # Panics
 /// The scene is wrong.
-#[must_use]
 pub fn copper_contact() -> Scene {
     scene("copper", 2.0, "", &forces(&[(0.5, 2.0)]))
 }
@@ -54,7 +50,6 @@ pub fn copper_contact() -> Scene {
 ///
 /// # Panics
 /// The plant refuses the scene.
-#[must_use]
 pub fn natively(scene: &Scene) -> Outcome {
     let mut engine = NativeEngine::new(World::new(scene).expect("a plant for the scene"));
     run(scene, &mut engine, |_| ()).expect("the device takes the scene")
@@ -73,7 +68,6 @@ pub fn between(outcome: &Outcome, from_s: f64, to_s: f64) -> impl Iterator<Item 
 ///
 /// # Panics
 /// There is no contact that long.
-#[must_use]
 pub fn worst_k(scene: &Scene, outcome: &Outcome, from_s: f64) -> f64 {
     // Half a row of tolerance for rounding of times.
     let late = skin_errors(scene, outcome).filter(|(since_s, _)| *since_s > from_s - 0.5e-3);

@@ -26,7 +26,6 @@ pub const FILES: [&str; 14] = [
 ];
 
 /// The folder of the netlists.
-#[must_use]
 pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
@@ -56,7 +55,6 @@ impl Netlists {
     }
 
     /// Netlists of this text.
-    #[must_use]
     pub fn from_text(text: &str) -> Self {
         Self {
             lines: text.lines().map(str::to_owned).collect(),
@@ -64,7 +62,6 @@ impl Netlists {
     }
 
     /// All lines, for a deck.
-    #[must_use]
     pub fn text(&self) -> String {
         self.lines.join("\n")
     }

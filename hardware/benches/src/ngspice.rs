@@ -16,7 +16,6 @@ use crate::number;
 const PROGRAM: &str = "ngspice";
 
 /// Whether ngspice starts.
-#[must_use]
 pub fn is_installed() -> bool {
     Command::new(PROGRAM)
         .arg("--version")
@@ -41,14 +40,12 @@ impl Measured {
     }
 
     /// The result of a measurement that may fail, such as the time of an event that may not come.
-    #[must_use]
     pub fn find(&self, name: &str) -> Option<f64> {
         self.0.get(name).copied()
     }
 }
 
 /// Reads what ngspice prints: lines `name = value`, perhaps followed by `from=`, `to=` or `at=`.
-#[must_use]
 pub fn parse(output: &str) -> Measured {
     let results = output.lines().filter_map(|line| {
         let (name, value) = line.split_once('=')?;

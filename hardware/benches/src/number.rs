@@ -14,7 +14,6 @@ const SUFFIXES: [(&str, f64); 9] = [
 ];
 
 /// Value of a number such as `4.7k`, `100n`, `2.2meg` or `-1e-3`; `None` if it is no number.
-#[must_use]
 pub fn parse(text: &str) -> Option<f64> {
     let text = text.trim().to_ascii_lowercase();
     // The longest beginning that is a number; the rest is suffix and unit.

@@ -53,7 +53,6 @@ impl Quantity {
     }
 
     /// Whether the value is allowed.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.value.is_finite()
             && self.least.is_none_or(|least| self.value >= least)
@@ -61,7 +60,6 @@ impl Quantity {
     }
 
     /// The allowed interval in words.
-    #[must_use]
     pub fn allowed(&self) -> String {
         match (self.least, self.most) {
             (Some(least), Some(most)) => format!("{} to {}", Short(least), Short(most)),

@@ -24,7 +24,6 @@ pub struct Input {
 
 impl Input {
     /// `elapsed` ticks at a `K` that is rounded to 33 bits; `None` if that is no positive, normal number.
-    #[must_use]
     pub fn new(elapsed: Ticks, per_tick: f64) -> Option<Self> {
         let rate = MantissaExponent::from_f64(per_tick)?;
         let double = rate.to_f64();
@@ -37,7 +36,6 @@ impl Input {
     }
 
     /// The input with this index: uniform over octaves, and uniform over mantissas within an octave.
-    #[must_use]
     pub fn nth(index: u32) -> Option<Self> {
         let place = index.wrapping_mul(GOLDEN);
         let octave = OCTAVES.start + below(place, OCTAVES.len() as u32) as i32;

@@ -21,7 +21,6 @@ pub enum Job {
 
 impl Job {
     /// The job that the pins select; `None` if there is no such kernel or scene.
-    #[must_use]
     pub fn selected(pins: u32) -> Option<Self> {
         let only_return = pins & ONLY_RETURN != 0;
         let index = (pins & (SCENE - 1)) as usize;
@@ -44,19 +43,16 @@ impl Job {
     }
 
     /// Pins that select a kernel by its index in [`KERNELS`].
-    #[must_use]
     pub fn kernel_pins(index: usize) -> u32 {
         index as u32
     }
 
     /// Pins that select a scene by its index in [`SCENES`].
-    #[must_use]
     pub fn scene_pins(index: usize) -> u32 {
         index as u32 | SCENE
     }
 
     /// Pins that select the same number of calls of a function that only returns.
-    #[must_use]
     pub fn only_return(pins: u32) -> u32 {
         pins | ONLY_RETURN
     }

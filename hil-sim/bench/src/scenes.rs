@@ -121,7 +121,6 @@ impl Station {
 
 impl Station {
     /// Set-point of the first finger, °C, after a step that gave `bits`.
-    #[must_use]
     pub fn set_point_c(&self, arithmetic: Arithmetic, bits: u32) -> f64 {
         match arithmetic {
             Arithmetic::Integers | Arithmetic::Firmware => Celsius::from_bits(bits as i32).to_num(),
@@ -142,7 +141,6 @@ fn streaming_fixed(tick: u32) -> Force {
 }
 
 /// Streaming force, N.
-#[must_use]
 pub fn streaming_n(tick: u32) -> f64 {
     1.0 + f64::from(streaming(tick)) / 4096.0
 }

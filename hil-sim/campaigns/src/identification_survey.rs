@@ -175,7 +175,6 @@ fn ratio_at_large_current(pairs: &[(f64, f64)]) -> f64 {
 }
 
 /// Percentiles of each quantity.
-#[must_use]
 pub fn table(all: &[IdentificationResult]) -> String {
     let mut text = format!(
         "{:50} {:>8} {:>8} {:>8}\n",

@@ -2,7 +2,6 @@
 
 /// A percentile (0 to 100) of values in any order, by linear interpolation between the two nearest of them; `None`
 /// without values.
-#[must_use]
 pub fn percentile(values: &[f64], percent: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -9,7 +9,6 @@ table{border-collapse:collapse}td,th{padding:.2rem .8rem;border-bottom:1px solid
 svg{max-width:100%;height:auto}code{background:#f3f3f3}";
 
 /// A self-contained page: `title` is text, `style` is CSS in addition to the common style, `body` is HTML.
-#[must_use]
 pub fn document(title: &str, style: &str, body: &str) -> String {
     let title = escape(title);
     format!(
@@ -19,13 +18,11 @@ pub fn document(title: &str, style: &str, body: &str) -> String {
 }
 
 /// The `<svg>` element of an SVG document for use in a page; empty if there is none.
-#[must_use]
 pub fn svg_element(svg: &str) -> &str {
     svg.find("<svg").map_or("", |start| &svg[start..])
 }
 
 /// Text with HTML's special characters escaped.
-#[must_use]
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")

@@ -31,7 +31,6 @@ impl Tissue {
     pub const ALL: [Self; 2] = [Self::HalfSpace, Self::Layered];
 
     /// Its word.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::HalfSpace => "half-space",
@@ -40,7 +39,6 @@ impl Tissue {
     }
 
     /// The tissue of a scene.
-    #[must_use]
     pub fn of(scene: &Scene) -> Self {
         if scene.params.finger.is_half_space() {
             Self::HalfSpace
@@ -54,7 +52,6 @@ impl Tissue {
 ///
 /// # Panics
 /// The material is not one of [`MATERIALS`].
-#[must_use]
 pub fn scene(material: &str, tissue: Tissue) -> Scene {
     let tissue = match tissue {
         Tissue::HalfSpace => "homogeneous",
@@ -152,13 +149,11 @@ impl Comparison {
     }
 
     /// Largest skin error from 50 ms after the landing on, on this device, mK.
-    #[must_use]
     pub fn max_mk(&self) -> Option<f64> {
         self.skin_error_mk?.max_after_50ms
     }
 
     /// The same on the ideal tile.
-    #[must_use]
     pub fn ideal_max_mk(&self) -> Option<f64> {
         self.ideal_tile_skin_error_mk?.max_after_50ms
     }
@@ -196,7 +191,6 @@ pub struct Report {
 
 impl Report {
     /// The report of comparisons of which each scene has one of ours at most.
-    #[must_use]
     pub fn new(mut rows: Vec<Comparison>) -> Self {
         let ours: Vec<_> = rows
             .iter()
@@ -232,7 +226,6 @@ impl Report {
     }
 
     /// Names of all materials, as the thesis orders them.
-    #[must_use]
     pub fn materials() -> Vec<&'static str> {
         MATERIALS.iter().map(|(name, _)| *name).collect()
     }

@@ -90,7 +90,6 @@ impl Display {
     ];
 
     /// Name on the command line.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::HoChapter4 => "ho-2006-chapter-4",
@@ -106,7 +105,6 @@ impl Display {
     }
 
     /// What the source says of the display. But for Ho's, and for ours, the source is what Ho's thesis reports of it.
-    #[must_use]
     pub const fn source(self) -> &'static str {
         match self {
             Self::HoChapter4 => {
@@ -148,7 +146,6 @@ impl Display {
     }
 
     /// What had to be assumed to compute it.
-    #[must_use]
     pub const fn assumed(self) -> &'static str {
         match self {
             Self::HoChapter4 => "gains of the PI controller, which the thesis does not give",

@@ -28,7 +28,6 @@ pub struct RcLadder {
 
 impl RcLadder {
     /// Surface temperature of the skin, °C. At the landing only the resistors divide the difference of skin and object.
-    #[must_use]
     pub fn skin(&self, touch: &SingleContact) -> Course {
         let resistance_m2k_w: f64 = contact_resistance(
             &SKIN.surface,

@@ -13,7 +13,6 @@ const NAME: usize = 20;
 const NUMBER: usize = 16;
 
 /// The largest skin errors by display and material, for each finger on this device and on an ideal tile, mK.
-#[must_use]
 pub fn table(report: &Report) -> String {
     let mut text = String::new();
     for tissue in Tissue::ALL {
@@ -82,7 +81,6 @@ fn cell(row: &Comparison, value: Value, on_this_tile: bool) -> String {
 }
 
 /// The page: table, picture, and what each display is.
-#[must_use]
 pub fn page(report: &Report, svg: &str) -> String {
     let mut body = format!("<pre>{}</pre>", escape(&table(report)));
     body += svg_element(svg);

@@ -102,7 +102,6 @@ const TIME_TOLERANCE_S: f64 = 1e-9;
 
 impl Comparator {
     /// State after power-on with a divider ratio at the input; `nominal` is the thermistor that the thresholds assume.
-    #[must_use]
     pub fn new(params: &ComparatorParams, nominal: &ThermistorParams, ratio: f64) -> Self {
         Self {
             params: *params,
@@ -167,7 +166,6 @@ impl Comparator {
     }
 
     /// Whether the supply is cut and nFAULT pulled low.
-    #[must_use]
     pub const fn tripped(&self) -> bool {
         match self.defects.latch {
             LatchDefect::None => self.latched,

@@ -78,7 +78,6 @@ impl HostParams {
 
 impl Params {
     /// The reference design with the thesis's finger.
-    #[must_use]
     pub fn nominal() -> Self {
         Self {
             finger: FingerParams::homogeneous(),

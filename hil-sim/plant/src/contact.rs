@@ -28,7 +28,6 @@ impl ContactLaw {
     };
 
     /// Contact of skin pressed on another surface by a force, N; `None` without force.
-    #[must_use]
     pub fn at_force(&self, force_n: f64, skin: &Surface, other: &Surface) -> Option<SkinContact> {
         if force_n <= 0.0 {
             return None;
@@ -58,7 +57,6 @@ pub struct SkinContact {
 const LARGEST_SMOOTH_CHANGE: f64 = 0.05;
 
 /// Whether a change of contact needs sub-steps: it opens or closes, or its resistance changes by more than 5 %.
-#[must_use]
 pub fn is_abrupt(before: Option<SkinContact>, after: Option<SkinContact>) -> bool {
     match (before, after) {
         (None, None) => false,

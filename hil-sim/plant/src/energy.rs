@@ -28,7 +28,6 @@ impl EnergyBalance {
     }
 
     /// Total energies.
-    #[must_use]
     pub fn total(&self) -> Energy {
         Energy {
             electrical_j: self.electrical.value(),

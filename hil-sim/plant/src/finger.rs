@@ -38,7 +38,6 @@ impl Vessels {
     };
 
     /// Fraction of the full flow at a force, N.
-    #[must_use]
     pub fn flow(&self, force_n: f64) -> f64 {
         ((self.shut_n - force_n) / (self.shut_n - self.open_n)).clamp(0.0, 1.0)
     }
@@ -49,7 +48,6 @@ pub const BLOOD_J_M3K: f64 = 4.0e6;
 
 impl FingerParams {
     /// The thesis's finger: a homogeneous half-space without blood, adiabatic where it has no contact.
-    #[must_use]
     pub fn homogeneous() -> Self {
         Self {
             surface: SKIN.surface,
@@ -66,7 +64,6 @@ impl FingerParams {
 
     /// A fingertip of epidermis, dermis and fat over a core, with blood perfusion and metabolic heat. Conductivities and
     /// heat capacities are literature values; thicknesses, perfusion and film coefficient are typical values.
-    #[must_use]
     pub fn layered() -> Self {
         let layer =
             |thickness_m, conductivity_w_mk, capacity_j_m3k, perfusion_1_s, metabolism_w_m3| {
@@ -95,13 +92,11 @@ impl FingerParams {
     }
 
     /// Whether it is a half-space of one tissue, as the thesis's.
-    #[must_use]
     pub fn is_half_space(&self) -> bool {
         matches!(self.layers.as_slice(), [one] if one.thickness_m.is_infinite())
     }
 
     /// Boundary condition behind the tissue; the core temperature is set later by the steady state.
-    #[must_use]
     pub fn back(&self) -> BackBoundary {
         self.core_w_m2k
             .map_or(BackBoundary::Insulated, |film_w_m2k| BackBoundary::Film {

@@ -218,25 +218,21 @@ impl Plant {
     }
 
     /// Whether the emergency stop's sense line reads as pressed.
-    #[must_use]
     pub const fn emergency_stop(&self) -> bool {
         self.defects.supply.emergency_stop || self.defects.supply.stop_sense_open
     }
 
     /// Stuck level of the line that selects the side of the comparator's tests; `None` if the line is sound.
-    #[must_use]
     pub const fn side_stuck(&self) -> Option<bool> {
         self.defects.comparator.side_stuck
     }
 
     /// Current out of the bridge in the last step.
-    #[must_use]
     pub const fn bridge_current(&self) -> Current {
         self.bridge_current
     }
 
     /// The resistor in place of the tile, ohm, if there is one.
-    #[must_use]
     pub const fn load_ohm(&self) -> Option<f64> {
         match self.defects.bridge.output {
             Output::Resistor(ohm) => Some(ohm),
@@ -245,13 +241,11 @@ impl Plant {
     }
 
     /// Voltage of the bridge's supply behind its switch, V.
-    #[must_use]
     pub const fn supply_v(&self) -> f64 {
         self.supply.node_v()
     }
 
     /// Sensed voltage of the bridge's supply behind its switch, V.
-    #[must_use]
     pub fn sensed_supply_v(&self) -> f64 {
         self.supply.sensed_v()
     }
@@ -386,64 +380,54 @@ impl Plant {
 
     /// Code of the heat-flux sensor at the end of the last step, 0 to 4095; none if it is not fitted. Its converter samples once
     /// a step.
-    #[must_use]
     pub fn flux_code(&self) -> Option<u16> {
         self.flux.as_ref().map(FluxSensor::code)
     }
 
     /// Flux that the heat-flux sensor is under, mean of the last step, W/m2: out of the skin, or without contact out of the air,
     /// into the display. None if it is not fitted.
-    #[must_use]
     pub fn flux_w_m2(&self) -> Option<f64> {
         self.flux.as_ref().map(FluxSensor::flux_w_m2)
     }
 
     /// Whether driver or comparator pull nFAULT low.
-    #[must_use]
     pub fn bridge_fault(&self) -> bool {
         let driver = self.bridge.fault() || self.supply.driver_reports_low();
         (driver || self.comparator.tripped()) && !self.defects.bridge.fault_pin_dead
     }
 
     /// Whether the comparator has cut the bridge supply.
-    #[must_use]
     pub const fn supply_cut(&self) -> bool {
         self.comparator.tripped()
     }
 
     /// Simulated time, s.
-    #[must_use]
     pub fn time_s(&self) -> f64 {
         self.start_s + self.steps as f64 * STEP_S
     }
 
     /// Contact force of the finger, N.
-    #[must_use]
     pub const fn force_n(&self) -> f64 {
         self.force_n
     }
 
     /// True surface temperature of the display, deg C; that of the plate's face under the heat-flux sensor, if it is fitted.
-    #[must_use]
     pub fn display_c(&self) -> f64 {
         self.heat.display_c()
     }
 
     /// Surface temperature of the skin on the display, deg C.
-    #[must_use]
     pub fn skin_c(&self) -> f64 {
         self.heat.skin_c(Finger::OnDisplay)
     }
 
     /// Surface temperature of the same skin on the real object, deg C.
-    #[must_use]
     pub fn skin_real_c(&self) -> f64 {
         self.heat.skin_c(Finger::OnObject)
     }
 
     /// Skin temperature at the depth of the cold and warm receptors ([`RECEPTORS_M`]), deg C; none if the finger is
     /// thinner.
-    #[must_use]
     pub fn receptors_c(&self, finger: Finger) -> [Option<f64>; RECEPTORS_M.len()] {
         let read = |probe: Option<DepthProbe>| probe.map(|probe| self.heat.depth_c(finger, &probe));
         self.receptors.map(read)
@@ -453,7 +437,6 @@ impl Plant {
     /// the heat that flows into the object times the resistance between display and skin, the layer of a heat-flux sensor
     /// included. For half-spaces under a constant force, without that layer, this is Eq. 6-12. None in the step before a
     /// contact and without one.
-    #[must_use]
     pub fn exact_display_c(&self) -> Option<f64> {
         let display = self.on_display?;
         let flux_w_m2 = self.heat.flux_w_m2(Finger::OnObject);
@@ -461,7 +444,6 @@ impl Plant {
     }
 
     /// Surface temperature of the real object, deg C; before it appears, that at which it will.
-    #[must_use]
     pub fn object_c(&self) -> f64 {
         match self.contact_state {
             Some((_, true)) => self.heat.object_c(),
@@ -470,25 +452,21 @@ impl Plant {
     }
 
     /// Temperature of the sink, deg C.
-    #[must_use]
     pub fn sink_c(&self) -> f64 {
         self.heat.tile().sink_c()
     }
 
     /// Readings of the sensors before the A/D converter.
-    #[must_use]
     pub fn sensor_readings(&self) -> SensorReadings {
         self.sensors.sensor_readings()
     }
 
     /// Current through the tile, A; positive cools the display.
-    #[must_use]
     pub fn current_a(&self) -> f64 {
         self.heat.tile().current().mean_a
     }
 
     /// Energy that has crossed the boundaries of the tile since the start.
-    #[must_use]
     pub fn energy(&self) -> Energy {
         self.heat.energy()
     }

@@ -37,7 +37,6 @@ pub struct ContactCourse {
 
 impl LoneFinger {
     /// Contact through a resistance, m2 K/W, with a surface of a temperature, deg C, at each time since the landing, s.
-    #[must_use]
     pub fn on_surface(
         &self,
         contact_m2k_w: f64,
@@ -70,7 +69,6 @@ impl LoneFinger {
     }
 
     /// Contact through a resistance, m2 K/W, with an object.
-    #[must_use]
     pub fn on_object(
         &self,
         contact_m2k_w: f64,

@@ -22,7 +22,6 @@ impl ObjectConfig {
     pub const THINNEST_M: f64 = 1e-5;
 
     /// A half-space of one material, as the thesis assumes.
-    #[must_use]
     pub fn half_space(material: Material, start_c: f64) -> Self {
         Self {
             surface: material.surface,
@@ -33,7 +32,6 @@ impl ObjectConfig {
     }
 
     /// A layer of a material, `thickness_m` metres thick.
-    #[must_use]
     pub fn layer(material: &Material, thickness_m: f64) -> Layer {
         Layer {
             thickness_m,

@@ -26,7 +26,6 @@ pub struct ReferenceSolution {
 impl ReferenceSolution {
     /// A homogeneous finger of uniform temperature, deg C, in contact from now on, with the mesh and the steps of every
     /// simulation; half-spaces are deep enough for `duration_s`.
-    #[must_use]
     pub fn new(skin_c: f64, object: &ObjectConfig, touch: SkinContact, duration_s: f64) -> Self {
         Self::on_mesh(
             skin_c,
@@ -38,7 +37,6 @@ impl ReferenceSolution {
     }
 
     /// The same with another mesh or step length, s.
-    #[must_use]
     pub fn on_mesh(
         skin_c: f64,
         object: &ObjectConfig,
@@ -83,19 +81,16 @@ impl ReferenceSolution {
     }
 
     /// Time since landing, s.
-    #[must_use]
     pub const fn time_s(&self) -> f64 {
         self.time_s
     }
 
     /// Surface of the skin, deg C.
-    #[must_use]
     pub fn skin_c(&self) -> f64 {
         self.heat.skin_c(Finger::OnObject)
     }
 
     /// Skin temperature at the depth of the cold and warm receptors ([`RECEPTORS_M`]), deg C.
-    #[must_use]
     pub fn receptors_c(&self) -> [Option<f64>; RECEPTORS_M.len()] {
         let read = |probe: Option<DepthProbe>| {
             probe.map(|probe| self.heat.depth_c(Finger::OnObject, &probe))
@@ -104,13 +99,11 @@ impl ReferenceSolution {
     }
 
     /// Surface of the object, deg C.
-    #[must_use]
     pub fn object_c(&self) -> f64 {
         self.heat.object_c()
     }
 
     /// Heat flux out of the skin, W/m2.
-    #[must_use]
     pub fn flux_w_m2(&self) -> f64 {
         self.heat.flux_w_m2(Finger::OnObject)
     }

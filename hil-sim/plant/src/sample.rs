@@ -175,25 +175,21 @@ impl SampleTouch {
     }
 
     /// Simulated time since the start, s.
-    #[must_use]
     pub fn time_s(&self) -> f64 {
         self.steps as f64 * STEP_S
     }
 
     /// Heat flux out of the skin into the sample, W/m2.
-    #[must_use]
     pub fn flux_w_m2(&self) -> f64 {
         self.contact_w_m2k * (self.slabs.surface_c(FINGER) - self.slabs.surface_c(SAMPLE))
     }
 
     /// Surface temperature of the skin, deg C.
-    #[must_use]
     pub fn skin_c(&self) -> f64 {
         self.surface_c(FINGER)
     }
 
     /// Surface temperature of the sample, deg C.
-    #[must_use]
     pub fn sample_c(&self) -> f64 {
         self.surface_c(SAMPLE)
     }
@@ -208,7 +204,6 @@ impl SampleTouch {
 
     /// Skin temperature at the depth of the cold and warm receptors ([`RECEPTORS_M`]), deg C; none if the finger is
     /// thinner.
-    #[must_use]
     pub fn receptors_c(&self) -> [Option<f64>; RECEPTORS_M.len()] {
         self.receptors
             .map(|probe| probe.map(|probe| probe.read(|node| self.slabs.node_c(FINGER, node))))

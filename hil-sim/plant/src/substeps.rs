@@ -11,7 +11,6 @@ const PARTS: u32 = 1;
 pub const LENGTHS: usize = (HALVINGS + PARTS) as usize + 1;
 
 /// Length of the sub-steps with an index, s; index 0 is the whole step.
-#[must_use]
 pub fn length_s(step_s: f64, index: usize) -> f64 {
     step_s / f64::from(1u32 << index)
 }

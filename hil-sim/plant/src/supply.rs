@@ -79,7 +79,6 @@ pub struct Supply {
 
 impl Supply {
     /// The supply at power-on, when the latch keeps it off.
-    #[must_use]
     pub const fn new(params: SupplyParams) -> Self {
         Self {
             params,
@@ -123,25 +122,21 @@ impl Supply {
     }
 
     /// Voltage at the bridge, V.
-    #[must_use]
     pub const fn node_v(&self) -> f64 {
         self.node_v
     }
 
     /// Whether the voltage is high enough for the driver.
-    #[must_use]
     pub fn driver_is_on(&self) -> bool {
         self.node_v >= self.params.driver_from_v
     }
 
     /// Whether the driver pulls nFAULT because its supply is too low.
-    #[must_use]
     pub fn driver_reports_low(&self) -> bool {
         !self.driver_is_on() && self.node_v > DRIVER_DEAD_BELOW_V
     }
 
     /// Voltage that the sense divider shows, V; none if its wire is open.
-    #[must_use]
     pub const fn sensed_v(&self) -> f64 {
         if self.defects.sense_open {
             0.0
@@ -151,7 +146,6 @@ impl Supply {
     }
 
     /// Voltage at the converter's pin, counts at a nominal reference.
-    #[must_use]
     pub const fn sensed_counts(&self) -> f64 {
         self.params.sense_counts_per_v * self.sensed_v()
     }

@@ -52,7 +52,6 @@ pub struct ThermalModel {
 impl ThermalModel {
     /// Finger and object at uniform temperatures, deg C, without contact, in a room with a film coefficient, W/(m2 K),
     /// and a temperature, deg C; for steps of `step_s` and their sub-steps.
-    #[must_use]
     pub fn new(
         (finger, skin_c): (&Slab, f64),
         (object, object_c): (&Slab, f64),
@@ -217,7 +216,6 @@ impl ThermalModel {
     }
 
     /// Heat flux out of the skin into its contact, W/m2.
-    #[must_use]
     pub fn flux_w_m2(&self, finger: Finger) -> f64 {
         let skin_c = self.slabs.surface_c(finger as usize);
         match finger {
@@ -231,38 +229,32 @@ impl ThermalModel {
     }
 
     /// Temperature of the skin surface, deg C.
-    #[must_use]
     pub fn skin_c(&self, finger: Finger) -> f64 {
         self.surface_c(finger as usize)
     }
 
     /// Temperature of the skin at the depth of a probe, deg C.
-    #[must_use]
     pub fn depth_c(&self, finger: Finger, probe: &DepthProbe) -> f64 {
         probe.read(|node| self.slabs.node_c(finger as usize, node))
     }
 
     /// Surface temperature of the real object, deg C.
-    #[must_use]
     pub fn object_c(&self) -> f64 {
         self.surface_c(OBJECT)
     }
 
     /// Surface temperature of the display under the finger, deg C.
-    #[must_use]
     pub fn display_c(&self) -> f64 {
         let power_w = self.area_m2 * self.flux_w_m2(Finger::OnDisplay);
         self.tile.patch_c() + power_w * self.tile.patch_half_k_w()
     }
 
     /// The tile with its sink.
-    #[must_use]
     pub const fn tile(&self) -> &Tile {
         &self.tile
     }
 
     /// Energy that has crossed the boundaries of the tile.
-    #[must_use]
     pub fn energy(&self) -> Energy {
         self.energy_balance.total()
     }

@@ -20,25 +20,21 @@ pub const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 const WEIGHT: f64 = std::f64::consts::FRAC_1_SQRT_2 / 2.0;
 
 /// Storage term of the matrix, `C/(GAMMA h)`, in the unit of a conductance.
-#[must_use]
 pub fn storage(capacity: f64, step_s: f64) -> f64 {
     capacity / (GAMMA * step_s)
 }
 
 /// Right-hand side of the first stage from the net power at the start of the step.
-#[must_use]
 pub fn first_stage_rhs(power: f64) -> f64 {
     2.0 * power
 }
 
 /// Right-hand side of the second stage from the storage term, the first increment and the net power at the start.
-#[must_use]
 pub fn second_stage_rhs(storage: f64, x1: f64, power: f64) -> f64 {
     WEIGHT / GAMMA * storage * x1 - power
 }
 
 /// Mean temperature over the step from the temperature at its end and both increments.
-#[must_use]
 pub fn step_mean(end_c: f64, x1: f64, x2: f64) -> f64 {
     end_c - WEIGHT * x1 - (1.0 - GAMMA) * x2
 }

@@ -7,7 +7,6 @@ const THRESHOLD_C: f64 = 39.0;
 
 /// Dose rate at a temperature, equivalent minutes at 43 deg C per minute: `R^(43 - T)` with `R` = 0.5 above 43 deg C and
 /// 0.25 below, zero below 39 deg C (Sapareto and Dewey, 1984: CEM43).
-#[must_use]
 pub fn cem43_rate(temperature_c: f64) -> f64 {
     let colder_k = REFERENCE_C - temperature_c;
     if temperature_c > REFERENCE_C {

@@ -36,7 +36,6 @@ impl Failure {
     }
 
     /// The exit code of a command with this name that ended so. Prints why it failed, if it did, on standard error.
-    #[must_use]
     pub fn exit_code(command: &str, ended: Result<(), Self>) -> ExitCode {
         match ended {
             Ok(()) => ExitCode::SUCCESS,

@@ -27,7 +27,6 @@ const ERASURES: [fn(old: bool, drawn: bool) -> bool; 3] = [
 
 impl FlashCells {
     /// Powered cells with these contents.
-    #[must_use]
     pub fn new(bytes: Vec<u8>) -> Self {
         Self {
             bytes,
@@ -38,7 +37,6 @@ impl FlashCells {
     }
 
     /// Contents of the cells.
-    #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -52,7 +50,6 @@ impl FlashCells {
     }
 
     /// Number of operations started: words programmed and ranges erased.
-    #[must_use]
     pub fn operations(&self) -> u64 {
         self.operations
     }
@@ -63,7 +60,6 @@ impl FlashCells {
     }
 
     /// Whether the cells have power.
-    #[must_use]
     pub fn is_powered(&self) -> bool {
         self.powered
     }

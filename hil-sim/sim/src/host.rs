@@ -87,7 +87,6 @@ impl PlayingHost {
 
 /// The lines by which an operator chooses the object of a scene: its material, its temperature and, if it is no half-space,
 /// that it is a slab, or else its relaxations. [`Host`] uploads those of a slab, too.
-#[must_use]
 pub fn object_lines(scene: &Scene) -> Vec<String> {
     let mut lines = material_and_temperature(scene).to_vec();
     match scene.object.slab_line() {
@@ -125,7 +124,6 @@ impl Host {
     /// Queues the lines that restore the settings of the device, set up the scene and request telemetry every
     /// `stream_ms`, the lines of the scene itself, and blank lines as heartbeat. The set-up begins `set_up_from_ms` after the
     /// device's start: hosts of several fingers take turns.
-    #[must_use]
     pub fn new(scene: &Scene, settings: &[String], stream_ms: u32, set_up_from_ms: u64) -> Self {
         let zero_ms = scene.settle_ms();
         // An infinite time saturates.
@@ -201,7 +199,6 @@ impl Host {
     }
 
     /// Time since the start of the device, ms, from which another host may set up its finger: after this one's set-up.
-    #[must_use]
     pub const fn set_up_ms(&self) -> u64 {
         self.set_up_ms
     }

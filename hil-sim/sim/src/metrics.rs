@@ -144,20 +144,17 @@ pub struct Figures {
 
 impl Figures {
     /// Largest skin error from 50 ms after each landing on, mK.
-    #[must_use]
     pub fn skin_max_mk(&self) -> Option<f64> {
         self.skin_error_mk?.max_after_50ms
     }
 
     /// RMS skin error, mK.
-    #[must_use]
     pub fn skin_rms_mk(&self) -> Option<f64> {
         Some(self.skin_error_mk?.rms)
     }
 }
 
 /// Time since the last landing on a present object, s, for each row; `None` without contact.
-#[must_use]
 pub fn contact_times(scene: &Scene, outcome: &Outcome) -> Vec<Option<f64>> {
     let mut landed_s = None;
     let rows = outcome.trace.rows().iter();
@@ -173,7 +170,6 @@ pub fn contact_times(scene: &Scene, outcome: &Outcome) -> Vec<Option<f64>> {
 }
 
 /// Computes the figures.
-#[must_use]
 pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
     let rows = outcome.trace.rows();
     let evaluations = || {
@@ -222,7 +218,6 @@ pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
 
 /// Time since the last landing, s, and error of the display, K, for each row; `None` without contact and, where finger or
 /// object is no half-space, in the row of a landing.
-#[must_use]
 pub fn display_errors(scene: &Scene, outcome: &Outcome) -> Vec<Option<(f64, f64)>> {
     let rows = outcome.trace.rows();
     let contacts = contact_times(scene, outcome);

@@ -19,7 +19,6 @@ macro_rules! named_enum {
             pub const ALL: [Self; [$($name),*].len()] = [$(Self::$variant),*];
 
             /// The variant's name.
-            #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name,)*

@@ -66,7 +66,6 @@ pub struct PlayFigures {
 
 impl PlayFigures {
     /// The figures of a run of [`scene`], whose errors are against the course as it was.
-    #[must_use]
     pub fn new(played: &Prepared, scene: &Scene, outcome: &Outcome, figures: Figures) -> Self {
         let whole = Scene {
             course: Some(played.whole.clone()),
@@ -89,7 +88,6 @@ impl PlayFigures {
     }
 
     /// The figures as text.
-    #[must_use]
     pub fn table(&self) -> String {
         let number = |mk: Option<f64>| mk.map_or("-".into(), |mk| format!("{mk:.1} mK"));
         let errors = self.course_error_mk;

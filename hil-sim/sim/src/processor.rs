@@ -123,7 +123,6 @@ impl fmt::Display for CoreRegister {
 impl CoreRegister {
     /// Mask of the bits that can flip: the two lowest of SP and the lowest of PC are always 0, and flips of the execution
     /// state (T, IT) are not modelled.
-    #[must_use]
     pub const fn bits(self) -> u32 {
         match self {
             Self::Sp => !3,

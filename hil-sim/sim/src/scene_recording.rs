@@ -45,7 +45,6 @@ pub struct Exchange<'a> {
 impl Outcome {
     /// The answers with the lines that they answer: each line gets one, in order. A reset loses the lines that wait, except
     /// that `save` and `forget` restart the device and are answered then.
-    #[must_use]
     pub fn exchanges(&self) -> Vec<Exchange<'_>> {
         let mut waiting = self.sent.iter().peekable();
         let mut exchanges = Vec::new();

@@ -78,7 +78,6 @@ impl VirtualLine {
     }
 
     /// Whether a line was received that nobody has taken.
-    #[must_use]
     pub fn has_line(&self) -> bool {
         !self.received.is_empty()
     }
@@ -97,13 +96,11 @@ impl VirtualLine {
     }
 
     /// Milliseconds since the beginning.
-    #[must_use]
     pub const fn ms(&self) -> u64 {
         self.ms
     }
 
     /// Time since the beginning.
-    #[must_use]
     pub const fn now(&self) -> Duration {
         Duration::from_millis(self.ms)
     }

@@ -54,7 +54,6 @@ pub struct TraceRow {
 
 impl TraceRow {
     /// The present state of the plant, without telemetry.
-    #[must_use]
     pub fn capture(t_s: f64, plant: &Plant, camera: Option<Reading>) -> Self {
         Self {
             t_s,
@@ -96,7 +95,6 @@ pub struct Trace {
 
 impl Trace {
     /// An empty trace with room for so many rows.
-    #[must_use]
     pub fn with_capacity(rows: usize) -> Self {
         Self {
             rows: Vec::with_capacity(rows),
@@ -131,7 +129,6 @@ impl Trace {
     }
 
     /// One row per millisecond of the scene.
-    #[must_use]
     pub fn rows(&self) -> &[TraceRow] {
         &self.rows
     }

@@ -13,7 +13,6 @@ const TYPICAL_FORCE_N: f64 = 2.0;
 
 /// Fits relaxations to an object of these layers by least squares of the error that they cause in the skin's temperature.
 /// `material` is that of the touched surface, which determines the contact resistance.
-#[must_use]
 pub fn object_fit(material: &Material, layers: &[slab::Layer], back: &BackBoundary) -> Fit {
     let layers: Vec<_> = (layers.iter())
         .map(|layer| Layer {

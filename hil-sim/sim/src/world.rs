@@ -101,13 +101,11 @@ impl World {
     }
 
     /// The microcontroller before its program starts.
-    #[must_use]
     pub const fn chip(&self) -> ChipState {
         self.chip
     }
 
     /// The plant, read-only.
-    #[must_use]
     pub const fn plant(&self) -> &Plant {
         &self.plant
     }
@@ -154,13 +152,11 @@ impl World {
     }
 
     /// Whether the emergency stop is pressed.
-    #[must_use]
     pub const fn emergency_stop(&self) -> bool {
         self.plant.emergency_stop()
     }
 
     /// Stuck level of the line that selects the side of the comparator's tests; `None` if the line is sound.
-    #[must_use]
     pub const fn side_stuck(&self) -> Option<bool> {
         self.plant.side_stuck()
     }
@@ -182,7 +178,6 @@ impl World {
     }
 
     /// The largest pulse through a resistor in place of the tile.
-    #[must_use]
     pub const fn pulse(&self) -> Pulse {
         self.pulse
     }
@@ -220,13 +215,11 @@ impl World {
 
     /// Code at the input of the heat-flux sensor at the end of the last step, 0 to 4095. A board without the sensor has the input
     /// at ground.
-    #[must_use]
     pub fn flux_code(&self) -> u16 {
         self.plant.flux_code().unwrap_or(0)
     }
 
     /// Whether nFAULT is low, pulled by the bridge driver or the comparator.
-    #[must_use]
     pub fn bridge_fault(&self) -> bool {
         self.plant.bridge_fault()
     }

@@ -77,7 +77,6 @@ struct JsonRow<'a> {
 }
 
 /// Collects the object that `--json` prints.
-#[must_use]
 pub fn json<'a>(
     chapters: &'a [Chapter],
     figures: &'a [FigureDifference],

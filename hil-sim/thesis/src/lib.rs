@@ -41,7 +41,6 @@ pub struct Chapter {
 }
 
 /// All numbers of the thesis that can be recomputed: first tables, model and instruments, then the experiments.
-#[must_use]
 pub fn chapters() -> Vec<Chapter> {
     let of = |statements: &'static [Statement], chapters: &[(u8, &'static str)]| -> Vec<_> {
         let chapter = |&(number, title): &(u8, &'static str)| Chapter {

@@ -34,7 +34,6 @@ fn pair(pair: &str, percent: f64) -> Option<PublishedPair> {
 }
 
 /// Table 3-3: which of two real materials is colder.
-#[must_use]
 pub fn discrimination() -> Vec<PublishedPair> {
     let rows = table_3_3().into_iter();
     rows.filter_map(|row| pair(&row.pair, row.percent))
@@ -42,7 +41,6 @@ pub fn discrimination() -> Vec<PublishedPair> {
 }
 
 /// Table 3-5: which of three fingers touches another material than the other two.
-#[must_use]
 pub fn localisation() -> Vec<PublishedPair> {
     let high = table_3_5(HIGH_LOW).into_iter();
     let high = high.filter_map(|row| pair(&row.pair, row.percent));
@@ -58,7 +56,6 @@ pub fn localisation() -> Vec<PublishedPair> {
 }
 
 /// Young's modulus of a material, GPa (Tables 3-2 and 4-1); `None` of one that the thesis does not have.
-#[must_use]
 pub fn youngs_modulus_gpa(material: &str) -> Option<f64> {
     let mut moduli = MODULI_GPA.iter();
     moduli
@@ -81,7 +78,6 @@ pub struct StatedResult {
 ///
 /// # Panics
 /// The program's own table cannot be read.
-#[must_use]
 pub fn identification() -> Vec<StatedResult> {
     results("Section 4.2.2")
 }
@@ -90,7 +86,6 @@ pub fn identification() -> Vec<StatedResult> {
 ///
 /// # Panics
 /// The program's own table cannot be read.
-#[must_use]
 pub fn real_against_simulated() -> Vec<StatedResult> {
     results("Section 4.3.2")
 }

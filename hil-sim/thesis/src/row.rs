@@ -61,7 +61,6 @@ pub enum Verdict {
 impl Row {
     /// Compares the stated and the computed value. A remark changes the verdict only if the values differ and its
     /// correction makes them agree.
-    #[must_use]
     pub fn verdict(&self) -> Verdict {
         if self.stated.agrees(self.computed) {
             return Verdict::Agrees;
@@ -107,7 +106,6 @@ impl Row {
 
 impl Verdict {
     /// One word for counts, CSS classes and JSON.
-    #[must_use]
     pub const fn word(&self) -> &'static str {
         match self {
             Self::Agrees => "agrees",

@@ -50,7 +50,6 @@ pub(super) fn cut(value: f64, decimals: i32) -> f64 {
 impl Stated {
     /// Whether `computed` agrees. A printed number agrees with all values that round to it; an exact half
     /// may be rounded either way.
-    #[must_use]
     pub fn agrees(&self, computed: f64) -> bool {
         match *self {
             Self::Printed { value, decimals } => {
@@ -66,7 +65,6 @@ impl Stated {
     }
 
     /// Whether the printed number is `computed` truncated to the printed digits.
-    #[must_use]
     pub fn is_cut(&self, computed: f64) -> bool {
         match *self {
             Self::Printed { decimals, .. } => self.agrees(cut(computed, decimals)),
@@ -75,7 +73,6 @@ impl Stated {
     }
 
     /// `computed` minus the stated number or the nearest limit; none if no number is stated.
-    #[must_use]
     pub fn difference(&self, computed: f64) -> Option<f64> {
         match *self {
             Self::Printed { value, .. } | Self::About { value, .. } => Some(computed - value),

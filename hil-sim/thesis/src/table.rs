@@ -28,7 +28,6 @@ pub struct Counts {
 
 impl Counts {
     /// Counts the rows of all chapters.
-    #[must_use]
     pub fn of(chapters: &[Chapter]) -> Self {
         let mut counts = Self::default();
         for row in chapters.iter().flat_map(|chapter| &chapter.rows) {
@@ -62,7 +61,6 @@ impl Counts {
 }
 
 /// The report: one line for each row and each figure, and the counts.
-#[must_use]
 pub fn table(
     chapters: &[Chapter],
     figures: &[FigureDifference],

@@ -18,7 +18,6 @@ pub use report::{Analysis, Cell, Column, Picture, Section, Table, TaskAnalysis};
 /// Analyses the sessions of a data set, each task over all its participants; sessions of a task whose files
 /// differ are analysed apart. Void trials do not count. Whatever the records
 /// are, every number is finite; what cannot be computed is a sentence in [`Section::not_possible`].
-#[must_use]
 pub fn analyse(sessions: &[RecordedSession]) -> Analysis {
     Analysis {
         tasks: input::tasks(sessions)
@@ -30,21 +29,18 @@ pub fn analyse(sessions: &[RecordedSession]) -> Analysis {
 
 impl Analysis {
     /// The analysis as JSON.
-    #[must_use]
     pub fn json(&self) -> String {
         // Neither a map with keys that are no strings nor a number that is not finite is in it.
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
 
     /// The analysis as one HTML page that needs no other file.
-    #[must_use]
     pub fn page(&self) -> String {
         page::page(&self.tasks)
     }
 
     /// The tables: names of files, of task and table, and their contents as CSV. Numbers have seven significant
     /// digits; what has no value is empty.
-    #[must_use]
     pub fn csv(&self) -> Vec<(String, String)> {
         let tables = self.tasks.iter().flat_map(|task| {
             let tables = task.sections.iter().flat_map(|section| &section.tables);

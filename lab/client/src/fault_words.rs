@@ -16,7 +16,6 @@ const WIRE: &str = "look at its connector and its wire; a thermistor that has fa
 const RESTART: &str = "clear it and go on; if it comes back, log telemetry and `thermal-lab info`, and do not use the device";
 
 /// Meaning and remedy of a fault. `clear` is refused as long as the fault is present.
-#[must_use]
 pub const fn fault_words(fault: Fault) -> FaultWords {
     let (meaning, remedy) = match fault {
         Fault::DisplayOpen => ("the display's first thermistor is an open circuit", WIRE),

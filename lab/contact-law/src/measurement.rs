@@ -59,7 +59,6 @@ pub enum Step {
 
 impl Step {
     /// Force to press with, N.
-    #[must_use]
     pub fn target_n(&self) -> f64 {
         match self {
             Self::Lift | Self::Wait(_) | Self::End => 0.0,

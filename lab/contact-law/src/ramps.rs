@@ -18,7 +18,6 @@ pub const TOTAL_S: f64 = {
 };
 
 /// Force to press with, N, `since_s` seconds after landing: linear over time in its logarithm; `None` after the last ramp.
-#[must_use]
 pub fn force_n(since_s: f64) -> Option<f64> {
     let ramp = ramp_at(since_s)?;
     let begun_s = LANDED_S + DURATIONS_S[..ramp].iter().sum::<f64>();
@@ -29,7 +28,6 @@ pub fn force_n(since_s: f64) -> Option<f64> {
 }
 
 /// The ramp at this time after landing, s, from 0; the first one includes the time before it. `None` after the last one.
-#[must_use]
 pub fn ramp_at(since_s: f64) -> Option<usize> {
     let mut end_s = LANDED_S;
     DURATIONS_S.iter().position(|ramp_s| {

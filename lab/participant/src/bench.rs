@@ -105,7 +105,6 @@ impl BenchOptions {
 
     /// Those of a session: where falls of the skin are what is measured, the thermistor lies at the edge of the contact, as in
     /// section 4.4 of the thesis.
-    #[must_use]
     pub fn of_session(session: &Session) -> Self {
         let measures_falls = session.score.analyses.iter().any(|word| word == "falls");
         Self {
@@ -261,25 +260,21 @@ impl Bench {
     }
 
     /// The line to the device.
-    #[must_use]
     pub fn link(&self) -> BenchLink {
         BenchLink(Rc::clone(&self.0))
     }
 
     /// Participant and operator.
-    #[must_use]
     pub fn people(&self) -> BenchPeople {
         BenchPeople(Rc::clone(&self.0))
     }
 
     /// The participant.
-    #[must_use]
     pub fn participant(&self) -> Participant {
         self.0.borrow().setting.participant
     }
 
     /// What the observer has felt in each trial until its end, and the answers.
-    #[must_use]
     pub fn observations(&self) -> Vec<Observation> {
         self.0.borrow().observations.clone()
     }

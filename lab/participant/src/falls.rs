@@ -59,7 +59,6 @@ pub struct Exploration {
 
 impl Exploration {
     /// The exploration with a number: its random draws depend on nothing else.
-    #[must_use]
     pub fn new(setup: &TouchSetup, number: u32) -> Self {
         let mut random = Stream::new(SEED, &format!("exploration {number}"));
         let decision_s = random

@@ -87,7 +87,6 @@ pub struct Touches(Vec<(f64, f64)>);
 
 impl Touches {
     /// Touches that last until `until_s` at least.
-    #[must_use]
     pub fn new(params: &HandParams, rule: ContactRule, until_s: f64, times: &mut Stream) -> Self {
         if rule != ContactRule::Free {
             return Self(vec![(0.0, f64::INFINITY)]);
@@ -102,7 +101,6 @@ impl Touches {
     }
 
     /// Number of touches that begin before a time, s.
-    #[must_use]
     pub fn count_until(&self, until_s: f64) -> usize {
         self.0
             .iter()
@@ -131,7 +129,6 @@ struct Press {
 
 impl ForceCourse {
     /// The force of a finger; `target_n` is the force that it follows.
-    #[must_use]
     pub fn new(
         params: &HandParams,
         touches: &Touches,
@@ -161,7 +158,6 @@ impl ForceCourse {
     }
 
     /// Force, N, at a time since the hand's first landing, s, of a hand that lifts for good at `lift_s`.
-    #[must_use]
     pub fn force_n(&self, t_s: f64, lift_s: f64) -> f64 {
         let press = self.presses.iter().rev().find(|press| press.start_s <= t_s);
         let Some(press) = press.filter(|press| press.start_s < lift_s) else {

@@ -93,7 +93,6 @@ impl ObserverParams {
     };
 
     /// Standard deviation of the noise of a fall, K.
-    #[must_use]
     pub fn sigma_k(&self, fall_k: f64) -> f64 {
         libm::hypot(self.s0_k, self.w * fall_k)
     }
@@ -300,13 +299,11 @@ impl FallMeter {
     }
 
     /// Whether the finger has landed, or an interval has begun.
-    #[must_use]
     pub const fn has_begun(&self) -> bool {
         self.before_c.is_some()
     }
 
     /// The fall so far, K; negative if the skin got warmer by more. `None` before the landing.
-    #[must_use]
     pub fn fall_k(&self) -> Option<f64> {
         self.before_c?;
         let [fall_k, rise_k] = self.extremes_k;

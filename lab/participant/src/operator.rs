@@ -47,7 +47,6 @@ pub enum Happening {
 
 impl SimulatedEvent {
     /// Whether it belongs to an attempt at a trial.
-    #[must_use]
     pub fn is_in(&self, trial: u32, attempt: u32) -> bool {
         self.trial == trial && self.attempt.is_none_or(|of| of == attempt)
     }

@@ -62,7 +62,6 @@ pub struct Participant {
 
 impl Participant {
     /// The participant with a code in a session: drawn from the seed.
-    #[must_use]
     pub fn new(
         session: &Session,
         code: &str,
@@ -91,7 +90,6 @@ impl Participant {
     }
 
     /// Skin before contact, °C, after a fraction of the session.
-    #[must_use]
     pub fn skin_c(&self, fraction: f64) -> f64 {
         let off_k = self.skin_off_k + self.drift_k * fraction;
         self.rest_c + off_k.clamp(-self.off_max_k, self.off_max_k)
@@ -100,7 +98,6 @@ impl Participant {
 
 impl ObserverParams {
     /// The parameters for a session: those of a thermode where the skin rests on the display, otherwise those of touch.
-    #[must_use]
     pub fn of_session(session: &Session) -> Self {
         let is_thenar = |station: &Station| station.finger.contains("thenar");
         match session.trial.procedure {

@@ -11,7 +11,6 @@ pub struct Stream(Xoshiro256PlusPlus);
 
 impl Stream {
     /// The stream of a seed for a purpose.
-    #[must_use]
     pub fn new(seed: u64, purpose: &str) -> Self {
         Self(Xoshiro256PlusPlus::seed_from_u64(stream_seed(
             seed, purpose,

@@ -11,7 +11,6 @@ pub struct Design {
 
 impl Design {
     /// All factors of all parts in the order in which the file names them, each once.
-    #[must_use]
     pub fn factor_names(&self) -> Vec<String> {
         let mut names = Vec::new();
         for name in self.parts.iter().flat_map(|part| &part.factor_names) {
@@ -23,7 +22,6 @@ impl Design {
     }
 
     /// The part of a name.
-    #[must_use]
     pub fn part(&self, name: &str) -> Option<&Part> {
         self.parts.iter().find(|part| part.name == name)
     }
@@ -61,7 +59,6 @@ pub struct Part {
 
 impl Part {
     /// All combinations of the levels of `constants`, `pairs` and `factors`, in the order of the file.
-    #[must_use]
     pub fn combinations(&self) -> Vec<Vec<(&str, &str)>> {
         let constants = (self.constants.iter()).map(|(name, level)| (&**name, &**level));
         let mut combinations = vec![constants.collect::<Vec<_>>()];
@@ -117,7 +114,6 @@ pub struct Pairs {
 
 impl Pairs {
     /// The pairs in the order of the levels.
-    #[must_use]
     pub fn combinations(&self) -> Vec<[&str; 2]> {
         let mut pairs = Vec::new();
         for (i, one) in self.levels.iter().enumerate() {
@@ -157,7 +153,6 @@ pub struct Present {
 
 impl Present {
     /// What the stations present in a trial in which `level` tells the level of each factor.
-    #[must_use]
     pub fn case(&self, level: impl Fn(&str) -> Option<String>) -> Option<&PresentCase> {
         let Some(by) = &self.by else {
             return self.cases.first();
@@ -205,7 +200,6 @@ pub enum Stimulus {
 
 impl Stimulus {
     /// The finger of the device that presents it; `None` for nothing and for samples.
-    #[must_use]
     pub const fn device_finger(&self) -> Option<u8> {
         match self {
             Self::Nothing | Self::Sample(_) => None,
@@ -216,7 +210,6 @@ impl Stimulus {
     }
 
     /// The material that it presents.
-    #[must_use]
     pub const fn material(&self) -> Option<&MaterialOf> {
         match self {
             Self::Sample(material) | Self::Display { material, .. } => Some(material),

@@ -26,7 +26,6 @@ const SETTLED: f64 = 0.1;
 
 /// Mean of a skin thermistor just before `land_s`, °C, and its fall until just before `lift_s`, K. `samples` are times, s, and
 /// temperatures, °C.
-#[must_use]
 pub fn skin_fall(samples: &[(f64, f64)], land_s: f64, lift_s: f64) -> (Option<f64>, Option<f64>) {
     let mean_before = |end_s: f64| {
         let inside = samples
@@ -44,7 +43,6 @@ pub fn skin_fall(samples: &[(f64, f64)], land_s: f64, lift_s: f64) -> (Option<f6
 }
 
 /// What `samples` of a display in the order of their times say of a contact from `land_s` to `lift_s`: everything but the skin.
-#[must_use]
 pub fn measure(
     samples: &[Sample],
     presented: String,

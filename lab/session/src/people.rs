@@ -97,7 +97,6 @@ pub enum Phase {
 
 impl Phase {
     /// Its word in files and on screens.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Connect => "connect",
@@ -129,7 +128,6 @@ pub enum Cue {
 
 impl Cue {
     /// Frequency of the tone, Hz; each lasts 0.2 s.
-    #[must_use]
     pub const fn frequency_hz(self) -> u32 {
         match self {
             Self::Reach => 880,

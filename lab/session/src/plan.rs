@@ -195,7 +195,6 @@ impl Plan {
     }
 
     /// The level of a factor in a trial; `None` if there is no such factor.
-    #[must_use]
     pub fn level<'a>(&self, trial: &'a PlannedTrial, factor: &str) -> Option<&'a str> {
         let index = self.factors.iter().position(|name| name == factor)?;
         trial.levels.get(index).map(String::as_str)
@@ -204,7 +203,6 @@ impl Plan {
     /// The plan as a table with a row for each trial. After trial, part, block and break there is a column for each factor, then
     /// one for what each station presents; the last are force to be followed (N), staircase and correct answer. What a trial
     /// does not have is empty.
-    #[must_use]
     pub fn csv(&self) -> String {
         let lists = [&self.factors[..], &self.stations[..]].concat();
         let mut csv = String::from("trial,part,block,break_before");

@@ -6,7 +6,6 @@ use crate::Presented;
 
 impl Presented {
     /// The finger of the device whose display the station is; `None` for a sample or nothing.
-    #[must_use]
     pub const fn device_finger(&self) -> Option<u8> {
         match *self {
             Self::Nothing | Self::Sample { .. } => None,

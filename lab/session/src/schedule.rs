@@ -38,7 +38,6 @@ pub struct Next<'a> {
 
 impl<'a> Schedule<'a> {
     /// All trials of the plan.
-    #[must_use]
     pub fn new(session: &Session, plan: &'a Plan) -> Self {
         Self {
             plan,
@@ -131,7 +130,6 @@ impl<'a> Schedule<'a> {
     }
 
     /// Numbers of the trials that were void too many times and are left out.
-    #[must_use]
     pub fn given_up(&self) -> &[u32] {
         &self.given_up
     }

@@ -69,7 +69,6 @@ impl Session {
     }
 
     /// The material of a name: one that the session describes, or one of [`material::MATERIALS`].
-    #[must_use]
     pub fn material(&self, name: &str) -> Option<Material> {
         let described = self.materials.iter().find(|(known, _)| known == name);
         described
@@ -78,13 +77,11 @@ impl Session {
     }
 
     /// Whether the device has to be told the properties of a material, because it does not know its name.
-    #[must_use]
     pub fn describes_material(&self, name: &str) -> bool {
         self.materials.iter().any(|(known, _)| known == name)
     }
 
     /// The fingers of the device that present something in this session, in ascending order.
-    #[must_use]
     pub fn device_fingers(&self) -> Vec<u8> {
         let stimuli = self.present.cases.iter().flat_map(|case| &case.stations);
         ascending(stimuli.filter_map(Stimulus::device_finger))
@@ -92,20 +89,17 @@ impl Session {
 
     /// The finger of the device whose skin thermistor measures at a station, by its index, that presents something: that of the
     /// key `skin_sensor`, otherwise that of the display.
-    #[must_use]
     pub fn skin_sensor(&self, station: usize, presented: &Presented) -> Option<u8> {
         self.stations.get(station)?.skin_sensor_at(presented)
     }
 
     /// The fingers of the device whose skin thermistors measure in a trial, in ascending order.
-    #[must_use]
     pub fn skin_sensors(&self, trial: &PlannedTrial) -> Vec<u8> {
         ascending(skin_sensors(&self.stations, &trial.presented))
     }
 
     /// The fingers of the device that report in a trial, in ascending order: those that present something, and those whose skin
     /// thermistors measure.
-    #[must_use]
     pub fn reporting_fingers(&self, trial: &PlannedTrial) -> Vec<u8> {
         let displays = trial.presented.iter().filter_map(Presented::device_finger);
         ascending(displays.chain(self.skin_sensors(trial)))
@@ -113,7 +107,6 @@ impl Session {
 
     /// Whether a display presents something, or a skin thermistor measures at a station that presents something. Otherwise the
     /// session needs no device, even if its file describes one.
-    #[must_use]
     pub fn needs_device(&self) -> bool {
         let at_stations = |case: &crate::PresentCase| {
             let mut stations = self.stations.iter().zip(&case.stations);
@@ -126,7 +119,6 @@ impl Session {
     }
 
     /// Whether a skin thermistor measures at a station in any trial.
-    #[must_use]
     pub fn measures_skin(&self) -> bool {
         let is_named = |station: &Station| station.skin_sensor.is_some();
         self.stations.iter().any(is_named) || !self.device_fingers().is_empty()

@@ -176,7 +176,6 @@ pub type Kept = BTreeMap<String, f64>;
 
 impl Expected {
     /// Whether a value is as expected; otherwise whether it is too low.
-    #[must_use]
     pub fn judge(&self, value: &Value) -> Judgement {
         match (self, value) {
             (Self::Range(least, most, _), Value::Number(number)) => {
@@ -196,7 +195,6 @@ impl Expected {
     }
 
     /// A value as text, with the unit that is expected.
-    #[must_use]
     pub fn text_of(&self, value: &Value) -> String {
         match (self, value) {
             (Self::Range(_, _, unit), Value::Number(number)) => unit.text(*number),

@@ -15,7 +15,6 @@ table { border-collapse: collapse; width: 100%; } th, td { text-align: left; ver
 .sign td { height: 2.4rem; width: 33%; } @media print { body { margin: 0; } }";
 
 /// The page as HTML.
-#[must_use]
 pub fn page(report: &Report) -> String {
     let mut html = String::new();
     // Writing to a string does not fail.

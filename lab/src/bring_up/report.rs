@@ -139,7 +139,6 @@ impl Report {
     }
 
     /// Whether every stage was done and every check passed.
-    #[must_use]
     pub fn passed(&self) -> bool {
         let mut records = self.records.iter();
         self.resume.is_none()
@@ -148,7 +147,6 @@ impl Report {
     }
 
     /// What is broken, in the order in which it was found.
-    #[must_use]
     pub fn findings(&self) -> Vec<&str> {
         let records = self.records.iter();
         records
@@ -157,7 +155,6 @@ impl Report {
     }
 
     /// The result for another program.
-    #[must_use]
     pub fn json(&self) -> serde_json::Value {
         serde_json::json!({ "passed": self.passed(), "findings": self.findings() })
     }

@@ -67,7 +67,6 @@ pub enum TypedValueError {
 
 impl Unit {
     /// The unit as it is printed.
-    #[must_use]
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::Ohm => "Ω",
@@ -162,7 +161,6 @@ impl Unit {
     }
 
     /// A value as text with its unit, to four digits.
-    #[must_use]
     pub fn text(self, value: f64) -> String {
         if value.is_infinite() && self == Self::Ohm {
             return "open".into();

@@ -52,7 +52,6 @@ const WIDE: f64 = 0.2;
 
 impl Report {
     /// The report of a person's measurement.
-    #[must_use]
     pub fn new(code: &str, measurement: &Measurement, fit: &Fit) -> Self {
         let recording = &measurement.recording;
         let at_hardness_w_m2k = conductance_at_hardness::<f64>(&SKIN.surface, &recording.display);
@@ -86,7 +85,6 @@ impl Report {
     }
 
     /// Lines for a terminal, with the line to send as the last one.
-    #[must_use]
     pub fn text(&self) -> String {
         let mut text =
             String::from("force, N   R, 1e-6 m2 K/W   95 %            Eq. 6-8   deviation\n");

@@ -32,7 +32,6 @@ pub struct PortInfo {
 
 impl UsbId {
     /// Whether it is a probe with a virtual COM port, as on the device's board.
-    #[must_use]
     pub fn is_st_link(&self) -> bool {
         self.vendor == ST_VENDOR && ST_LINK_PRODUCTS.contains(&self.product)
     }

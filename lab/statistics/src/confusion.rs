@@ -44,7 +44,6 @@ impl ConfusionMatrix {
     }
 
     /// The labels, in the order of rows and columns.
-    #[must_use]
     pub fn labels(&self) -> &[String] {
         &self.labels
     }
@@ -84,7 +83,6 @@ impl ConfusionMatrix {
     }
 
     /// Parts of the answers of each row, from 0 to 1; `None` for a label that was never presented.
-    #[must_use]
     pub fn proportions(&self) -> Vec<Option<Vec<f64>>> {
         let of_row = |row: &[u32]| {
             let total = f64::from(row.iter().sum::<u32>());

@@ -29,33 +29,28 @@ impl Proportion {
     }
 
     /// Number of correct answers.
-    #[must_use]
     pub fn correct(self) -> u32 {
         self.correct
     }
 
     /// Number of answers.
-    #[must_use]
     pub fn total(self) -> u32 {
         self.total
     }
 
     /// `p = k / n`, from 0 to 1.
-    #[must_use]
     pub fn value(self) -> f64 {
         f64::from(self.correct) / f64::from(self.total)
     }
 
     /// Standard error of the proportion, `sqrt(p (1 - p) / n)`: 0 if all or no answers are correct, for which
     /// [`interval`](Self::interval) is meant.
-    #[must_use]
     pub fn standard_error(self) -> f64 {
         let p = self.value();
         (p * (1.0 - p) / f64::from(self.total)).sqrt()
     }
 
     /// Log-linear estimate `(k + 1/2) / (n + 1)`: never 0 or 1, so that its sensitivity is finite (Hautus, 1995).
-    #[must_use]
     pub fn log_linear(self) -> f64 {
         (f64::from(self.correct) + 0.5) / (f64::from(self.total) + 1.0)
     }

@@ -96,7 +96,6 @@ impl Staircase {
     }
 
     /// Level of the next trial; after the end that of the trial that would follow.
-    #[must_use]
     pub fn level(&self) -> f64 {
         self.level
     }
@@ -120,14 +119,12 @@ impl Staircase {
     }
 
     /// Whether there are enough reversals, or as many trials as are allowed.
-    #[must_use]
     pub fn is_finished(&self) -> bool {
         self.reversals.len() >= self.rule.reversals || self.trials >= self.rule.trials_max
     }
 
     /// Geometric mean of the last reversals, in the unit of the level. `None` while the staircase runs, and where it ended
     /// without enough reversals.
-    #[must_use]
     pub fn threshold(&self) -> Option<f64> {
         if self.reversals.len() < self.rule.reversals {
             return None;
@@ -138,19 +135,16 @@ impl Staircase {
     }
 
     /// Levels at which the direction changed so far.
-    #[must_use]
     pub fn reversals(&self) -> &[f64] {
         &self.reversals
     }
 
     /// Number of answers so far.
-    #[must_use]
     pub fn trials(&self) -> u32 {
         self.trials
     }
 
     /// The rule.
-    #[must_use]
     pub fn rule(&self) -> &StaircaseRule {
         &self.rule
     }

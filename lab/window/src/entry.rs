@@ -20,7 +20,6 @@ pub struct NumberEntry {
 
 impl NumberEntry {
     /// Nothing is entered yet.
-    #[must_use]
     pub fn new((least, most): (f64, f64), stations: usize) -> Self {
         Self {
             least,
@@ -31,19 +30,16 @@ impl NumberEntry {
     }
 
     /// The range.
-    #[must_use]
     pub const fn range(&self) -> (f64, f64) {
         (self.least, self.most)
     }
 
     /// What is entered for each station.
-    #[must_use]
     pub fn texts(&self) -> &[String] {
         &self.texts
     }
 
     /// The station that the keys are for.
-    #[must_use]
     pub const fn station(&self) -> usize {
         self.at
     }
@@ -56,7 +52,6 @@ impl NumberEntry {
     }
 
     /// The number of a station, if it is one of the range. A comma is what many keyboards have.
-    #[must_use]
     pub fn value(&self, station: usize) -> Option<f64> {
         let text = self.texts.get(station)?.replace(',', ".");
         let value = text.parse::<f64>().ok()?;
@@ -72,7 +67,6 @@ impl NumberEntry {
     }
 
     /// All numbers, if each is entered.
-    #[must_use]
     pub fn response(&self) -> Option<Response> {
         let values = (0..self.texts.len()).map(|station| self.value(station));
         values.collect::<Option<_>>().map(Response::Numbers)

@@ -69,7 +69,6 @@ pub enum Action {
 }
 
 /// What a key does in a window now; `None` if nothing.
-#[must_use]
 pub fn action(key: Key, window: WindowKind, model: &Model) -> Option<Action> {
     match key {
         Key::Escape => Some(Action::Stop),

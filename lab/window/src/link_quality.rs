@@ -26,7 +26,6 @@ impl LinkQuality {
     }
 
     /// How long no telemetry has come; `None` if none ever came.
-    #[must_use]
     pub fn silent_for(&self, now: Duration) -> Option<Duration> {
         Some(now.saturating_sub(self.last_at?))
     }
@@ -56,13 +55,11 @@ impl ScreenLatency {
     }
 
     /// Number of frames.
-    #[must_use]
     pub fn frames(&self) -> u64 {
         self.classes.iter().sum()
     }
 
     /// A latency, ms, that so many per cent of the frames do not exceed; `None` without frames.
-    #[must_use]
     pub fn percentile_ms(&self, percent: u64) -> Option<u32> {
         let frames = self.frames();
         let mut seen = 0;
@@ -78,7 +75,6 @@ impl ScreenLatency {
     }
 
     /// The longest latency, ms, rounded up.
-    #[must_use]
     pub fn longest_ms(&self) -> u32 {
         u32::try_from(self.longest.as_micros().div_ceil(1000)).unwrap_or(u32::MAX)
     }

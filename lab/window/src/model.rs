@@ -105,7 +105,6 @@ pub struct Model {
 
 impl Model {
     /// Nothing is known yet; `None` without a session.
-    #[must_use]
     pub fn new(session: Option<SessionView>) -> Self {
         let stations = session.iter().flat_map(|session| &session.stations);
         Self {
@@ -272,31 +271,26 @@ impl Model {
     }
 
     /// The session; `None` while a device is monitored.
-    #[must_use]
     pub const fn session(&self) -> Option<&SessionView> {
         self.session.as_ref()
     }
 
     /// The fingers of the device.
-    #[must_use]
     pub const fn fingers(&self) -> &BTreeMap<u8, FingerView> {
         &self.fingers
     }
 
     /// Phase and since when.
-    #[must_use]
     pub const fn phase(&self) -> Option<(Phase, Duration)> {
         self.phase
     }
 
     /// The trial that runs.
-    #[must_use]
     pub const fn trial(&self) -> Option<&TrialView> {
         self.trial.as_ref()
     }
 
     /// What is to be placed where.
-    #[must_use]
     pub fn placement(&self) -> Vec<String> {
         let both = self.session.as_ref().zip(self.trial.as_ref());
         both.map_or_else(Vec::new, |(session, view)| {
@@ -305,7 +299,6 @@ impl Model {
     }
 
     /// What the session waits for.
-    #[must_use]
     pub fn gate(&self, now: Duration) -> Option<Gate> {
         let (phase, since) = self.phase.filter(|_| self.end.is_none())?;
         let session = self.session.as_ref()?;
@@ -322,37 +315,31 @@ impl Model {
     }
 
     /// What the operator is asked.
-    #[must_use]
     pub const fn question(&self) -> Option<&OperatorQuestion> {
         self.question.as_ref()
     }
 
     /// What the participant sees.
-    #[must_use]
     pub const fn participant(&self) -> &ParticipantView {
         &self.participant
     }
 
     /// The notices, the oldest first.
-    #[must_use]
     pub const fn notices(&self) -> &VecDeque<Notice> {
         &self.notices
     }
 
     /// The line to the device.
-    #[must_use]
     pub const fn link(&self) -> &LinkQuality {
         &self.link
     }
 
     /// Whether the operator has stopped, and the worker has not carried it out yet.
-    #[must_use]
     pub const fn is_stopped(&self) -> bool {
         self.stopped
     }
 
     /// How the worker ended.
-    #[must_use]
     pub const fn end(&self) -> Option<&End> {
         self.end.as_ref()
     }

@@ -29,7 +29,6 @@ impl Order {
     pub const ALL: [Self; 2] = [Self::Arm, Self::Clear];
 
     /// Its key, a letter in lower case.
-    #[must_use]
     pub const fn key(self) -> char {
         match self {
             Self::Off => 'o',
@@ -39,7 +38,6 @@ impl Order {
     }
 
     /// Its word on the line and on its button.
-    #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
             Self::Off => "abort",

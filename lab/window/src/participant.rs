@@ -74,7 +74,6 @@ impl Follow {
     }
 
     /// The upper end of the range that is shown, N.
-    #[must_use]
     pub fn range_n(&self) -> f64 {
         FOLLOW_RANGE * self.target_n
     }

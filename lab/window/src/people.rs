@@ -41,7 +41,6 @@ pub struct WindowPeople {
 
 impl WindowPeople {
     /// Persons at the windows of a session, or of a monitored device; and the windows' end.
-    #[must_use]
     pub fn new(
         session: Option<SessionView>,
         stop: StopFlag,
@@ -69,7 +68,6 @@ impl WindowPeople {
     }
 
     /// The operator's stop.
-    #[must_use]
     pub const fn stop(&self) -> &StopFlag {
         &self.window_side.stop
     }
@@ -128,13 +126,11 @@ impl WindowSide {
     }
 
     /// Time since the beginning.
-    #[must_use]
     pub fn now(&self) -> Duration {
         self.zero.elapsed()
     }
 
     /// The model for a frame, and how long its oldest update has waited for it.
-    #[must_use]
     pub fn snapshot(&self) -> (Model, Option<Duration>) {
         let mut shared = self.shared();
         let waited = shared.undrawn_since.take();
@@ -193,7 +189,6 @@ impl WindowSide {
     }
 
     /// The stop.
-    #[must_use]
     pub const fn stop(&self) -> &StopFlag {
         &self.stop
     }

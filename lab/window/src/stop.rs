@@ -25,13 +25,11 @@ impl StopFlag {
     }
 
     /// Whether it is pressed.
-    #[must_use]
     pub fn is_pressed(&self) -> bool {
         self.pressed.load(Ordering::SeqCst)
     }
 
     /// Whether the window is to close.
-    #[must_use]
     pub fn is_closing(&self) -> bool {
         self.closing.load(Ordering::SeqCst)
     }
@@ -42,7 +40,6 @@ impl StopFlag {
     }
 
     /// The flag with which [`Interruptible`](thermal_client::link::Interruptible) ends a wait for the device at once.
-    #[must_use]
     pub fn interrupts_link(&self) -> Arc<AtomicBool> {
         self.interrupts_link.clone()
     }

@@ -27,7 +27,6 @@ const fn choice(decision: Decision, key: char, label: &'static str) -> Choice {
 }
 
 /// What the operator can decide; the stop is always there besides.
-#[must_use]
 pub const fn choices(question: &OperatorQuestion) -> &'static [Choice] {
     const READY: [Choice; 1] = [choice(Decision::Continue, 'c', "Continue: all is in place")];
     const SKIN: [Choice; 3] = [
@@ -54,7 +53,6 @@ pub const fn choices(question: &OperatorQuestion) -> &'static [Choice] {
 }
 
 /// A question to the operator: title and text.
-#[must_use]
 pub fn question(question: &OperatorQuestion) -> (&'static str, String) {
     match question {
         OperatorQuestion::Ready(what) => ("Ready?", what.clone()),
@@ -78,7 +76,6 @@ pub fn question(question: &OperatorQuestion) -> (&'static str, String) {
 }
 
 /// A state of the device: its word on screens, and what it means.
-#[must_use]
 pub const fn state(state: StateName) -> (&'static str, &'static str) {
     match state {
         StateName::Off => ("OFF", "The bridge is off. `arm` begins with the self-test."),
@@ -114,7 +111,6 @@ pub const fn state(state: StateName) -> (&'static str, &'static str) {
 }
 
 /// Whether the bridge is driven in a state.
-#[must_use]
 pub const fn is_driven(state: StateName) -> bool {
     matches!(
         state,
@@ -127,7 +123,6 @@ pub const fn is_driven(state: StateName) -> bool {
 }
 
 /// What happens in a phase, for the operator.
-#[must_use]
 pub const fn phase(phase: Phase) -> &'static str {
     match phase {
         Phase::Connect => "the device is set up",
@@ -143,7 +138,6 @@ pub const fn phase(phase: Phase) -> &'static str {
 }
 
 /// What the participant is told of an answer.
-#[must_use]
 pub const fn feedback(is_correct: bool) -> &'static str {
     if is_correct {
         "Correct."
@@ -153,7 +147,6 @@ pub const fn feedback(is_correct: bool) -> &'static str {
 }
 
 /// What a tone asks of the participant.
-#[must_use]
 pub fn cue(cue: Cue) -> String {
     match cue {
         Cue::Reach => "Move above".into(),
@@ -164,7 +157,6 @@ pub fn cue(cue: Cue) -> String {
 }
 
 /// What the participant reads in a phase without text, cue or question.
-#[must_use]
 pub const fn participant_phase(phase: Option<Phase>) -> &'static str {
     match phase {
         Some(Phase::Break) => "Break",
@@ -176,7 +168,6 @@ pub const fn participant_phase(phase: Option<Phase>) -> &'static str {
 }
 
 /// What is to be placed where, a line for each station.
-#[must_use]
 pub fn placement(stations: &[Station], trial: &PlannedTrial) -> Vec<String> {
     let presented = trial.presented.iter().enumerate();
     let line = |(index, presented): (usize, &Presented)| {
@@ -222,7 +213,6 @@ pub fn placement(stations: &[Station], trial: &PlannedTrial) -> Vec<String> {
 }
 
 /// A key as it is written on a button.
-#[must_use]
 pub fn key_cap(key: char) -> String {
     key.to_ascii_uppercase().to_string()
 }

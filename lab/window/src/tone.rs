@@ -31,7 +31,6 @@ const PLAYERS: [(&str, &[&str]); 4] = [
 ];
 
 /// A tone as a WAV file: mono, 16 bits.
-#[must_use]
 pub fn wav(frequency_hz: u32) -> Vec<u8> {
     let count = (TONE_S * f64::from(RATE_HZ)) as u32;
     let bytes = 2 * count;
@@ -66,7 +65,6 @@ pub struct Tones {
 
 impl Tones {
     /// Starts the thread. Without a player it rings the terminal's bell.
-    #[must_use]
     pub fn start() -> Self {
         let player = PLAYERS.into_iter().find(|(name, _)| is_in_path(name));
         let (sender, receiver) = sync_channel(WAITING_MAX);
@@ -79,7 +77,6 @@ impl Tones {
     }
 
     /// Name of the player; `None` if there is none.
-    #[must_use]
     pub const fn player(&self) -> Option<&'static str> {
         self.player
     }

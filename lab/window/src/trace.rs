@@ -81,14 +81,12 @@ impl Trace {
     }
 
     /// By how much a sample is older than the newest one, s.
-    #[must_use]
     pub fn age_s(&self, sample: &Sample) -> f64 {
         let newest = self.samples.back().map_or(sample.tick, |last| last.tick);
         f64::from(newest.wrapping_sub(sample.tick)) * TICK_S
     }
 
     /// Mean of the skin over the last second, °C; `None` if the device does not know it.
-    #[must_use]
     pub fn skin_c(&self) -> Option<f64> {
         let last = self.samples.iter().rev();
         let last = last.take_while(|sample| self.age_s(sample) <= 1.0);

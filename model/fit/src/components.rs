@@ -35,7 +35,6 @@ pub struct Components {
 ///
 /// # Panics
 /// There are fewer than two fingers, or all are alike.
-#[must_use]
 pub fn components(fingers: &[impl Fn(f64) -> f64]) -> Components {
     let mean = &MEAN.impedance;
     let samples: Vec<_> = logarithmic(S_MIN_1_S, S_MAX_1_S, SAMPLES).collect();

@@ -16,7 +16,6 @@ fn fit_relative(layers: &[Layer], back: Back) -> Fit {
 }
 
 /// The thesis's finger: a half-space of skin.
-#[must_use]
 pub fn thesis() -> Fit {
     let skin = without_blood(
         f64::INFINITY,
@@ -43,7 +42,6 @@ pub const MEAN_LAYERS: [Layer; 3] = [
 ];
 
 /// The mean finger: its layers over a core that keeps its temperature.
-#[must_use]
 pub fn mean() -> Fit {
     fit_relative(&MEAN_LAYERS, Back::Held)
 }

@@ -33,7 +33,6 @@ pub struct Fit {
 
 impl Fit {
     /// The fitted impedance.
-    #[must_use]
     pub fn impedance(&self) -> Impedance<'_> {
         Impedance {
             direct_m2k_w: self.direct_m2k_w,
@@ -111,7 +110,6 @@ fn merge(relaxations: &mut Vec<Relaxation>, i: usize) {
 
 /// Fits at most `count_max` relaxations to the impedance `exact(s)`, m² K/W, at real `s` in 1/s, by least squares of the
 /// error of the impedance times `weight(s, exact(s))`.
-#[must_use]
 pub fn fit(exact: impl Fn(f64) -> f64, weight: impl Fn(f64, f64) -> f64, count_max: usize) -> Fit {
     let samples = Samples(
         logarithmic(S_MIN_1_S, S_MAX_1_S, SAMPLES)

@@ -17,7 +17,6 @@ pub struct Layer {
 
 /// Exact surface impedance, m² K/W, of layers from the touched face down, at the real Laplace variable `s_1_s`, 1/s, which
 /// must be above 0. Each layer is a transmission line.
-#[must_use]
 pub fn impedance(layers: &[Layer], back: Back, s_1_s: f64) -> f64 {
     let behind = match back {
         Back::Insulated => f64::INFINITY,

@@ -173,7 +173,6 @@ pub struct ScaledBody {
 
 impl ScaledBody {
     /// The half-space whose impedance is that of the thesis's skin times `factor`, for ticks of 1 ms.
-    #[must_use]
     pub const fn half_space(factor: U16F16) -> Self {
         Self {
             body: FingerBody::THESIS.tissue,
@@ -182,13 +181,11 @@ impl ScaledBody {
     }
 
     /// Response of the surface to a scaled flux of 1 at the end of its tick.
-    #[must_use]
     pub fn tick_gain(&self) -> I12F20 {
         saturating_product(self.body.tick_gain, self.factor)
     }
 
     /// The scaled flux that moves the surface of the other body as `flux` does that of this one.
-    #[must_use]
     pub fn scaled(&self, flux: Celsius) -> Celsius {
         saturating_product(flux, self.factor)
     }
@@ -412,7 +409,6 @@ impl Body {
     }
 
     /// The coefficients, for [`BodyState`].
-    #[must_use]
     pub fn relaxations(&self) -> Relaxations<'_> {
         Relaxations {
             fast: &self.fast[..self.fast_count.min(FAST_MAX)],
@@ -426,7 +422,6 @@ impl Body {
     }
 
     /// Response of the surface to a scaled flux of 1 at the end of its tick.
-    #[must_use]
     pub const fn tick_gain(&self) -> I12F20 {
         self.tick_gain
     }

@@ -60,7 +60,6 @@ impl ChordInterpolation {
     /// Set-points beyond ±127 °C saturate. Where an evaluation could not change the set-point by the tolerance, it
     /// is constant and nothing is evaluated: contacts that cannot be distinguished from perfect contact (Eq. 3-1), from no
     /// contact, or whose `dT (w - r)` is nearly 0 (both at the preset).
-    #[must_use]
     pub fn new(
         contact: &Contact,
         skin: Celsius,
@@ -127,7 +126,6 @@ impl ChordInterpolation {
     }
 
     /// Set-point of the current tick.
-    #[must_use]
     pub fn setpoint(&self) -> Celsius {
         let left = match self.left {
             0 => 1 << MAX_LENGTH_LOG2,
@@ -137,13 +135,11 @@ impl ChordInterpolation {
     }
 
     /// Whether the last [`Self::advance`] evaluated `E`.
-    #[must_use]
     pub const fn has_just_evaluated(&self) -> bool {
         self.left == 0
     }
 
     /// Magnitude of the set-point's change over the contact, `|dT (w - r)|`, K.
-    #[must_use]
     pub const fn transient_amplitude(&self) -> Celsius {
         Celsius::from_bits(self.twice_amplitude.to_bits() >> 1).abs()
     }

@@ -28,7 +28,6 @@ pub struct Response {
 
 impl Contact {
     /// State `elapsed` ticks after landing, from the temperatures before landing; constant from [`Ticks::MAX`] on.
-    #[must_use]
     #[inline]
     pub fn at(&self, elapsed: u32, skin_before: Celsius, object_before: Celsius) -> Response {
         Response {
@@ -46,20 +45,17 @@ impl Contact {
 /// ranges errors grow with `dT`, and the outputs saturate.
 impl Response {
     /// `E = erfcx(b sqrt(t))`: 1 at landing, 0 after a long time.
-    #[must_use]
     pub const fn erfcx(&self) -> Fraction {
         self.erfcx
     }
 
     /// Surface temperature of the skin, °C (Eq. 6-5); error below 0.2 µK + `w e dT`.
-    #[must_use]
     pub fn skin(&self) -> Celsius {
         self.skin_before
             .saturating_sub(fraction_of(self.difference(), self.skin_part()))
     }
 
     /// Surface temperature of the object, °C (Eq. 6-6); error below 0.2 µK + `(1 - w) e dT`.
-    #[must_use]
     pub fn object(&self) -> Celsius {
         let object_part = self.one_less_erfcx().saturating_sub(self.skin_part());
         self.object_before
@@ -68,7 +64,6 @@ impl Response {
 
     /// Temperature of the display's surface at which the skin has the temperature it has on the object, °C
     /// (Eq. 6-12); error below 0.6 µK + `|r - w| e dT`.
-    #[must_use]
     pub fn display(&self) -> Celsius {
         // `w (1 - E) + r E` lies between w and r, below 16, so 60 binary places fit in 64 bits.
         let by_weight = self
@@ -86,7 +81,6 @@ impl Response {
     /// Heat flux out of the skin, W/m² (Eq. 6-7, positive for a cold object); error below `dT / R` times the sum of
     /// `e`, 2^-30 and the relative error of the conductance, and the resolution of [`Flux`]. Saturates at
     /// ±5e11 W/m².
-    #[must_use]
     pub fn flux_w_m2(&self) -> Flux {
         flux(
             i64::from(self.difference().to_bits()) * i64::from(self.erfcx.to_bits()),
@@ -137,7 +131,6 @@ pub(super) fn fraction_of(difference: Celsius, fraction: Fraction) -> Celsius {
 
 /// Display temperature at landing, °C (Eq. 6-12 at `t = 0`), for a ratio of the resistances of display and object, from the
 /// temperatures of skin and object before contact, °C.
-#[must_use]
 pub fn preset(ratio: Ratio, skin_c: Celsius, object_c: Celsius) -> Celsius {
     let difference = skin_c.saturating_sub(object_c);
     subtract_rounded::<{ Ratio::FRAC_NBITS }>(

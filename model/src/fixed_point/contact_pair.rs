@@ -56,13 +56,11 @@ impl ContactPair {
 
     /// `w = e_object / (e_object + e_skin)`: fraction of the initial temperature difference by which the skin's
     /// surface changes in a long contact (Eq. 3-1).
-    #[must_use]
     pub const fn weight(&self) -> Fraction {
         self.weight
     }
 
     /// Ratio of contact resistances, `R_display / R_object`.
-    #[must_use]
     pub const fn ratio(&self) -> Ratio {
         self.ratio
     }
@@ -70,13 +68,11 @@ impl ContactPair {
     /// Contact under the pressure `P` given by `log2(P / H)`, with `H` the microhardness of the skin (Eq. 6-8). Any
     /// logarithm is allowed. Within ±64 the relative error is below 2^-29 for `b² dt` and 2^-30 for the conductance;
     /// with that of [`super::log2_relative_pressure`] at most 4e-9 and 2e-9.
-    #[must_use]
     pub fn at_pressure(&self, log2_relative_pressure: Log2) -> Contact {
         self.with_pressure_term(logarithm::power_0_95(log2_relative_pressure))
     }
 
     /// [`Self::at_pressure`] by a law of the finger's own, without its gap, which [`super::OwnResistances`] have.
-    #[must_use]
     pub fn at_pressure_by(&self, law: &OwnContactLaw, log2_relative_pressure: Log2) -> Contact {
         self.with_pressure_term(law.power(log2_relative_pressure))
     }
@@ -95,13 +91,11 @@ impl ContactPair {
 
     /// Display temperature at landing, °C, to which the display is set before contact (Eq. 6-12 at `t = 0`);
     /// independent of pressure. Error below 0.15 µK + 2^-29 times the temperature difference of skin and object.
-    #[must_use]
     pub fn preset(&self, skin_c: Celsius, object_c: Celsius) -> Celsius {
         contact::preset(self.ratio, skin_c, object_c)
     }
 
     /// Temperature of both surfaces in perfect contact, °C (Eq. 3-1); error below 0.16 µK.
-    #[must_use]
     pub fn interface_temperature(&self, skin_c: Celsius, object_c: Celsius) -> Celsius {
         contact::interface(self.weight, skin_c, object_c)
     }

@@ -79,31 +79,26 @@ pub struct HalfSpace(RelaxationBank<FAST, SLOW>);
 impl HalfSpace {
     /// The same state with windows that end half a window apart from this one's. Of two half-spaces that are
     /// updated together, only one then has to update its slow modes in any tick.
-    #[must_use]
     pub fn staggered(&self) -> Self {
         Self(self.0.staggered(&RELAXATIONS))
     }
 
     /// A uniform half-space whose windows end with those of a tissue.
-    #[must_use]
     pub fn uniform_in_step_with(tissue: &TissueState) -> Self {
         Self(RelaxationBank::uniform_in_step_with(tissue))
     }
 
     /// A uniform tissue whose windows end with those of this half-space.
-    #[must_use]
     pub fn uniform_tissue(&self) -> TissueState {
         RelaxationBank::uniform_in_step_with(&self.0)
     }
 
     /// Change of the surface temperature at the end of the coming tick if no flux flows, K.
-    #[must_use]
     pub const fn free_response(&self) -> Celsius {
         self.0.free_response()
     }
 
     /// Change of the surface temperature at the end of the coming tick if `scaled_flux` flows in it, K.
-    #[must_use]
     pub fn response_to(&self, scaled_flux: Celsius) -> Celsius {
         self.0.response_to(scaled_flux, &RELAXATIONS)
     }
@@ -116,7 +111,6 @@ impl HalfSpace {
 
     /// The constant scaled flux that, added to a flux common to both, brings this surface to that of `other`
     /// within [`MATCH_HORIZON_TICKS`](super::MATCH_HORIZON_TICKS), K.
-    #[must_use]
     #[inline(always)]
     pub fn scaled_flux_to_match(&self, other: &Self) -> Celsius {
         self.0.scaled_flux_to_match(&other.0, &RELAXATIONS)

@@ -37,7 +37,6 @@ pub const COUNT_SHIFT: u32 = 12;
 ///
 /// Constant time: no square root, no division, no branch. On a Cortex-M4 34 instructions inlined, 40 with call
 /// and return (emulated, `cargo xtask bench`); 8.25 KiB of table.
-#[must_use]
 #[inline]
 pub fn erfcx(elapsed: Ticks, rate_per_tick: MantissaExponent) -> Fraction {
     // elapsed * (1 + fraction / 2^32), at least 1.

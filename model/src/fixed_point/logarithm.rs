@@ -33,7 +33,6 @@ impl LogRow {
 }
 
 /// `log2(x)` of an integer; error below 1.4 * 2^-32. Zero gives -1, the logarithm of one half.
-#[must_use]
 #[inline]
 pub fn log2(x: u32) -> Log2 {
     if x == 0 {
@@ -47,7 +46,6 @@ pub fn log2(x: u32) -> Log2 {
 }
 
 /// `2^(f / 2^32) - 1` in units of 2^-32, for `f / 2^32` in `[0, 1)`; error below 1.4 units.
-#[must_use]
 #[inline]
 pub fn exp2(f: u32) -> u32 {
     EXP2[(f >> (32 - ROW_BITS)) as usize].at(f << ROW_BITS)

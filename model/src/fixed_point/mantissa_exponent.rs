@@ -21,7 +21,6 @@ impl MantissaExponent {
     pub const ONE: Self = Self::new(0, 0);
 
     /// `(1 + fraction / 2^32) 2^exponent`.
-    #[must_use]
     pub const fn new(exponent: i16, fraction: u32) -> Self {
         Self::clamped(fraction, exponent as i32)
     }
@@ -38,7 +37,6 @@ impl MantissaExponent {
     }
 
     /// Rounds a positive, normal number; relative error at most 2^-33. `None` for any other.
-    #[must_use]
     pub fn from_f64(value: f64) -> Option<Self> {
         if !value.is_normal() || value < 0.0 {
             return None;
@@ -50,14 +48,12 @@ impl MantissaExponent {
     }
 
     /// Two to the power of `log2`; relative error below 1.4 * 2^-32.
-    #[must_use]
     pub fn from_log2(log2: Log2) -> Self {
         let bits = log2.to_bits();
         Self::clamped(exp2(bits as u32), (bits >> 32) as i32)
     }
 
     /// Product; relative error below 2^-32.
-    #[must_use]
     #[inline(never)]
     pub const fn times(self, other: Self) -> Self {
         let (a, b) = (self.fraction as u64, other.fraction as u64);
@@ -72,7 +68,6 @@ impl MantissaExponent {
     }
 
     /// Converts exactly, within the range of `f64`.
-    #[must_use]
     pub fn to_f64(self) -> f64 {
         libm::ldexp(
             f64::from(self.fraction) + 4_294_967_296.0,
@@ -81,13 +76,11 @@ impl MantissaExponent {
     }
 
     /// The 32 bits after the leading one of the mantissa.
-    #[must_use]
     pub const fn fraction(self) -> u32 {
         self.fraction
     }
 
     /// Exponent: `log2` of the number, rounded down.
-    #[must_use]
     pub const fn exponent(self) -> i32 {
         self.exponent
     }
@@ -98,7 +91,6 @@ impl MantissaExponent {
     }
 
     /// The number times `2^exponent`, exact within the range of the exponent.
-    #[must_use]
     #[inline]
     pub const fn times_power_of_2(self, exponent: i16) -> Self {
         Self::clamped(self.fraction, self.exponent + exponent as i32)

@@ -27,7 +27,6 @@ pub struct OwnContactLaw {
 impl OwnContactLaw {
     /// The law in ticks of `tick_s` seconds; values beyond those that are accepted saturate. `None` for the nominal law, which
     /// is that of every contact without one of its own, and for one that differs from it by less than the resolution.
-    #[must_use]
     pub fn new(law: &ContactLaw, tick_s: f64) -> Option<Self> {
         let own = Self::rounded(law, tick_s);
         (own != Self::rounded(&ContactLaw::NOMINAL, tick_s)).then_some(own)

@@ -66,7 +66,6 @@ pub(super) const LOG2_MICROHARDNESS: Log2 = Log2::lit("16.902422223664658");
 /// [`super::ContactPair::at_pressure`]; error below 6 * 2^-32 for every force.
 ///
 /// Zero is treated as half of the smallest positive [`Force`].
-#[must_use]
 pub fn log2_relative_pressure(force: Force) -> Log2 {
     const PLACES: Log2 = Log2::const_from_int(AREA_BITS as i64 - Force::FRAC_NBITS as i64);
     log2(force.to_bits())
@@ -78,7 +77,6 @@ pub fn log2_relative_pressure(force: Force) -> Log2 {
 pub type Area = fixed::types::U16F16;
 
 /// Contact area under a force (section 6.4.2, as [`crate::pressure::contact_area_m2`]); error below 4e-5 mm².
-#[must_use]
 pub fn contact_area(force: Force) -> Area {
     const MM2: u64 = 1_000_000;
     Area::from_bits(

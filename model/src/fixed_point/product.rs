@@ -79,14 +79,12 @@ fn shifted<Out: Word, Frac: LeEqU32, B: Word>(a: FixedI32<Frac>, b: B) -> i64 {
 /// let drop: Celsius = product(Celsius::lit("-10"), Fraction::lit("0.25"));
 /// assert_eq!(drop, Celsius::lit("-2.5"));
 /// ```
-#[must_use]
 #[inline]
 pub fn product<Out: Word, Frac: LeEqU32>(a: FixedI32<Frac>, b: impl Word) -> Out {
     Out::wrapped(shifted::<Out, _, _>(a, b))
 }
 
 /// `a b`, rounded down (towards -∞); saturates at the ends of `Out`.
-#[must_use]
 #[inline]
 pub fn saturating_product<Out: Word, Frac: LeEqU32>(a: FixedI32<Frac>, b: impl Word) -> Out {
     Out::limited(shifted::<Out, _, _>(a, b))
@@ -94,7 +92,6 @@ pub fn saturating_product<Out: Word, Frac: LeEqU32>(a: FixedI32<Frac>, b: impl W
 
 /// A 64-bit number, such as a sum of products, rounded down (towards -∞) to the places of `Out`; saturates at
 /// the ends of `Out`. Half the instructions of [`fixed::FixedI64::saturating_to_num`], which gives the same.
-#[must_use]
 #[inline]
 pub fn saturated<Out: Word, Frac: LeEqU64>(wide: FixedI64<Frac>) -> Out {
     const { assert!(FixedI64::<Frac>::FRAC_NBITS >= Out::PLACES) };
@@ -103,27 +100,23 @@ pub fn saturated<Out: Word, Frac: LeEqU64>(wide: FixedI64<Frac>) -> Out {
 
 /// A constant for set-up, rounded to the nearest number that `Out` holds, halves away from zero; saturates at
 /// the ends of `Out`. NaN gives 0.
-#[must_use]
 pub fn to_fixed<Out: Word>(value: f64) -> Out {
     Out::rounded(value)
 }
 
 /// `value` in units of `2^-places`, rounded.
-#[must_use]
 #[inline(never)]
 pub fn rounded_units(value: f64, places: u32) -> i64 {
     libm::round(libm::ldexp(value, places as i32)) as i64
 }
 
 /// `value` in units of `2^-places`, of which there are at most 63, rounded towards 0 and limited to 32 bits. Not inlined, as above.
-#[must_use]
 #[inline(never)]
 pub const fn truncated_units(value: f64, places: u32) -> i32 {
     (value * (1u64 << places) as f64) as i32
 }
 
 /// The number with this number of units of `2^-places`. The conversions of `fixed`, which give the same, have 1.5 KB of code.
-#[must_use]
 #[inline(never)]
 pub fn units_to_f64(units: i64, places: u32) -> f64 {
     libm::ldexp(units as f64, -(places as i32))

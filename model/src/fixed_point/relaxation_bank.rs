@@ -97,7 +97,6 @@ pub struct StateFactors<const FAST: usize, const SLOW: usize> {
 impl<const FAST: usize, const SLOW: usize> StateFactors<FAST, SLOW> {
     /// Factors for a change from the relaxations `from` to `to`, of the same rates in the same order. A relaxation without a
     /// gain above its resolution in `from` keeps its state; a factor is at most 16.
-    #[must_use]
     pub fn new(from: &Relaxations<'_>, to: &Relaxations<'_>) -> Self {
         let mut factors = Self {
             fast: [I5F27::ONE; FAST],
@@ -230,7 +229,6 @@ fn updated_slow(
 impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
     /// The same state with windows that end half a window apart from this one's. Of two bodies that are
     /// updated together, only one then has to update its slow relaxations in any tick.
-    #[must_use]
     #[inline]
     pub fn staggered(&self, relaxations: &Relaxations<'_>) -> Self {
         let mut other = *self;
@@ -239,7 +237,6 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
     }
 
     /// A uniform body whose windows end with those of another one.
-    #[must_use]
     pub fn uniform_in_step_with<const F: usize, const S: usize>(
         other: &RelaxationBank<F, S>,
     ) -> Self {
@@ -251,13 +248,11 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
     }
 
     /// Change of the surface temperature at the end of the coming tick if no flux flows, K.
-    #[must_use]
     pub const fn free_response(&self) -> Celsius {
         self.free_response
     }
 
     /// Change of the surface temperature at the end of the coming tick if `scaled_flux` flows in it, K.
-    #[must_use]
     #[inline]
     pub fn response_to(&self, scaled_flux: Celsius, relaxations: &Relaxations<'_>) -> Celsius {
         self.free_response
@@ -330,7 +325,6 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
 
     /// The constant scaled flux that, added to a flux common to both, brings this surface to that of `other`
     /// within [`MATCH_HORIZON_TICKS`], K.
-    #[must_use]
     #[inline]
     pub fn scaled_flux_to_match(&self, other: &Self, relaxations: &Relaxations<'_>) -> Celsius {
         let mut fast = I11F53::ZERO;

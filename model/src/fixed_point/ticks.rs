@@ -16,7 +16,6 @@ impl Ticks {
     };
 
     /// `None` for 0 and from 2^31 on.
-    #[must_use]
     pub const fn new(ticks: u32) -> Option<Self> {
         match NonZeroU32::new(ticks) {
             Some(count) if ticks <= u32::MAX >> 1 => Some(Self(count)),
@@ -25,13 +24,11 @@ impl Ticks {
     }
 
     /// The number of ticks.
-    #[must_use]
     pub const fn get(self) -> u32 {
         self.0.get()
     }
 
     /// `ticks + 1`, for `ticks` below 2^30; wraps to 1 there.
-    #[must_use]
     #[inline]
     pub(super) const fn after(ticks: u32) -> Self {
         match Self::new((ticks & Self::MAX.get() >> 1) + 1) {

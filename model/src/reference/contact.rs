@@ -5,7 +5,6 @@ use crate::material::{Material, SKIN_MICROHARDNESS_PA, Surface};
 
 /// Contact conductance `1.25 k_s da / R_q` of two surfaces where the pressure equals the microhardness, W/(m² K)
 /// (Eq. 6-8 to 6-11), for positive properties; relative error of a few roundings of `F`.
-#[must_use]
 pub fn conductance_at_hardness<F: Real>(a: &Surface, b: &Surface) -> F {
     let (ka, kb) = (
         F::from_f64(a.conductivity_w_mk),
@@ -23,7 +22,6 @@ pub fn conductance_at_hardness<F: Real>(a: &Surface, b: &Surface) -> F {
 
 /// Contact resistance between skin and another surface under `pressure_pa` (at least 0), m² K/W (Eq. 6-8);
 /// relative error below 2e-15 in `f64`. Infinite at zero pressure.
-#[must_use]
 pub fn contact_resistance<F: Real>(skin: &Surface, other: &Surface, pressure_pa: F) -> F {
     let relative = pressure_pa / F::from_f64(SKIN_MICROHARDNESS_PA);
     F::from_f64(1.0)
@@ -68,7 +66,6 @@ impl<F: Real> Contact<F> {
     ///
     /// At zero pressure no heat flows. At infinite pressure, without resistance, the flux is NaN; use
     /// [`super::SemiInfinite`].
-    #[must_use]
     pub fn new(
         (skin, skin_c): (&Material, F),
         (object, object_c): (&Material, F),
@@ -95,7 +92,6 @@ impl<F: Real> Contact<F> {
 
     /// State `t_s` seconds after landing (at least 0). For the conditions of the thesis the error of temperatures is
     /// at most 1e-7 µK in `f64` and 10 µK in `f32`; the relative error of the flux is at most 5e-15 in `f64`.
-    #[must_use]
     pub fn at(&self, t_s: F) -> Response<F> {
         let erfcx = erfcx((self.rate_per_s * t_s).sqrt());
         let difference = self.skin_c - self.object_c;
@@ -115,7 +111,6 @@ impl<F: Real> Contact<F> {
     ///
     /// Eq. 6-5 extended below the surface: `T_i - dT w (erfc x - exp(-x²) erfcx(x + z))` with
     /// `x = depth / (2 sqrt(alpha t))` and `z = b sqrt(t)`.
-    #[must_use]
     pub fn skin_at_depth(&self, skin: &Material, depth_m: F, t_s: F) -> F {
         let zero = F::from_f64(0.0);
         if t_s <= zero {

@@ -13,7 +13,6 @@ const LEVELS: u32 = 40;
 /// Rounding `z²` would cause an error of `z²` ulp. A fused multiply-add gives the exact remainder, which is applied
 /// as a factor. Large `z` use Laplace's continued fraction
 /// `sqrt(pi) erfcx(z) = 1/(z + (1/2)/(z + 1/(z + (3/2)/(z + ...))))`, evaluated from the innermost level outwards.
-#[must_use]
 pub fn erfcx<F: Real>(z: F) -> F {
     if z < F::from_f64(CONTINUED_FRACTION_FROM) {
         let square = z * z;

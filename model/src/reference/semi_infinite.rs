@@ -5,7 +5,6 @@ use crate::material::Material;
 
 /// Temperature of both surfaces in perfect contact, °C, constant over time (Eq. 3-1); error at most 1e-7 µK in
 /// `f64`.
-#[must_use]
 pub fn interface_temperature<F: Real>(
     skin: &Material,
     skin_c: F,
@@ -21,7 +20,6 @@ pub fn interface_temperature<F: Real>(
 
 /// Fourier number `alpha t / L²`, dimensionless (Eq. 3-4), of a body whose volume over contact area is `length_m`;
 /// relative error of a few roundings of `F`. Bodies are approximated by half-spaces where it is below 0.05.
-#[must_use]
 pub fn fourier_number<F: Real>(material: &Material, length_m: F, t_s: F) -> F {
     F::from_f64(material.diffusivity_m2_s()) * t_s / (length_m * length_m)
 }
@@ -41,7 +39,6 @@ pub struct SemiInfinite<F> {
 
 impl<F: Real> SemiInfinite<F> {
     /// Perfect contact of `skin` at `skin_c` with `object` at `object_c`.
-    #[must_use]
     pub fn new((skin, skin_c): (&Material, F), (object, object_c): (&Material, F)) -> Self {
         Self {
             skin_c,
@@ -53,7 +50,6 @@ impl<F: Real> SemiInfinite<F> {
 
     /// Skin temperature `depth_m` below the surface, `t_s` seconds after landing (both at least 0), °C (Eq. 3-2);
     /// error at most 1e-7 µK in `f64`. At time zero it is the temperature before contact, except at the surface.
-    #[must_use]
     pub fn skin_at_depth(&self, depth_m: F, t_s: F) -> F {
         if depth_m <= F::from_f64(0.0) {
             return self.interface_c;
@@ -65,7 +61,6 @@ impl<F: Real> SemiInfinite<F> {
     /// Heat flux in the skin at its surface, W/m², with the sign of Eq. 3-3: negative for a cold object, where
     /// [`super::Response::flux_w_m2`] is positive; relative error below 1e-13 in `f64`. `None` for `t_s` of 0 or less,
     /// because it is infinite at landing.
-    #[must_use]
     pub fn flux_w_m2(&self, t_s: F) -> Option<F> {
         if t_s <= F::from_f64(0.0) {
             return None;

@@ -64,7 +64,6 @@ fn polynomial_terms(thermistor_c: f64) -> [f64; COEFFICIENTS_PER_CORRECTION] {
 /// The temperature, °C, that the device computes with these settings for the thermistor with the index `sensor` from a
 /// mean sum of 16 conversions, 0 to 65520. It is not valid within two codes of a segment border, where the device
 /// interpolates the converter's step, nor if the steps add up to more than 8 counts, to which the device limits them.
-#[must_use]
 pub fn calibrated_temperature_c(settings: &Settings, sensor: usize, sum: f64) -> f64 {
     let Calibration {
         steps_counts,
@@ -184,7 +183,6 @@ impl<const N: usize> NormalEquations<N> {
 /// its segment borders are those of `prior` if neither display thermistor has points.
 ///
 /// Returns `None` if the equations are numerically singular.
-#[must_use]
 pub fn fit_calibration(
     settings: &Settings,
     prior: &Calibration,

@@ -57,7 +57,6 @@ pub struct CalibrationPoints {
 impl CalibrationPoints {
     /// Calibration points of the thermistor with the index `sensor` (0 to 4), in the order in which they were added;
     /// empty for any other index.
-    #[must_use]
     pub fn of_sensor(&self, sensor: usize) -> &[CalibrationPoint] {
         self.by_sensor
             .get(sensor)

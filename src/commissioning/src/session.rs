@@ -51,7 +51,6 @@ pub struct CommissioningSession {
 
 impl CommissioningSession {
     /// A session for a finger whose station starts with these settings; it has no calibration points yet.
-    #[must_use]
     pub fn new(settings: Settings) -> Self {
         Self {
             settings,
@@ -62,7 +61,6 @@ impl CommissioningSession {
 
     /// The present settings of the finger, which its station uses: those at start-up, with every accepted change since.
     /// `save` stores them.
-    #[must_use]
     pub const fn settings(&self) -> &Settings {
         &self.settings
     }

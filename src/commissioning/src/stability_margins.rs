@@ -34,7 +34,6 @@ impl StabilityMargins {
     /// The magnitude of the open loop falls monotonically with frequency, and its phase crosses -180° once above `1 /
     /// Ti`, so bisection finds both crossings. If a tile is so fast that the phase stays above -180° up to the Nyquist
     /// frequency, the gain margin is that at the Nyquist frequency.
-    #[must_use]
     pub fn new(tile: &Tile, gains: &PiGains) -> Self {
         let magnitude = |w: f64| {
             let loop_gain = gains.proportional_a_k * tile.gain_k_s_a;

@@ -17,7 +17,6 @@ pub enum StorageOrder {
 
 impl StorageOrder {
     /// The order's word on the line from the host: `save` or `forget`.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Save => "save",

@@ -75,7 +75,6 @@ pub enum ObjectBody {
 
 impl ObjectBody {
     /// Its word in the protocol.
-    #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
             Self::HalfSpace => "half-space",
@@ -85,7 +84,6 @@ impl ObjectBody {
     }
 
     /// Its relaxations, unless it is a half-space.
-    #[must_use]
     pub const fn relaxations(&self) -> Option<&Body> {
         match self {
             Self::HalfSpace => None,
@@ -115,7 +113,6 @@ impl AssumedFinger {
     ];
 
     /// Its word in the protocol.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Thesis => "thesis",
@@ -125,7 +122,6 @@ impl AssumedFinger {
     }
 
     /// Its tissue, and the film of air or pad before contact.
-    #[must_use]
     pub const fn body(self) -> &'static FingerBody {
         match self {
             Self::Thesis => &FingerBody::THESIS,
@@ -135,7 +131,6 @@ impl AssumedFinger {
     }
 
     /// Whether its tissue has layers. All layered fingers have the same tissue.
-    #[must_use]
     pub const fn is_layered(self) -> bool {
         match self {
             Self::Thesis => false,
@@ -161,7 +156,6 @@ impl ChosenContactLaw {
     };
 
     /// Computes the constants of a law. Uses `f64`, which is slow on the microcontroller.
-    #[must_use]
     pub fn new(sent: ContactLaw) -> Self {
         Self {
             sent,

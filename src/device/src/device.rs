@@ -29,7 +29,6 @@ pub type DeviceInPlace<const FINGERS: usize> = Device<FINGERS, &'static mut [Sta
 impl<const FINGERS: usize> Device<FINGERS> {
     /// A device whose stations are all off and not tripped, with the same settings for every finger.
     /// Converts the settings from `f64`, about a millisecond, so it is for the start only.
-    #[must_use]
     pub fn new(settings: &Settings) -> Self {
         Self::new_optionally_tripped(None, settings)
     }
@@ -37,7 +36,6 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// A device with the same settings for every finger. With a `cause` all stations start tripped by it: a trip that
     /// the board stored before the last reset, or a fault that the reset itself shows. With `None` they start in off.
     /// Converts the settings from `f64`, so it is for the start only.
-    #[must_use]
     pub fn new_optionally_tripped(cause: Option<TripCause>, settings: &Settings) -> Self {
         let station = Station::new_optionally_tripped(cause, settings);
         Self {
@@ -48,7 +46,6 @@ impl<const FINGERS: usize> Device<FINGERS> {
 
 impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> {
     /// A device of stations that exist.
-    #[must_use]
     pub const fn from_stations(stations: S) -> Self {
         Self { stations }
     }
@@ -72,7 +69,6 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
 
     /// Thermal dose (CEM43, equivalent time at 43 °C) that skin would have received if it had always touched this
     /// finger's display. The board stores the dose after every tick, so that a reset does not erase it.
-    #[must_use]
     pub fn finger_thermal_dose(&self, finger: FingerIndex<FINGERS>) -> &ThermalDose {
         self.station(finger).thermal_dose()
     }
@@ -84,7 +80,6 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     }
 
     /// Whether a finger's next samples must say [how many thermistors scatter](Samples::scattering_thermistors).
-    #[must_use]
     pub fn finger_needs_scatter(&self, finger: FingerIndex<FINGERS>) -> bool {
         self.station(finger).needs_scatter()
     }
@@ -96,7 +91,6 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     }
 
     /// Whether a finger's station has a heat-flux sensor, by the settings.
-    #[must_use]
     pub fn finger_has_flux_sensor(&self, finger: FingerIndex<FINGERS>) -> bool {
         self.station(finger).has_flux_sensor()
     }
@@ -129,14 +123,12 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     }
 
     /// Whether this finger's station is tripped, so that its bridge stays off until the host sends `clear`.
-    #[must_use]
     pub fn is_finger_tripped(&self, finger: FingerIndex<FINGERS>) -> bool {
         self.station(finger).is_tripped()
     }
 
     /// Cause of the earliest trip among the fingers that are tripped now; `None` if no finger is tripped. The board
     /// stores this cause through a reset.
-    #[must_use]
     pub fn earliest_trip_cause(&self) -> Option<&TripCause> {
         let stations = self.stations.borrow().iter();
         let tripped = stations.filter(|station| station.is_tripped());
@@ -157,7 +149,6 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     /// Telemetry of a finger's last tick, with the index of the finger (none on a device with one finger). `None` if
     /// the host has not switched telemetry on, or if the number of that tick is not a multiple of the interval that the
     /// host has chosen. To be called once after each tick.
-    #[must_use]
     pub fn finger_telemetry_if_due(
         &self,
         finger: FingerIndex<FINGERS>,
@@ -170,7 +161,6 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
     }
 
     /// Whether there is an event of a finger that was not fetched yet.
-    #[must_use]
     pub fn finger_has_event(&self, finger: FingerIndex<FINGERS>) -> bool {
         self.station(finger).has_event()
     }

@@ -17,13 +17,11 @@ impl SafeCurrent {
     pub const ZERO: Self = Self(Current::ZERO);
 
     /// The current, A, clamped to -6 to 6 A; positive cools the display.
-    #[must_use]
     pub fn saturating(current: Current) -> Self {
         Self(current.clamp(-Self::CURRENT_LIMIT, Self::CURRENT_LIMIT))
     }
 
     /// The current as a plain number of A, -6 to 6; positive cools the display.
-    #[must_use]
     pub const fn ampere(self) -> Current {
         self.0
     }
@@ -42,13 +40,11 @@ impl Duty {
     pub const ZERO: Self = Self(I1F15::ZERO);
 
     /// Duty cycle of this `fraction` of the supply voltage, clamped to -0.9 to 0.9; positive cools the display.
-    #[must_use]
     pub fn saturating(fraction: I1F15) -> Self {
         Self(fraction.clamp(-Self::DUTY_LIMIT, Self::DUTY_LIMIT))
     }
 
     /// Mean output voltage as a fraction of the supply voltage, -0.9 to 0.9; positive cools the display.
-    #[must_use]
     pub const fn fraction(self) -> I1F15 {
         self.0
     }
@@ -61,7 +57,6 @@ impl Duty {
     /// both half-bridges are low and the current circulates, so that the mean voltage is this fraction of the supply
     /// voltage. With fast decay (both high-impedance between the pulses) the mean voltage would also depend on the
     /// current.
-    #[must_use]
     pub fn input_high_times(self, period: u16) -> (u16, u16) {
         // The fraction has 15 binary places; half a step is added to round.
         let fraction = self.0.to_bits();

@@ -39,7 +39,6 @@ impl DeviceEventKind {
     ];
 
     /// Its word in the protocol.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Land => "land",
@@ -67,7 +66,6 @@ impl EventKinds {
     }
 
     /// Whether the kind is in the set.
-    #[must_use]
     pub const fn contains(self, kind: DeviceEventKind) -> bool {
         self.0 & 1 << kind as u8 != 0
     }
@@ -95,7 +93,6 @@ pub enum UnsolicitedReport {
 
 impl WithSourceFinger<Telemetry> {
     /// The telemetry as one of the reports.
-    #[must_use]
     pub fn into_report(self) -> WithSourceFinger<UnsolicitedReport> {
         self.map_content(UnsolicitedReport::Telemetry)
     }
@@ -152,7 +149,6 @@ impl EventReporter {
     }
 
     /// Whether an event was not fetched yet.
-    #[must_use]
     pub const fn has_event(&self) -> bool {
         self.first != self.end
     }

@@ -19,7 +19,6 @@ impl<const FINGERS: usize> FingerIndex<FINGERS> {
     };
 
     /// The finger with this index, counted from 0; `None` if the index is not below `FINGERS`.
-    #[must_use]
     pub const fn new(index: usize) -> Option<Self> {
         if index < FINGERS {
             Some(Self(index as u8))
@@ -35,7 +34,6 @@ impl<const FINGERS: usize> FingerIndex<FINGERS> {
 
     /// The finger with the next higher index, and finger 0 after the last one: the cyclic order in which the board
     /// samples the fingers and runs their ticks.
-    #[must_use]
     pub const fn next_cyclic(self) -> Self {
         match Self::new(self.index() + 1) {
             Some(next) => next,
@@ -44,7 +42,6 @@ impl<const FINGERS: usize> FingerIndex<FINGERS> {
     }
 
     /// Index of the finger, 0 to `FINGERS` - 1, for arrays with an element per finger.
-    #[must_use]
     pub const fn index(self) -> usize {
         // The remainder does not change the index, but lets the compiler omit the bounds check of an array of `FINGERS`
         // elements.
@@ -53,14 +50,12 @@ impl<const FINGERS: usize> FingerIndex<FINGERS> {
 
     /// Index of the finger as a byte, 0 to `FINGERS` - 1. In lines to and from the host this index is the digit after
     /// `@`.
-    #[must_use]
     pub const fn index_u8(self) -> u8 {
         self.0
     }
 
     /// Index of this finger at the start of its telemetry lines, and of its replies to a command that names no finger,
     /// as in `@3 `. `None` on a device with a single finger, where these lines begin without an index.
-    #[must_use]
     pub const fn index_unless_single_finger(self) -> Option<u8> {
         if FINGERS > 1 { Some(self.0) } else { None }
     }

@@ -14,7 +14,6 @@ impl Coefficient {
     /// The coefficient `1 - exp(-1 ms / time constant)`, which is exact for an input that is constant during each tick.
     /// A time constant below 1.45 ms counts as 1.45 ms, for which the coefficient is 0.499. Computed in `f64`, so it is
     /// for start-up and the task that serves the host, not for the tick.
-    #[must_use]
     pub fn from_time_constant_s(time_constant_s: f64) -> Self {
         let part = 1.0 - libm::exp(-1.0 / (time_constant_s * f64::from(TICK_HZ)));
         Self(I0F32::from_bits(truncated_units(
@@ -40,7 +39,6 @@ pub struct LowPass {
 
 impl LowPass {
     /// A filter whose output is 0 (°C or K) until its first input.
-    #[must_use]
     pub const fn new(coefficient: Coefficient) -> Self {
         Self {
             coefficient,
@@ -54,7 +52,6 @@ impl LowPass {
     }
 
     /// The filter's present output, in the unit of its input, °C or K.
-    #[must_use]
     pub const fn output(&self) -> Celsius {
         Celsius::from_bits((self.state.to_bits() >> EXTRA_STATE_BINARY_PLACES) as i32)
     }

@@ -48,7 +48,6 @@ impl PiCoefficients {
     /// Converts gains from the settings to fixed point: proportional gain, A/K, and integral time, s. The proportional
     /// gain saturates at 32768 A/K, the integral gain at 2 A/K per update, where their fixed-point types end. Computed
     /// in `f64`, so it is for start-up and the task that serves the host, not for the tick.
-    #[must_use]
     pub const fn new(gains: &PiGains, period: UpdatePeriod) -> Self {
         let per_update = gains.proportional_a_k * period.period_ticks() as f64
             / (gains.integral_s * TICK_HZ as f64);
@@ -87,7 +86,6 @@ fn integral_of_current(current: Current) -> I12F52 {
 
 impl Pi {
     /// A controller whose output and integral start at 0 A, and whose output never exceeds `limit`, A, in magnitude.
-    #[must_use]
     pub const fn new(coefficients: PiCoefficients, limit: Current) -> Self {
         Self {
             coefficients,
@@ -113,7 +111,6 @@ impl Pi {
     }
 
     /// Largest magnitude of the current that the controller gives, A.
-    #[must_use]
     pub const fn output_limit(&self) -> Current {
         self.limit
     }

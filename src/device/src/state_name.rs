@@ -32,7 +32,6 @@ pub enum StateName {
 
 impl StateName {
     /// The state's word in lines to the host, such as `self-test`.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Off => "off",
@@ -47,7 +46,6 @@ impl StateName {
     }
 
     /// The fault that has tripped the station; `None` in every state other than tripped.
-    #[must_use]
     pub const fn fault(self) -> Option<Fault> {
         match self {
             Self::Tripped(fault) => Some(fault),

@@ -42,13 +42,11 @@ impl TelemetryFields {
     }
 
     /// Whether the field of this index is in the set.
-    #[must_use]
     pub const fn contains(self, index: usize) -> bool {
         self.0 & 1 << index != 0
     }
 
     /// Whether a field of the heat-flux sensor is in the set.
-    #[must_use]
     pub const fn has_flux_fields(self) -> bool {
         self.0 & Self::NAMED.0 != 0
     }

@@ -96,7 +96,6 @@ impl Default for Learner {
 
 impl Learner {
     /// A learner for an input with a [`Restart`], which must be its first.
-    #[must_use]
     pub const fn new() -> Self {
         let (place, sensor) = (PlaceBeforeContact::Air, FluxSensor::UNKNOWN);
         Self {

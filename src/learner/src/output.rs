@@ -89,7 +89,6 @@ impl LearnerOutput {
     }
 
     /// Whether the finger differs too little to be applied anew: by at most some 2 mK of the set-point.
-    #[must_use]
     pub fn is_nearly(&self, other: &Self) -> bool {
         let weights = self.weights.iter().zip(&other.weights);
         weights.fold(true, |near, (own, other)| {

@@ -44,7 +44,6 @@ impl PersonPrior {
     pub const BYTES: usize = 20;
 
     /// Components 1 and 2, changes of air and contact resistance, in prior deviations.
-    #[must_use]
     pub fn parameters(&self) -> [f32; STORED.len()] {
         let (integers, _) = self.0.as_chunks::<2>();
         let mut parameters = [0.0; STORED.len()];
@@ -55,7 +54,6 @@ impl PersonPrior {
     }
 
     /// Their deviations, in prior deviations.
-    #[must_use]
     pub fn deviations(&self) -> [f32; STORED.len()] {
         let mut deviations = [0.0; STORED.len()];
         let levels = self.0.iter().skip(2 * STORED.len());
@@ -66,14 +64,12 @@ impl PersonPrior {
     }
 
     /// Number of contacts of 8 s or more from which it was learnt, at most 255.
-    #[must_use]
     pub const fn contacts(&self) -> u8 {
         let [.., contacts, _] = self.0;
         contacts
     }
 
     /// Where the finger was before these contacts.
-    #[must_use]
     pub const fn place(&self) -> PlaceBeforeContact {
         match self.0 {
             [.., 0] => PlaceBeforeContact::Air,

@@ -31,7 +31,6 @@ impl FluxSensor {
 
     /// A sensor of this lag, µs (lags below 100 µs count as 100 µs), whose layer has this resistance. In `f64`, so for set-up
     /// only.
-    #[must_use]
     pub fn new(lag_us: u32, resistance_mm2k_w: Resistance) -> Self {
         let lag_s = f64::from(lag_us) * 1e-6;
         let lag_s = if lag_s < LAG_MIN_S { LAG_MIN_S } else { lag_s };

@@ -59,7 +59,6 @@ pub struct CommandHandler<const FINGERS: usize> {
 
 impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// A handler for a device whose fingers all have the same `settings`, such as the factory defaults.
-    #[must_use]
     pub fn new(settings: Settings) -> Self {
         Self {
             sessions: array::from_fn(|_| CommissioningSession::new(settings)),
@@ -73,7 +72,6 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
 
     /// A handler for a device with the persons, and whose fingers have the calibration, tile, heat-flux sensor and display, that
     /// were loaded from flash; all other settings have factory defaults.
-    #[must_use]
     pub fn from_stored(stored: &StoredDevice<FINGERS>) -> Self {
         let session = |stored: &StoredSettings| {
             CommissioningSession::new(stored.to_settings_with_factory_defaults())
@@ -90,7 +88,6 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
 
     /// The bytes to be written to flash for the command `save` (the present settings of all fingers, and the persons) or `forget`
     /// (factory defaults).
-    #[must_use]
     pub fn record_to_save_or_forget(&self, order: StorageOrder) -> SettingsRecord {
         match order {
             StorageOrder::Save => {

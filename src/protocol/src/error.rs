@@ -69,7 +69,6 @@ pub struct StorageFailureText(heapless::String<56>);
 impl StorageFailureText {
     /// The message of `error`, the reason why the settings were not stored. A message of more than 56 bytes ends before
     /// the first of its parts, as `Display` writes them, that does not fit.
-    #[must_use]
     pub fn new(error: &impl fmt::Display) -> Self {
         let mut text = heapless::String::new();
         // Writing ends at the first part of the message that does not fit.

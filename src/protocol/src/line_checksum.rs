@@ -17,7 +17,6 @@ pub struct OutgoingLine {
 
 impl OutgoingLine {
     /// An empty line.
-    #[must_use]
     pub const fn new() -> Self {
         Self {
             bytes: [0; OUTGOING_LINE_MAX_BYTES],
@@ -69,7 +68,6 @@ pub enum ChecksumError {
 }
 
 /// Checksum of a line: the exclusive or of all bytes before the `*`.
-#[must_use]
 pub fn line_checksum(line: &[u8]) -> u8 {
     line.iter().fold(0, |checksum, byte| checksum ^ byte)
 }

@@ -36,7 +36,6 @@ pub struct LineReader {
 
 impl LineReader {
     /// A reader that has received no byte of a line yet.
-    #[must_use]
     pub const fn new() -> Self {
         Self {
             line: String::new(),
@@ -51,7 +50,6 @@ impl LineReader {
     }
 
     /// Whether `byte` is a line ending: carriage return or line feed.
-    #[must_use]
     pub const fn is_line_end(byte: u8) -> bool {
         matches!(byte, b'\r' | b'\n')
     }

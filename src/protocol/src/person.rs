@@ -95,7 +95,6 @@ pub struct PersonCodes(heapless::Vec<PersonCode, { Persons::MAX }>);
 
 impl PersonCodes {
     /// Those of these persons.
-    #[must_use]
     pub fn new(persons: &Persons) -> Self {
         let mut codes = heapless::Vec::new();
         for person in persons.as_slice() {

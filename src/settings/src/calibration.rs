@@ -73,13 +73,11 @@ impl Calibration {
 impl Correction {
     /// Offset (K), slope (K/K) and curvature (1/K), in the order in which a `set correction` line and the record in
     /// flash hold them.
-    #[must_use]
     pub const fn to_array(&self) -> [f64; 3] {
         [self.offset_k, self.slope, self.curvature_1_k]
     }
 
     /// A correction with this offset (K), slope (K/K) and curvature (1/K); the inverse of [`Self::to_array`].
-    #[must_use]
     pub const fn from_array([offset_k, slope, curvature_1_k]: [f64; 3]) -> Self {
         Self {
             offset_k,
@@ -102,7 +100,6 @@ impl Correction {
 }
 
 /// Rounds `value` to the nearest number with this many decimals, a half away from zero; the result is never -0.
-#[must_use]
 pub fn round_to_decimals(value: f64, decimals: i32) -> f64 {
     let scale = power_of_ten(decimals);
     // Adding zero turns -0 into 0, which a line of text would otherwise write as "-0".

@@ -20,13 +20,11 @@ impl DisplaySurface {
     pub const DECIMALS: [i32; 3] = [3, 4, 5];
 
     /// The surface, for the contact model.
-    #[must_use]
     pub const fn surface(&self) -> &Surface {
         &self.0
     }
 
     /// Conductivity, roughness and slope, in the order of lines and record.
-    #[must_use]
     pub const fn to_array(&self) -> [f64; 3] {
         [
             self.0.conductivity_w_mk,
@@ -36,7 +34,6 @@ impl DisplaySurface {
     }
 
     /// A surface of this conductivity, roughness and slope.
-    #[must_use]
     pub fn from_array_rounded(values: [f64; 3]) -> Self {
         let mut rounded = values;
         for (value, decimals) in rounded.iter_mut().zip(Self::DECIMALS) {

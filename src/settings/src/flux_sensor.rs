@@ -36,7 +36,6 @@ impl FluxSensor {
     pub const DECIMALS: [i32; 4] = [6, 3, 3, 3];
 
     /// Gain, zero, lag and resistance, in the order of lines and record.
-    #[must_use]
     pub const fn to_array(&self) -> [f64; 4] {
         [
             self.counts_per_w_m2,
@@ -47,7 +46,6 @@ impl FluxSensor {
     }
 
     /// A sensor with this gain, zero, lag and resistance, each rounded to [`Self::DECIMALS`].
-    #[must_use]
     pub fn from_array_rounded(values: [f64; 4]) -> Self {
         let mut rounded = values;
         for (value, decimals) in rounded.iter_mut().zip(Self::DECIMALS) {

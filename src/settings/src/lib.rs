@@ -108,7 +108,6 @@ pub struct ThermistorDivider {
 impl ThermistorDivider {
     /// Temperature of the thermistor, °C, limited to -100 to 300 °C. `voltage` is the voltage across the thermistor,
     /// from 0 to below 65536, in 65536ths of the reference voltage: the unit of a sum of 16 conversions of 12 bits.
-    #[must_use]
     pub fn temperature_c(&self, voltage: f64) -> f64 {
         let ohm = self.pull_up_ohm * voltage / (65536.0 - voltage);
         let (a, b, c) = self.curve.steinhart_hart_coefficients();
@@ -148,7 +147,6 @@ pub enum ThermistorCurve {
 impl ThermistorCurve {
     /// Coefficients `a`, `b`, `c`, 1/K, of the Steinhart-Hart equation `1/T = a + b ln R + c (ln R)^3` of this
     /// thermistor, with `T` in K and `R` in ohm. The beta equation is a Steinhart-Hart equation with `c = 0`.
-    #[must_use]
     pub fn steinhart_hart_coefficients(&self) -> (f64, f64, f64) {
         match *self {
             Self::Beta { r25_ohm, beta_k } => (

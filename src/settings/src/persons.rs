@@ -13,7 +13,6 @@ impl PersonCode {
     pub const MAX_BYTES: usize = 8;
 
     /// The code that is this word; `None` if it is none.
-    #[must_use]
     pub fn new(word: &str) -> Option<Self> {
         let mut padded = [0; Self::MAX_BYTES];
         let places = padded.get_mut(..word.len())?;
@@ -24,14 +23,12 @@ impl PersonCode {
     }
 
     /// The code from a record; `None` if it is none.
-    #[must_use]
     pub fn from_bytes(bytes: [u8; Self::MAX_BYTES]) -> Option<Self> {
         let mut characters = bytes.iter().skip_while(|byte| is_of_code(**byte));
         (is_of_code(bytes[0]) && characters.all(|byte| *byte == 0)).then_some(Self(bytes))
     }
 
     /// The code in a record.
-    #[must_use]
     pub const fn to_bytes(self) -> [u8; Self::MAX_BYTES] {
         self.0
     }
@@ -64,7 +61,6 @@ impl Person {
     pub const BYTES: usize = PersonCode::MAX_BYTES + Self::FINGER_BYTES;
 
     /// Reads what was learnt of a finger: two hexadecimal digits for each byte; `None` for anything else.
-    #[must_use]
     pub fn read_finger(digits: &str) -> Option<[u8; Self::FINGER_BYTES]> {
         let mut finger = [0; Self::FINGER_BYTES];
         let (pairs, _) = digits.as_bytes().as_chunks::<2>();
@@ -88,19 +84,16 @@ impl Persons {
     pub const MAX: usize = 16;
 
     /// None.
-    #[must_use]
     pub const fn new() -> Self {
         Self(Vec::new())
     }
 
     /// All, in the order in which they were stored.
-    #[must_use]
     pub fn as_slice(&self) -> &[Person] {
         &self.0
     }
 
     /// The person with this code.
-    #[must_use]
     pub fn get(&self, code: PersonCode) -> Option<&Person> {
         self.0.iter().find(|person| person.code == code)
     }

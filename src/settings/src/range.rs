@@ -22,7 +22,6 @@ pub struct Range {
 
 impl Range {
     /// Whether a value lies in the range, both ends included; NaN does not.
-    #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         (self.min..=self.max).contains(&value)
     }

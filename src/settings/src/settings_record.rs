@@ -87,7 +87,6 @@ pub struct StoredSettings {
 
 impl StoredSettings {
     /// Takes calibration, tile, heat-flux sensor and surface of the display, the part that is stored in flash, from a finger's complete `settings`.
-    #[must_use]
     pub const fn from_settings(settings: &Settings) -> Self {
         Self {
             calibration: settings.calibration,
@@ -99,7 +98,6 @@ impl StoredSettings {
 
     /// Complete settings of the finger: the stored calibration, tile, heat-flux sensor and display, the gains that follow from this
     /// tile, and factory defaults for everything else.
-    #[must_use]
     #[inline(never)]
     pub fn to_settings_with_factory_defaults(&self) -> Settings {
         let mut settings = Settings {
@@ -245,7 +243,6 @@ impl fmt::Display for RecordError {
 
 /// Encodes the stored settings of all fingers as the bytes of a record; `None` gives the record that stands for factory
 /// defaults.
-#[must_use]
 #[inline(never)]
 pub fn encode_settings_record<const FINGERS: usize>(
     settings: Option<&StoredDevice<FINGERS>>,

@@ -44,7 +44,6 @@ impl Tile {
 
     /// Gain (K/s per A), Joule term (1/A), leak (1/s), sensor lag (s) and dead time (s), in the order in which a
     /// `set tile` line and the record in flash hold them.
-    #[must_use]
     pub const fn to_array(&self) -> [f64; 5] {
         [
             self.gain_k_s_a,
@@ -57,7 +56,6 @@ impl Tile {
 
     /// A tile with this gain (K/s per A), Joule term (1/A), leak (1/s), sensor lag (s) and dead time (s), each rounded
     /// to [`Self::DECIMALS`].
-    #[must_use]
     pub fn from_array_rounded(values: [f64; 5]) -> Self {
         let [gain_k_s_a, joule_per_a, leak_1_s, sensor_lag_s, dead_time_s] =
             values.map(|value| round_to_decimals(value, Self::DECIMALS));
@@ -76,7 +74,6 @@ impl PiGains {
     /// `1 / (gain (tauc + theta))`, A/K, the integral time `4 (tauc + theta)`, s, with the tile's gain, K/s per A, and
     /// the time constant of the closed loop `tauc = theta`. The effective dead time `theta`, s, is the sum of the
     /// sensor's lag, the tile's dead time and half of `hold_s`, the time in seconds between two updates of the current.
-    #[must_use]
     pub fn simc_for_update_interval(tile: &Tile, hold_s: f64) -> Self {
         let theta_s = tile.sensor_lag_s + tile.dead_time_s + 0.5 * hold_s;
         let closed_s = 2.0 * theta_s;
@@ -88,7 +85,6 @@ impl PiGains {
 
     /// Gains for a tile, first those of the control law `pi`, which updates the module's current every 1 ms, then those
     /// of the law `pi-10hz`, which updates it every 100 ms.
-    #[must_use]
     pub fn for_1khz_and_10hz_laws(tile: &Tile) -> [Self; 2] {
         [TICK_S, 0.1].map(|hold_s| Self::simc_for_update_interval(tile, hold_s))
     }

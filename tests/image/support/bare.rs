@@ -47,7 +47,6 @@ impl Bare {
     ///
     /// # Panics
     /// The emulation cannot be set up, or the cells have another size.
-    #[must_use]
     pub fn switched_on(firmware: &Firmware, settings: &FlashCells) -> Self {
         Self::with_chip(firmware, settings, &ChipState::default())
     }
@@ -56,7 +55,6 @@ impl Bare {
     ///
     /// # Panics
     /// As [`Self::switched_on`].
-    #[must_use]
     pub fn with_chip(firmware: &Firmware, settings: &FlashCells, chip: &ChipState) -> Self {
         let machine = Machine::with_chip(firmware, Pins::default(), chip);
         let mut machine = machine.expect("a machine");
@@ -69,7 +67,6 @@ impl Bare {
     ///
     /// # Panics
     /// The image stops.
-    #[must_use]
     pub fn new(firmware: &Firmware, settings: &FlashCells) -> Self {
         let mut device = Self::switched_on(firmware, settings);
         device.run(START);
@@ -133,7 +130,6 @@ impl Bare {
     }
 
     /// The settings' sectors.
-    #[must_use]
     pub fn cells(&self) -> FlashCells {
         FlashCells::new(self.0.flash().bytes()[BEGIN..BEGIN + BYTES].to_vec())
     }

@@ -35,7 +35,6 @@ pub fn on(image: &Firmware, scene: &Scene) -> anyhow::Result<Outcome> {
 ///
 /// # Panics
 /// It does not run to its end.
-#[must_use]
 pub fn on_image(scene: &Scene) -> Outcome {
     let firmware = Firmware::from_file(image()).expect("an image for this chip");
     on(&firmware, scene).expect("the image runs to the end")

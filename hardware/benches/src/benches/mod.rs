@@ -65,7 +65,6 @@ impl Bench {
     }
 
     /// Whether a quantity of a circuit is not allowed, or cannot be measured; parts after that one are not simulated.
-    #[must_use]
     pub fn fails(&self, netlists: &Netlists) -> bool {
         let passes = |quantities: Vec<Quantity>| quantities.iter().all(Quantity::holds);
         let mut parts = self.parts.iter();

@@ -59,7 +59,6 @@ pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures
 }
 
 /// The figures as a table.
-#[must_use]
 pub fn table(figures: &Figures) -> String {
     let heads = ["engine", "x real time", "(fastest)", "x native"];
     grid(

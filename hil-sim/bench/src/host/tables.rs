@@ -7,7 +7,6 @@ use super::figures::{Figures, KernelFigures, SceneFigures};
 pub const SVG: &str = "benchmark.svg";
 
 /// Both tables with their explanations.
-#[must_use]
 pub fn tables(figures: &Figures) -> String {
     let kernels = grid(
         &[
@@ -94,7 +93,6 @@ intrinsic would save. Rust keeps a frame in every function of this target, three
 ";
 
 /// The tables as a page with the plot.
-#[must_use]
 pub fn page(figures: &Figures) -> String {
     format!(
         "# Run time against error\n\n\

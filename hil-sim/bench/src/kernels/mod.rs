@@ -69,7 +69,6 @@ pub enum Value {
 impl Call {
     /// Calls the function.
     #[inline]
-    #[must_use]
     pub fn on(self, input: &Input) -> Value {
         match self {
             Self::Fixed(f) => Value::Fixed(f(input.elapsed, input.rate)),
@@ -79,7 +78,6 @@ impl Call {
     }
 
     /// A function of the same type that only returns, which costs the overhead of a call.
-    #[must_use]
     pub fn only_return(self) -> Self {
         match self {
             Self::Fixed(_) => Self::Fixed(only_return_fixed),
@@ -114,7 +112,6 @@ fn only_return_double(_: u32, per_tick: f64) -> f64 {
 
 impl Value {
     /// The number, exactly.
-    #[must_use]
     pub fn to_f64(self) -> f64 {
         match self {
             Self::Fixed(value) => value.to_num(),
@@ -124,7 +121,6 @@ impl Value {
     }
 
     /// The value as 64 bits; the same for every NaN, whose sign differs between processors.
-    #[must_use]
     pub fn to_bits(self) -> u64 {
         match self {
             Self::Single(value) if value.is_nan() => u64::MAX,

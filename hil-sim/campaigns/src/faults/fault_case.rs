@@ -23,7 +23,6 @@ pub enum InjectedFault {
 
 impl InjectedFault {
     /// Name of the kind in a scene.
-    #[must_use]
     pub fn kind(&self) -> String {
         match self {
             Self::Hardware(active) => active.kind.name().into(),

@@ -113,7 +113,6 @@ impl FaultRun {
     }
 
     /// Whether the run broke no limit.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.assessment.breaches.is_empty()
     }

@@ -220,7 +220,6 @@ impl FaultScene {
 
     /// Cause of a trip before the fault: the host is silent for two seconds at the beginning, then clears the trip, arms and
     /// starts again.
-    #[must_use]
     pub const fn has_tripped_before(self) -> Option<Fault> {
         match self {
             Self::SelfTest | Self::Off => Some(EARLIER_TRIP),
@@ -229,7 +228,6 @@ impl FaultScene {
     }
 
     /// Draws the time of a fault, near an edge of the scene if `at_edge`.
-    #[must_use]
     pub fn injection_point(self, seed: u64, at_edge: bool) -> InjectionPoint {
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(seed);
         let (_, (from_s, to_s), edges) = self.timing();
@@ -248,7 +246,6 @@ impl FaultScene {
 
     /// The text of the scene, with this finger and object, that continues for `after_s` after a fault at `t_s`, and the end of
     /// the scene, s.
-    #[must_use]
     pub fn text(self, seed: u64, t_s: f64, after_s: f64, touch: &Touch) -> (String, f64) {
         let duration_s = (t_s + after_s).max(SHORTEST_S);
         let (material, object_c) = self.object();

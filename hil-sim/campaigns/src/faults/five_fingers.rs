@@ -41,7 +41,6 @@ const OTHERS_K: f64 = 1e-3;
 
 /// The fault cases for five fingers: the first of each kind in the list, but for those of the heat-flux sensor, which this device
 /// has not, and those of the select lines.
-#[must_use]
 pub fn five_finger_cases() -> Vec<FaultCase> {
     let mut cases: Vec<FaultCase> = Vec::new();
     for case in fault_cases().into_iter().chain(list::select_line_cases()) {
@@ -99,7 +98,6 @@ pub struct FiveFingerRun {
 
 impl FiveFingerRun {
     /// The runs of fault cases: each on one of the fingers 1 to 4, in the scene in which it is worst.
-    #[must_use]
     pub fn all(cases: Vec<FaultCase>, seed: u64) -> Vec<Self> {
         (cases.into_iter().enumerate())
             .map(|(i, case)| Self::new(case, i, seed))
@@ -129,7 +127,6 @@ impl FiveFingerRun {
     }
 
     /// The fault and its finger.
-    #[must_use]
     pub fn name(&self) -> String {
         match self.finger {
             Some(finger) => format!("finger {finger}: {}", self.fault_case.fault),
@@ -225,7 +222,6 @@ impl FiveFingerRun {
     }
 
     /// Summary of its assessments.
-    #[must_use]
     pub fn summary(&self, trials: Vec<FaultRun>) -> FaultSummary {
         FaultSummary {
             fault: self.name(),
@@ -243,7 +239,6 @@ pub struct Reference {
 
 impl Reference {
     /// The fault-free runs that `runs` need: each as the first of the runs that share it, and its end, s.
-    #[must_use]
     pub fn needed(runs: &[FiveFingerRun]) -> Vec<(&FiveFingerRun, f64)> {
         let mut needed: Vec<(&FiveFingerRun, f64)> = Vec::new();
         for run in runs {

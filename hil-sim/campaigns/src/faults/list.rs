@@ -56,7 +56,6 @@ static LISTS: LazyLock<Lists> =
     LazyLock::new(|| read(include_str!("list.toml")).expect("list.toml"));
 
 /// All fault cases of one finger in the order of the table.
-#[must_use]
 pub fn fault_cases() -> Vec<FaultCase> {
     LISTS[0].clone()
 }

@@ -21,7 +21,6 @@ pub struct MatrixPlan {
 impl MatrixPlan {
     /// The runs: index of the fault case, and scene and time. The scenes in which a fault is worst come first, the others in
     /// random order; with more runs than scenes they repeat.
-    #[must_use]
     pub fn runs(&self) -> Vec<(usize, InjectionPoint)> {
         let mut runs = Vec::new();
         for (row, fault_case) in self.fault_cases.iter().enumerate() {
@@ -59,7 +58,6 @@ pub struct FaultSummary {
 
 impl FaultSummary {
     /// Summarises the runs of a fault case.
-    #[must_use]
     pub fn new(fault_case: &FaultCase, trials: Vec<FaultRun>) -> Self {
         Self {
             fault: fault_case.fault.to_string(),
@@ -75,13 +73,11 @@ impl FaultSummary {
     }
 
     /// Largest value of a figure over the runs.
-    #[must_use]
     pub fn most(&self, of: impl Fn(&FaultRun) -> Option<f64>) -> Option<f64> {
         self.trials.iter().filter_map(of).max_by(f64::total_cmp)
     }
 
     /// Reported causes with their numbers, most frequent first.
-    #[must_use]
     pub fn reasons(&self) -> Vec<(&str, usize)> {
         let mut reasons: Vec<(&str, usize)> = Vec::new();
         for trial in &self.trials {

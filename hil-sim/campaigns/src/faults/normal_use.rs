@@ -47,14 +47,12 @@ pub struct UseSession {
 
 impl UseSession {
     /// Number of sessions in some hours.
-    #[must_use]
     pub fn in_hours(hours: u64) -> u64 {
         (hours as f64 * 3600.0 / WHOLE_S).ceil() as u64
     }
 
     /// Draws a session; it depends only on seed and number. With a heat-flux sensor every finger is drawn, and the device is asked
     /// what it knows of it.
-    #[must_use]
     pub fn new(seed: u64, number: u64, with_flux_sensor: bool) -> Self {
         let mut draw =
             Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, &format!("session {number}")));
@@ -128,7 +126,6 @@ impl UseSession {
     }
 
     /// Runs the session.
-    #[must_use]
     pub fn run(&self, device: &dyn SceneRunner) -> SessionResult {
         let run = || -> anyhow::Result<_> {
             let scene = Scene::parse(&self.text, "session".as_ref())?;
@@ -196,7 +193,6 @@ pub struct SessionResult {
 }
 
 /// Table of time, failures and skin temperatures, followed by every failed session.
-#[must_use]
 pub fn session_table(used: &[SessionResult]) -> String {
     let skins = || used.iter().filter_map(|one| one.skin_c);
     let failed = || used.iter().filter(|one| one.failure.is_some());

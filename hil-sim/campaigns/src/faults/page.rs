@@ -26,7 +26,6 @@ const HEADS: [&str; 9] = [
 ];
 
 /// A page that needs no other file.
-#[must_use]
 pub fn page(sections: &[(&str, &[FaultSummary])], engine: &str) -> String {
     let mut body = format!(
         "<p>Engine {}; everything here is simulated, nobody has run it on hardware. Worst case of each fault over its \

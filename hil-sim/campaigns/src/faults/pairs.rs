@@ -42,7 +42,6 @@ fn is_latent(fault_case: &FaultCase) -> bool {
 /// Every latent fault before every other fault of the list, each at one random time, in the first scene without a later
 /// self-test in which the second fault is worst. Those of the heat-flux sensor are left out: they change set-points only, within
 /// what fingers do.
-#[must_use]
 pub fn pairs(seed: u64) -> Vec<FaultPair> {
     let all = fault_cases().into_iter();
     let (latent, active): (Vec<_>, Vec<_>) = all
@@ -71,7 +70,6 @@ pub fn pairs(seed: u64) -> Vec<FaultPair> {
 
 impl FaultPair {
     /// Text of the scene.
-    #[must_use]
     pub fn text(&self, seed: u64) -> String {
         let Self {
             latent,
@@ -131,7 +129,6 @@ pub struct PairResult {
 }
 
 /// A line for every latent fault; then every pair that breaks the claim.
-#[must_use]
 pub fn pair_table(runs: &[PairResult]) -> String {
     let width = runs
         .iter()

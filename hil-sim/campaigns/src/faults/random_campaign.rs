@@ -45,7 +45,6 @@ pub struct RandomCampaign {
 impl RandomCampaign {
     /// Draws a campaign; it depends only on seed and number. Without a processor, its faults are not
     /// drawn, so the two engines' campaigns of a number differ.
-    #[must_use]
     pub fn new(seed: u64, number: u64, has_processor: bool) -> Self {
         let own = stream_seed(seed, &format!("campaign {number}"));
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(own);
@@ -80,7 +79,6 @@ impl RandomCampaign {
     }
 
     /// Text of the scene.
-    #[must_use]
     pub fn text(&self) -> String {
         let faults = [(self.fault_case.fault, self.point.t_s)];
         let PlantDraw { seed, plant, .. } = &self.device;
@@ -142,7 +140,6 @@ const WORST_FIGURES: [WorstFigure; 4] = [
 ];
 
 /// Table of runs, violations of each kind and worst figures with their campaigns, followed by every violation.
-#[must_use]
 pub fn campaign_summary(runs: &[CampaignResult]) -> String {
     let worst = |(name, unit, sign, figure): WorstFigure| {
         let values = runs

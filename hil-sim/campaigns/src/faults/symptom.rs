@@ -101,14 +101,12 @@ fn read(row: &TraceRow, which: usize) -> Option<f64> {
 
 impl Symptom {
     /// Whether it needs the run of the same scene without the fault.
-    #[must_use]
     pub const fn needs_fault_free_run(self) -> bool {
         matches!(self, Self::DisplayDeviates)
     }
 
     /// Time of its first occurrence, s. The fault starts at the row `from`; `sound` are the rows of the fault-free run if
     /// [`Self::needs_fault_free_run`]; `tested_from_s` is the time at which a self-test is requested, if any.
-    #[must_use]
     pub fn onset_s(
         self,
         rows: &[TraceRow],

@@ -9,7 +9,6 @@ use super::{Breach, FaultRun, FaultSummary};
 const FAULT_WIDTH_MAX: usize = 60;
 
 /// One line for each fault, with its worst figures, followed by every run that broke a limit.
-#[must_use]
 pub fn table(rows: &[FaultSummary]) -> String {
     let widths = rows.iter().map(|row| row.fault.len());
     let width = widths.max().unwrap_or(0).min(FAULT_WIDTH_MAX);
@@ -46,7 +45,6 @@ pub fn table(rows: &[FaultSummary]) -> String {
 }
 
 /// `ok`, or the names of the broken limits.
-#[must_use]
 pub(super) fn outcome(row: &FaultSummary) -> String {
     if row.trials.is_empty() {
         return "-".into();
@@ -68,7 +66,6 @@ pub(super) fn outcome(row: &FaultSummary) -> String {
 
 /// The cells of a row in the order of the columns: runs, detectable runs, longest time from the first symptom to zero
 /// current, skin, dose, display, causes.
-#[must_use]
 pub(super) fn cells(row: &FaultSummary) -> [String; 7] {
     let detectable = row
         .trials

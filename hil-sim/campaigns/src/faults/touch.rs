@@ -38,7 +38,6 @@ pub struct Touch {
 
 impl Touch {
     /// Draws finger and object; half of the draws leave both as they are. The touched material is that of the scene.
-    #[must_use]
     pub fn new(seed: u64, material: &str) -> Self {
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(seed);
         if draw.random_bool(0.5) {
@@ -67,7 +66,6 @@ impl Touch {
     }
 
     /// A drawn layered finger on a display with a heat-flux sensor that is nominal.
-    #[must_use]
     pub fn learnt(seed: u64) -> Self {
         Self {
             device: FLUX_SENSOR.into(),

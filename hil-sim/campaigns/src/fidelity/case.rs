@@ -42,7 +42,6 @@ const WARMEST_C: f64 = 42.0;
 
 impl FidelityCase {
     /// The text of the scene; `plant` has plant parameters that are not nominal.
-    #[must_use]
     pub fn text(&self, law: Law, seed: u64, plant: &[(String, f64)]) -> String {
         let mut text = format!(
             "duration_s = {:?}\nskin_c = {:?}\nroom_c = {ROOM_C:?}\nseed = {seed}\nlaw = \"{}\"\n[object]\n",

@@ -55,7 +55,6 @@ impl Measure {
     };
 
     /// Computes the figure of a run.
-    #[must_use]
     pub fn evaluate(&self, scene: &Scene, outcome: &Outcome) -> JudgedFigure {
         let errors = skin_errors(scene, outcome);
         match *self {

@@ -68,7 +68,6 @@ pub struct PlantDraw {
 
 impl PlantDraw {
     /// Draws a plant; it depends only on seed and number.
-    #[must_use]
     pub fn new(seed: u64, number: u64) -> Self {
         let own = stream_seed(seed, &format!("draw {number}"));
         let nominal = all(&Params::nominal());
@@ -95,7 +94,6 @@ impl PlantDraw {
     }
 
     /// The same draw for a device in use: its bridge and measuring circuits are drawn, too.
-    #[must_use]
     pub fn in_use(seed: u64, number: u64) -> Self {
         let mut draw = Self::new(seed, number);
         let mut params = Params::nominal();
@@ -173,7 +171,6 @@ pub struct Percentiles {
 
 impl Percentiles {
     /// `None` without values.
-    #[must_use]
     pub fn of(values: &[f64]) -> Option<Self> {
         let at = |percent| percentile(values, percent);
         Some(Self {
@@ -223,7 +220,6 @@ const BOUND_MK: f64 = 50.0;
 const WORST: usize = 5;
 
 /// Statistics by law, in the order of first occurrence.
-#[must_use]
 pub fn statistics_by_law(drawn: &[DrawResult]) -> Vec<LawStatistics> {
     let mut laws: Vec<&'static str> = Vec::new();
     for one in drawn {

@@ -28,7 +28,6 @@ named_enum! {
 
 impl RemovedLimit {
     /// The plant parameters, with values, that remove the limit.
-    #[must_use]
     pub fn plant(self) -> Vec<(String, f64)> {
         let keys = |keys: &[(&str, f64)]| {
             keys.iter()

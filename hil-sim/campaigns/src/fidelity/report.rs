@@ -12,7 +12,6 @@ pub const HTML: &str = "fidelity.html";
 pub const SVG: &str = "fidelity.svg";
 
 /// A self-contained page.
-#[must_use]
 pub fn page(
     rows: &[FidelityRow],
     boxed: Option<&BoxReport>,

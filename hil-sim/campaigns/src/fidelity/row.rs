@@ -68,7 +68,6 @@ impl FidelityRow {
     }
 
     /// Orders rows by the bounded figure, then by the RMS skin error; the worse one is greater, and no value is worst.
-    #[must_use]
     pub fn compare(&self, other: &Self) -> Ordering {
         let judged = |row: &Self| match row.judged.value {
             None => f64::INFINITY,

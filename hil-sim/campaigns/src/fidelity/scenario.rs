@@ -35,7 +35,6 @@ const PRESSED_N: f64 = 2.0;
 
 impl Scenario {
     /// Description of the scenario.
-    #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
             Self::A => "a finger lands on the preset display and stays for 10 s",
@@ -47,7 +46,6 @@ impl Scenario {
     }
 
     /// The cases of the scenario.
-    #[must_use]
     pub fn cases(self) -> Vec<FidelityCase> {
         match self {
             Self::A => each_force(|object, force_n| self.lands(object, force_n)),

@@ -10,7 +10,6 @@ const HEAD: &str = "   N    judged            skin rms   display max/rms    A ma
 const NAME: usize = 20;
 
 /// One line for each case and law, at the worst force or, with `every`, at every force.
-#[must_use]
 pub fn table(rows: &[FidelityRow], every: bool) -> String {
     let mut text = String::new();
     for scenario in Scenario::ALL {
@@ -144,7 +143,6 @@ fn cost(cost: CostPerTick) -> String {
 }
 
 /// Percentiles and worst draws by law.
-#[must_use]
 pub fn box_table(boxed: &BoxReport) -> String {
     let mut text = format!(
         "\nA over the box: {} draws, seed {}, engine {}; mK, skin error\n{:14}largest after 50 ms, 50/95/99 %, max     rms, 50/95/99 %, max          faulty\n",

@@ -18,7 +18,6 @@ impl TouchedObject {
     }
 
     /// A material of the thesis, which the device has by name.
-    #[must_use]
     pub const fn of_thesis(name: &'static str) -> Self {
         Self {
             name,

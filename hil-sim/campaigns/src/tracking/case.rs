@@ -37,7 +37,6 @@ impl TouchingFinger {
     pub const ALL: [Self; 3] = [Self::Bare, Self::Thesis, Self::Layered];
 
     /// Name, as the table has it.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bare => "bare",
@@ -94,7 +93,6 @@ pub(super) fn scene_text(
 
 impl TrackingCase {
     /// On the nominal plant with display thermistors of a lag, s.
-    #[must_use]
     pub fn nominal(stimulus: &Stimulus, touch: TouchingFinger, sensor_lag_s: f64) -> Self {
         let keys = ["sensors.display.lag_s", "sensors.check.lag_s"];
         Self {

@@ -45,7 +45,6 @@ pub struct TileLimits {
 
 impl LimitCase {
     /// Bare and under the thesis's finger, at each of [`COOLANTS_C`].
-    #[must_use]
     pub fn all() -> Vec<Self> {
         let touches = [TouchingFinger::Bare, TouchingFinger::Thesis].into_iter();
         let cases = touches.flat_map(|touch| COOLANTS_C.map(|coolant_c| Self { touch, coolant_c }));

@@ -39,7 +39,6 @@ pub struct TrackingReport {
 
 impl TrackingReport {
     /// Tables in Markdown, mK and K/s.
-    #[must_use]
     pub fn tables(&self) -> String {
         let mut text = String::from("| mK |");
         // Writing to a String cannot fail.

@@ -53,7 +53,6 @@ impl Stimulus {
     }
 
     /// A ramp up at this rate, K/s, through the temperature of the sink, and the same way down.
-    #[must_use]
     pub fn ramp(rate_k_s: f64) -> Self {
         let span_k = (HIGH_C - LOW_C).min(rate_k_s * WAY_MAX_S);
         // Slow ones are near the temperature of the sink, 24 °C.
@@ -77,7 +76,6 @@ impl Stimulus {
     }
 
     /// A step of so many kelvin up from 22 °C, and back.
-    #[must_use]
     pub fn step(height_k: f64) -> Self {
         let high_c = LOW_C + height_k;
         let back_s = 2.0 * PAUSE_S;
@@ -96,7 +94,6 @@ impl Stimulus {
     }
 
     /// A pulse from 32 °C: by so many kelvin, at a rate, K/s, for 1 s.
-    #[must_use]
     pub fn pulse(height_k: f64, rate_k_s: f64) -> Self {
         let way_s = height_k.abs() / rate_k_s;
         let (from_c, to_c) = (HIGH_C, HIGH_C + height_k);
@@ -118,7 +115,6 @@ impl Stimulus {
     ///
     /// # Panics
     /// There is no copper.
-    #[must_use]
     pub fn recorded() -> Self {
         let copper = MATERIALS.iter().find(|(name, _)| *name == "copper");
         let (_, copper) = copper.expect("copper");
@@ -142,7 +138,6 @@ impl Stimulus {
     }
 
     /// All stimuli of the table.
-    #[must_use]
     pub fn all() -> Vec<Self> {
         let mut all: Vec<_> = STEPS_K.map(Self::step).into();
         all.extend(RATES_K_S.map(Self::ramp));

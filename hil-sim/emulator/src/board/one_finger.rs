@@ -121,7 +121,6 @@ impl OneFingerBoard {
     }
 
     /// The machine, read-only.
-    #[must_use]
     pub fn machine(&self) -> &Machine<impl Wiring + use<>> {
         &self.machine
     }

@@ -65,7 +65,6 @@ pub struct BridgeDefects {
 
 impl BridgeDefects {
     /// Legs of the defective bridge for its inputs.
-    #[must_use]
     pub fn apply(&self, legs: &BridgeOutputs) -> BridgeOutputs {
         let (a, b) = if self.a == LegDefect::None && self.b == LegDefect::None {
             (legs.a, legs.b)

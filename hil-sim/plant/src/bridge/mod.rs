@@ -98,7 +98,6 @@ pub struct InductorRipple {
 
 impl InductorRipple {
     /// Its value at a phase of the PWM period, 0 to 1 from the begin of the pulses, A.
-    #[must_use]
     pub fn at_phase(&self, phase: f64) -> f64 {
         let Self { half_a, width } = *self;
         let part = if phase < width {
@@ -130,7 +129,6 @@ const TIME_TOLERANCE_S: f64 = 1e-9;
 
 impl Bridge {
     /// A bridge for a tile of about this resistance, ohm: a deviation of 20 % changes the ripple by 1 %.
-    #[must_use]
     pub fn new(params: BridgeParams, load_ohm: f64) -> Self {
         Self {
             params,
@@ -180,7 +178,6 @@ impl Bridge {
     }
 
     /// Whether the driver pulls its fault pin low.
-    #[must_use]
     pub fn fault(&self) -> bool {
         self.retry_in_s > 0.0
     }

@@ -32,7 +32,6 @@ pub struct CameraParams {
 impl CameraParams {
     /// The thesis's instrument: skin, one pixel, no self-reflection. The thesis states no noise; 0.08 K is typical of
     /// its camera, an uncooled bolometer of 2006.
-    #[must_use]
     pub fn thesis(optic: Optic) -> Self {
         Self {
             optic,
@@ -117,7 +116,6 @@ impl Camera {
 
     /// Temperature of the target, deg C, from the apparent temperature, deg C: Eq. 5-3 or 5-4 solved for the target.
     /// Limited to [`RANGE_C`].
-    #[must_use]
     pub fn recovered_c(&self, apparent_c: f64) -> f64 {
         temperature_c(self.assumed.target_radiance(radiance(apparent_c)))
     }

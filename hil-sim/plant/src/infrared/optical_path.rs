@@ -18,7 +18,6 @@ pub struct Surroundings {
 
 impl Surroundings {
     /// Optics at room temperature, deg C.
-    #[must_use]
     pub fn at(ambient_c: f64) -> Self {
         Self {
             ambient_c,
@@ -51,7 +50,6 @@ pub struct OpticalPath {
 impl OpticalPath {
     /// Eq. 5-3, or 5-4 without optics, for a target of an emissivity in (0, 1] and surroundings within
     /// [`super::RANGE_C`].
-    #[must_use]
     pub fn new(optic: Optic, emissivity: f64, surroundings: &Surroundings) -> Self {
         let ambient = radiance(surroundings.ambient_c);
         let Some(window) = optic.window() else {
@@ -74,7 +72,6 @@ impl OpticalPath {
     }
 
     /// The same path with the reflection of the camera in the window, if there is one.
-    #[must_use]
     pub fn with_self_reflection(
         self,
         optic: Optic,
@@ -92,13 +89,11 @@ impl OpticalPath {
     }
 
     /// Radiance at the camera for a black-body radiance of the target's temperature.
-    #[must_use]
     pub fn total_radiance(&self, target: f64) -> f64 {
         self.gain * target + self.offset
     }
 
     /// Black-body radiance of the target's temperature for a radiance at the camera.
-    #[must_use]
     pub fn target_radiance(&self, total: f64) -> f64 {
         (total - self.offset) / self.gain
     }

@@ -12,7 +12,6 @@ pub struct Bandpass {
 
 impl Bandpass {
     /// Emissivity, 0 to 1, which equals the absorptivity (section 5.2.2).
-    #[must_use]
     pub fn emissivity(&self) -> f64 {
         1.0 - self.transmissivity - self.reflectivity
     }
@@ -37,7 +36,6 @@ pub enum Optic {
 
 impl Optic {
     /// The window that the finger touches (Table 5-3), if there is one.
-    #[must_use]
     pub fn window(self) -> Option<Bandpass> {
         let (transmissivity, reflectivity) = match self {
             Self::None => return None,

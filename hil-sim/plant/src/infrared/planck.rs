@@ -28,7 +28,6 @@ const SCALE: f64 = 2.0
 /// Radiance of a black body within [`BAND_M`], W/(m² sr), at a temperature, deg C; increasing with temperature.
 ///
 /// Relative error at most 4e-15 over [`RANGE_C`].
-#[must_use]
 pub fn radiance(temperature_c: f64) -> f64 {
     let kelvin = kelvin(temperature_c);
     let [short, long] =
@@ -37,7 +36,6 @@ pub fn radiance(temperature_c: f64) -> f64 {
 }
 
 /// Derivative of [`radiance`] by temperature, W/(m² sr K), at a temperature, deg C.
-#[must_use]
 pub fn radiance_per_k(temperature_c: f64) -> f64 {
     let kelvin = kelvin(temperature_c);
     slope(kelvin, radiance(temperature_c))
@@ -47,7 +45,6 @@ pub fn radiance_per_k(temperature_c: f64) -> f64 {
 ///
 /// Within 1e-11 deg C of the exact inverse over [`RANGE_C`]. Radiances outside of the range, also negative ones, give its
 /// nearest end.
-#[must_use]
 pub fn temperature_c(radiance_w_m2_sr: f64) -> f64 {
     let (coldest_c, hottest_c) = RANGE_C.into_inner();
     if radiance_w_m2_sr <= radiance(coldest_c) {

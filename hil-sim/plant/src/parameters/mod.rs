@@ -133,7 +133,6 @@ fn after_number(unit: &str) -> String {
 const SIMILAR: usize = 3;
 
 /// All parameters, with their tolerances around the given values.
-#[must_use]
 pub fn all(params: &Params) -> Vec<Parameter> {
     let mut params = params.clone();
     entries(&mut params).iter().map(Entry::parameter).collect()

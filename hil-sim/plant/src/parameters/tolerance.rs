@@ -60,7 +60,6 @@ impl Distribution {
 }
 
 /// Seed of the random stream of a key: FNV-1a hash of seed and key.
-#[must_use]
 pub fn stream_seed(seed: u64, key: &str) -> u64 {
     let bytes = seed.to_le_bytes();
     (bytes.iter().chain(key.as_bytes())).fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
@@ -103,19 +102,16 @@ const fn uniform(limits: Limits) -> Tolerance {
 }
 
 /// Uniform, within a fraction of the nominal value.
-#[must_use]
 pub const fn relative(part: f64) -> Tolerance {
     uniform(Limits::Relative(part))
 }
 
 /// Uniform, within a deviation in the unit of the parameter.
-#[must_use]
 pub const fn absolute(most: f64) -> Tolerance {
     uniform(Limits::Absolute(most))
 }
 
 /// Uniform, between two values in the unit of the parameter.
-#[must_use]
 pub const fn between(low: f64, high: f64) -> Tolerance {
     uniform(Limits::Between(low, high))
 }
@@ -150,7 +146,6 @@ impl Tolerance {
     }
 
     /// Draws a value around a nominal one from the random stream of a seed and key.
-    #[must_use]
     pub fn draw(self, nominal: f64, seed: u64, key: &str) -> f64 {
         (self.distribution).draw(nominal, self.limits(nominal), seed, key)
     }

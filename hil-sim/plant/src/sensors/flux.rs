@@ -43,7 +43,6 @@ impl FluxParams {
     };
 
     /// Flux that a code stands for at the nominal gain, W/m2.
-    #[must_use]
     pub fn read_w_m2(code: u16) -> f64 {
         (f64::from(code) - MID_SCALE) / Self::NOMINAL.counts_per_w_m2
     }

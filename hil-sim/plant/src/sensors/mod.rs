@@ -132,7 +132,6 @@ pub struct Sensors {
 
 impl Sensors {
     /// Sensors in steady state; the seed determines non-linearity and noise of the converter.
-    #[must_use]
     pub fn new(params: SensorParams, state: &SensorInputs, seed: u64) -> Self {
         let excitation_v = params.reference.volt * params.reference.excitation_duty.sqrt();
         let sites = sites(&params, state);
@@ -229,13 +228,11 @@ impl Sensors {
     ///
     /// # Panics
     /// `index` is not below [`THERMISTORS`].
-    #[must_use]
     pub fn pin_ratio(&self, index: usize) -> f64 {
         self.thermistors[self.defects.connected[index]].ratio()
     }
 
     /// Readings of the sensors.
-    #[must_use]
     pub fn sensor_readings(&self) -> SensorReadings {
         let connected = self.defects.connected;
         SensorReadings {

@@ -19,7 +19,6 @@ pub struct ForceParams {
 
 impl ForceParams {
     /// Output at a force, N, in counts.
-    #[must_use]
     pub fn counts(&self, force_n: f64) -> f64 {
         self.zero_counts + self.counts_per_n * force_n
     }
@@ -46,14 +45,12 @@ pub struct MirrorParams {
 impl MirrorParams {
     /// Fraction of the inductors' ripple, at a PWM frequency, Hz, that passes the filters: two poles, with a fifth and four
     /// fifths of the lag.
-    #[must_use]
     pub fn ripple_share(&self, pwm_hz: f64) -> f64 {
         let radians = std::f64::consts::TAU * pwm_hz * self.lag_s;
         (1.0f64.hypot(0.2 * radians) * 1.0f64.hypot(0.8 * radians)).recip()
     }
 
     /// Output at a current, A, in counts.
-    #[must_use]
     pub fn counts(&self, mirror_a: f64) -> f64 {
         (self.counts_per_a * (mirror_a * (1.0 + self.gain_error) + self.offset_a)).max(0.0)
     }

@@ -29,7 +29,6 @@ pub struct ThermistorParams {
 
 impl ThermistorParams {
     /// Divider ratio, pin voltage over reference, at a temperature, deg C; falls with temperature.
-    #[must_use]
     pub fn ratio(&self, temperature_c: f64) -> f64 {
         let exponent = self.beta_k * ((temperature_c + ZERO_C_K).recip() - REFERENCE_K.recip());
         let ohm = self.at_25c_ohm * exponent.exp();
@@ -37,7 +36,6 @@ impl ThermistorParams {
     }
 
     /// Power scale, W, for an RMS voltage on the divider, V: the thermistor dissipates this times `ratio (1 - ratio)`.
-    #[must_use]
     pub fn heat_scale_w(&self, excitation_v: f64) -> f64 {
         excitation_v * excitation_v / self.pull_up_ohm
     }

@@ -57,7 +57,6 @@ pub struct SlabBatch<const L: usize> {
 
 impl<const L: usize> SlabBatch<L> {
     /// Slabs at uniform temperatures, deg C, which their blood shares; `steps_s` are the lengths of step that can be used.
-    #[must_use]
     pub fn new(slabs: [&Slab; L], start_c: [f64; L], steps_s: &[f64]) -> Self {
         let cells = slabs.iter().map(|s| s.cells()).max().unwrap_or(0);
         let column = |filler: f64, part: &dyn Fn(&Slab) -> Vec<f64>| {
@@ -133,13 +132,11 @@ impl<const L: usize> SlabBatch<L> {
     }
 
     /// Number of cells of the largest slab.
-    #[must_use]
     pub const fn cells(&self) -> usize {
         self.cells
     }
 
     /// Temperature, deg C, of a node counted from the surface.
-    #[must_use]
     pub fn node_c(&self, lane: usize, node: usize) -> f64 {
         self.temperature[self.cells - 1 - node][lane]
     }
@@ -150,13 +147,11 @@ impl<const L: usize> SlabBatch<L> {
     }
 
     /// Temperature of the surface cell, deg C.
-    #[must_use]
     pub fn surface_c(&self, lane: usize) -> f64 {
         self.temperature[self.cells - 1][lane]
     }
 
     /// Mean temperature of a node over the last step, deg C.
-    #[must_use]
     pub fn mean_c(&self, lane: usize, node: usize) -> f64 {
         let i = self.cells - 1 - node;
         tr_bdf2::step_mean(

@@ -15,7 +15,6 @@ pub struct DepthProbe {
 
 impl DepthProbe {
     /// A probe at a depth, m, of a slab with at least four cells; none outside of the slab.
-    #[must_use]
     pub fn at(slab: &Slab, depth_m: f64) -> Option<Self> {
         let above = slab.depth_m.partition_point(|d| *d <= depth_m);
         let first = above
@@ -48,7 +47,6 @@ impl DepthProbe {
     }
 
     /// Interpolated temperature, deg C; `node_c` gives that of a node, counted from the surface.
-    #[must_use]
     pub fn read(&self, node_c: impl Fn(usize) -> f64) -> f64 {
         let weighted = self.weights.iter().enumerate();
         weighted.map(|(i, w)| w * node_c(self.first + i)).sum()

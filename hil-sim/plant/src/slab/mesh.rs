@@ -40,7 +40,6 @@ pub struct Cell {
 
 impl Cell {
     /// A cell of a series in which each is `growth` times as wide as the one before.
-    #[must_use]
     pub fn graded(width_m: f64, growth: f64) -> Self {
         Self {
             width_m,
@@ -50,7 +49,6 @@ impl Cell {
 }
 
 /// Cells that fill a thickness, the first at most `first_m` wide, with a constant growth factor of 1 to `growth`.
-#[must_use]
 pub fn fill(thickness_m: f64, first_m: f64, growth: f64) -> Vec<Cell> {
     // Number of terms of the geometric series, with a tolerance so that an exact fit gets no additional cell.
     let cells = ((thickness_m / first_m * (growth - 1.0)).ln_1p() / growth.ln() - 1e-9).ceil();

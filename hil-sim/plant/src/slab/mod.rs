@@ -28,7 +28,6 @@ pub struct Medium {
 
 impl Medium {
     /// A material without perfusion and metabolism.
-    #[must_use]
     pub fn without_blood(material: &Material) -> Self {
         Self {
             conductivity_w_mk: material.surface.conductivity_w_mk,
@@ -92,7 +91,6 @@ const STEADY_STATE_LENGTHS: f64 = 12.0;
 
 impl Slab {
     /// Meshes one or more layers for a simulated time of `duration_s`.
-    #[must_use]
     pub fn new(layers: &[Layer], back: BackBoundary, duration_s: f64, grading: &Grading) -> Self {
         let mut slab = Self {
             capacity_j_m2k: Vec::new(),
@@ -154,7 +152,6 @@ impl Slab {
     }
 
     /// Number of cells, at least 1.
-    #[must_use]
     pub fn cells(&self) -> usize {
         self.capacity_j_m2k.len()
     }

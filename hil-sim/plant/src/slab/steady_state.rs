@@ -14,7 +14,6 @@ pub struct SteadyState {
 /// Steady state with a given surface temperature, deg C, and a given heat flux from the surface to the surroundings,
 /// W/m2. The core (blood at full flow, and the back boundary) supplies the heat; none if there is no core and the slab
 /// does not balance without one.
-#[must_use]
 pub fn steady_state(slab: &Slab, surface_c: f64, loss_w_m2: f64) -> Option<SteadyState> {
     let n = slab.cells();
     let metabolism: f64 = slab.metabolism_w_m2.iter().sum();

@@ -46,7 +46,6 @@ pub struct LegProperties {
 
 impl LegProperties {
     /// Properties relative to a temperature, deg C, with a fraction of the material's temperature dependence.
-    #[must_use]
     pub fn new(reference_c: f64, variation: f64) -> Self {
         let relative = |shape| Relative::new(shape, reference_c + ZERO_C_K, variation);
         Self {
@@ -57,19 +56,16 @@ impl LegProperties {
     }
 
     /// Relative Seebeck coefficient at a temperature, deg C.
-    #[must_use]
     pub fn seebeck(&self, temperature_c: f64) -> f64 {
         self.seebeck.at(limited_k(temperature_c))
     }
 
     /// Relative electrical resistivity at a temperature, deg C.
-    #[must_use]
     pub fn resistivity(&self, temperature_c: f64) -> f64 {
         self.resistivity.at(limited_k(temperature_c))
     }
 
     /// Relative thermal conductivity at a temperature, deg C.
-    #[must_use]
     pub fn conductivity(&self, temperature_c: f64) -> f64 {
         self.conductivity.at(limited_k(temperature_c))
     }

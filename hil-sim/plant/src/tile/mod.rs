@@ -73,7 +73,6 @@ pub struct Tile {
 
 impl Tile {
     /// A tile without current at the temperature of its coolant, in a room, deg C.
-    #[must_use]
     pub fn new(params: TileParams, room_c: f64) -> Self {
         let zones = Zones::new(&params);
         let share = zones.area_m2.map(|m2| m2 / params.plate_m2());
@@ -155,7 +154,6 @@ impl Tile {
     }
 
     /// Film coefficient of air on the display plate, W/(m2 K).
-    #[must_use]
     pub const fn film_w_m2k(&self) -> f64 {
         self.params.film_w_m2k
     }
@@ -195,7 +193,6 @@ impl Tile {
     }
 
     /// Electrical load of the [prepared](Self::prepare) step; the Seebeck voltage opposes a cooling current.
-    #[must_use]
     pub const fn load(&self) -> Load {
         Load {
             seebeck_v: self.seebeck_v,
@@ -238,7 +235,6 @@ impl Tile {
     }
 
     /// Energy that crossed the boundaries of the tile in the last step, s, without the finger's heat.
-    #[must_use]
     pub fn step_energy(&self, step_s: f64) -> Energy {
         let mut seebeck_v = 0.0;
         for (link, across) in self.seebeck_v_k.iter().enumerate() {
@@ -263,25 +259,21 @@ impl Tile {
     }
 
     /// Mean temperature of the node under the finger over the last step, deg C.
-    #[must_use]
     pub fn mean_patch_c(&self) -> f64 {
         self.network.mean_c(0, PATCH)
     }
 
     /// Temperature of the node under the finger, deg C.
-    #[must_use]
     pub fn patch_c(&self) -> f64 {
         self.network.node_c(0, PATCH)
     }
 
     /// Thermal resistance from the surface of the patch to the node under the finger, K/W.
-    #[must_use]
     pub fn patch_half_k_w(&self) -> f64 {
         self.surface_m / (self.params.ceramic_w_mk * self.zones.area_m2[PATCH])
     }
 
     /// Present current; positive cools the display.
-    #[must_use]
     pub const fn current(&self) -> Current {
         self.current
     }
@@ -292,7 +284,6 @@ impl Tile {
     }
 
     /// Temperature of the sink, deg C.
-    #[must_use]
     pub fn sink_c(&self) -> f64 {
         self.network.sink_c()
     }

@@ -108,7 +108,6 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
     const BELOW: usize = LAST + 1;
 
     /// All nodes at one temperature, deg C, without conductances.
-    #[must_use]
     pub fn new(temperature_c: f64) -> Self {
         let zero = [[0.0; Z]; N];
         Self {
@@ -146,33 +145,28 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
     }
 
     /// Temperature of a node, deg C.
-    #[must_use]
     pub fn node_c(&self, level: usize, zone: usize) -> f64 {
         self.temperature[level][zone]
     }
 
     /// Temperature of the sink, deg C.
-    #[must_use]
     pub fn sink_c(&self) -> f64 {
         self.sink.temperature
     }
 
     /// Temperature of a node in the middle of the coming step, extrapolated from the last one, deg C.
-    #[must_use]
     pub fn extrapolated_c(&self, level: usize, zone: usize, step_s: f64) -> f64 {
         let increment = self.first[level][zone] + self.second[level][zone];
         self.temperature[level][zone] + 0.5 * step_s / self.step_s * increment
     }
 
     /// Mean temperature of a node over the last step, deg C.
-    #[must_use]
     pub fn mean_c(&self, level: usize, zone: usize) -> f64 {
         let (i, z) = (level, zone);
         tr_bdf2::step_mean(self.temperature[i][z], self.first[i][z], self.second[i][z])
     }
 
     /// Mean temperature of the sink over the last step, deg C.
-    #[must_use]
     pub fn mean_sink_c(&self) -> f64 {
         tr_bdf2::step_mean(self.sink.temperature, self.sink.first, self.sink.second)
     }

@@ -76,34 +76,29 @@ impl TileParams {
     }
 
     /// Seebeck coefficient of all couples at the data sheet's temperature, V/K.
-    #[must_use]
     pub fn seebeck_v_k(&self) -> f64 {
         self.vmax_v / self.sheet_hot_k()
     }
 
     /// Resistance of all legs at the data sheet's temperature, ohm.
-    #[must_use]
     pub fn resistance_ohm(&self) -> f64 {
         let hot_k = self.sheet_hot_k();
         self.vmax_v * (hot_k - self.dtmax_k) / (self.imax_a * hot_k)
     }
 
     /// Thermal conductance of all legs at the data sheet's temperature, W/K.
-    #[must_use]
     pub fn conductance_w_k(&self) -> f64 {
         let hot_k = self.sheet_hot_k();
         self.imax_a * self.vmax_v * (hot_k - self.dtmax_k) / (2.0 * hot_k * self.dtmax_k)
     }
 
     /// Largest heat pumped that the other three data imply, W; a consistency check on the data sheet's own value.
-    #[must_use]
     pub fn implied_qmax_w(&self) -> f64 {
         let hot_k = self.sheet_hot_k();
         self.imax_a * self.vmax_v * (hot_k + self.dtmax_k) / (2.0 * hot_k)
     }
 
     /// Area of a plate, m2.
-    #[must_use]
     pub fn plate_m2(&self) -> f64 {
         self.plate_m * self.plate_m
     }

@@ -20,7 +20,6 @@ pub struct Zones {
 
 impl Zones {
     /// The zones of a tile's plates.
-    #[must_use]
     pub fn new(params: &TileParams) -> Self {
         let radius_m = |m2: f64| (m2 / PI).sqrt();
         let (inner_m, outer_m) = (radius_m(params.patch_m2), radius_m(params.plate_m2()));

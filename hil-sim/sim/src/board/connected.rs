@@ -29,7 +29,6 @@ pub(super) struct Connected {
 
 impl BoardBench {
     /// A bare board.
-    #[must_use]
     pub const fn new(board: Board) -> Self {
         Self {
             board,
@@ -45,7 +44,6 @@ impl BoardBench {
     }
 
     /// The board on its bench, where it is commissioned too.
-    #[must_use]
     pub fn setup(&self) -> CommissioningSetup {
         self.board.setup()
     }

@@ -114,7 +114,6 @@ impl Board {
     }
 
     /// The board on its bench, where it is commissioned too.
-    #[must_use]
     pub fn setup(&self) -> CommissioningSetup {
         CommissioningSetup::new(&self.params, ROOM_C, self.seed)
     }

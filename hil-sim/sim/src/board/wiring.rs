@@ -80,7 +80,6 @@ impl Wiring {
     };
 
     /// A board whose parts and instruments are drawn from their tolerances.
-    #[must_use]
     pub fn drawn(seed: u64) -> Self {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, "wiring"));
         let mut draw = |nominal: f64, tolerance: f64| {
@@ -130,7 +129,6 @@ impl Wiring {
     }
 
     /// Voltages of the ladder's taps with these rails, V: of the cold and of the hot side.
-    #[must_use]
     pub fn taps_v(&self) -> [f64; 2] {
         let [top, middle, bottom] = self.ladder_ohm.map(f64::recip);
         let cold_s = top + middle + HYSTERESIS_OHM.recip();
@@ -146,7 +144,6 @@ impl Wiring {
 
     /// From the line that selects the side of the test to ground, without power: its pull-down beside the resistors of the
     /// level. `rail_ohm` is what the 3.3 V have to ground.
-    #[must_use]
     pub fn side_to_ground_ohm(&self, rail_ohm: f64) -> f64 {
         let level = parallel(self.level_ohm, self.level_ohm + rail_ohm);
         parallel(self.side_ohm, self.side_to_level_ohm + level)

@@ -64,7 +64,6 @@ pub fn settings_for_scene(scene: &Scene) -> Result<Vec<String>, CommissionError>
 }
 
 /// The surface that the device of a scene takes for that of its display: the measured one, if it was measured.
-#[must_use]
 pub fn display_surface(scene: &Scene) -> DisplaySurface {
     if !scene.measured_surface {
         return DisplaySurface::NOMINAL;

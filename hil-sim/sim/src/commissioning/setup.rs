@@ -39,7 +39,6 @@ impl SimulatedPhantom {
     const GEL_EFFUSIVITY: f64 = 1585.0;
 
     /// A gel with its errors, by a seed.
-    #[must_use]
     pub fn gel(seed: u64, room_c: f64) -> Self {
         let effusivity = Self::GEL_EFFUSIVITY + 1.95 * (room_c - 25.0);
         Self {
@@ -60,7 +59,6 @@ pub struct CommissioningSetup {
 
 impl CommissioningSetup {
     /// A device with these parameters and this seed of its converter, used in a room, deg C, without a finger.
-    #[must_use]
     pub fn new(params: &Params, room_c: f64, seed: u64) -> Self {
         Self {
             params: Params {
@@ -79,7 +77,6 @@ impl CommissioningSetup {
     }
 
     /// Parameters of the device and of the reference thermometer.
-    #[must_use]
     pub const fn params(&self) -> &Params {
         &self.params
     }

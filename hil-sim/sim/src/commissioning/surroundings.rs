@@ -37,7 +37,6 @@ pub struct SimulatedSurroundings {
 
 impl SimulatedSurroundings {
     /// Surroundings of a device in its [place of use](CommissioningSetup::in_use).
-    #[must_use]
     pub fn new(setup: &CommissioningSetup) -> Self {
         Self {
             setup: setup.clone(),
@@ -49,7 +48,6 @@ impl SimulatedSurroundings {
     }
 
     /// Surroundings of a board that is brought up.
-    #[must_use]
     pub fn of_board(board: BoardBench) -> Self {
         Self {
             board: Some(board.clone()),

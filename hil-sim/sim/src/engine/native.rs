@@ -186,14 +186,12 @@ impl Finger {
 
 impl NativeEngine {
     /// A device that has just started its first tick.
-    #[must_use]
     pub fn new(world: World) -> Self {
         let finger = Finger::new(world, 0, 0);
         Self::with_fingers([finger], PWM_PERIOD_STEPS_OF_ONE_FINGER)
     }
 
     /// What the device has learnt of the finger last; `None` before the first result, and without a heat-flux sensor.
-    #[must_use]
     pub const fn learnt(&self) -> Option<&LearnerOutput> {
         let [finger] = &self.fingers;
         finger.learnt.as_ref()
@@ -202,7 +200,6 @@ impl NativeEngine {
 
 impl NativeFiveFingers {
     /// A device just before its first boundary.
-    #[must_use]
     pub fn new(worlds: [World; FIVE]) -> Self {
         let mut more_at_first = 1;
         let fingers = worlds.map(|world| Finger::new(world, 1, std::mem::take(&mut more_at_first)));
@@ -212,7 +209,6 @@ impl NativeFiveFingers {
 
 impl<const FINGERS: usize> NativeDevice<FINGERS> {
     /// The settings in the flash; `None` if none were saved.
-    #[must_use]
     pub fn stored_settings(&self) -> Option<&[StoredSettings; FINGERS]> {
         self.stored.as_ref().map(|stored| &stored.fingers)
     }

@@ -99,7 +99,6 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
 }
 
 /// The figures, one per line.
-#[must_use]
 pub fn table(figures: &Figures) -> String {
     rows(figures)
         .into_iter()

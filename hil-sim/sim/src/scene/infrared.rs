@@ -39,7 +39,6 @@ impl Infrared {
     }
 
     /// Whether there is a frame in the millisecond that ends `ms` after time zero.
-    #[must_use]
     pub fn has_frame(&self, ms: u64) -> bool {
         let frame = |ms: u64| (ms as f64 * self.rate_hz / 1e3 + SLACK).floor();
         ms.checked_sub(1)

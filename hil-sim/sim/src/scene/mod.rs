@@ -39,7 +39,6 @@ pub(crate) use object::custom_line;
 pub use source::SceneError;
 
 /// The names of the thesis's materials, for messages.
-#[must_use]
 pub fn known_materials() -> String {
     MATERIALS.map(|(name, _)| name).join(", ")
 }
@@ -116,7 +115,6 @@ pub struct Object {
 
 impl Object {
     /// Whether it is a half-space of its material.
-    #[must_use]
     pub fn is_half_space(&self) -> bool {
         self.layers == ObjectConfig::half_space(self.material, 0.0).layers
     }
@@ -173,14 +171,12 @@ impl Scene {
     }
 
     /// Temperature of the object before contact, °C.
-    #[must_use]
     pub fn object_c(&self) -> f64 {
         self.object.start_c.unwrap_or(self.room_c)
     }
 
     /// Whether Eq. 3-1 or Eq. 6-12 give the exact set-point: Eq. 3-1 in its mode, Eq. 6-12 if the finger is the thesis's,
     /// without a film of air, the object a half-space, and no layer of a heat-flux sensor between them.
-    #[must_use]
     pub fn has_closed_form(&self) -> bool {
         let finger_is_thesiss = self.nominal.finger == FingerParams::homogeneous();
         self.mode == ContactModel::SemiInfinite
@@ -190,7 +186,6 @@ impl Scene {
     /// The exact set-point for a nominal finger of known temperature before contact, °C, `since_s` after it landed with
     /// `force_n`, if finger and object are half-spaces. At landing, and therefore for the preset, neither these nor the force
     /// matter.
-    #[must_use]
     pub fn exact_setpoint_c(&self, since_s: f64, force_n: f64) -> f64 {
         let object = &self.object.material;
         match self.mode {
@@ -207,7 +202,6 @@ impl Scene {
     }
 
     /// A notice if no line describes the object to the device as it is: one whose back has another temperature.
-    #[must_use]
     pub fn untold_back(&self) -> Option<String> {
         let (BackBoundary::Film { temperature_c, .. }, false, object_c) =
             (self.object.back, self.object_as_half_space, self.object_c())
@@ -223,7 +217,6 @@ impl Scene {
     }
 
     /// Configuration of the plant.
-    #[must_use]
     pub fn plant_config(&self) -> PlantConfig {
         PlantConfig {
             skin_c: self.skin_c,
@@ -243,7 +236,6 @@ impl Scene {
     }
 
     /// This scene on a device for five fingers, whose PWM has a frequency of its own; a frequency that the scene gives stays.
-    #[must_use]
     pub fn on_five_fingers(&self) -> Self {
         let mut scene = self.clone();
         let pwm_hz = &mut scene.params.bridge.pwm_hz;
@@ -259,7 +251,6 @@ impl Scene {
     }
 
     /// Force at a time, N.
-    #[must_use]
     pub fn force_n(&self, t_s: f64) -> f64 {
         let mut held_n = 0.0;
         for force in self.forces.iter().take_while(|force| force.t_s <= t_s) {

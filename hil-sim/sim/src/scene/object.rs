@@ -21,7 +21,6 @@ const LAYER_RANGES: [(f64, f64); 3] = [(1e-3, 5e3), (1.0, 30e3), (10.0, 10e3)];
 
 impl Object {
     /// The line by which a device is told of it, if it is one slab of its material that the device takes.
-    #[must_use]
     pub fn slab_line(&self) -> Option<String> {
         let [Layer { thickness_m, .. }] = self.layers[..] else {
             return None;
@@ -42,7 +41,6 @@ impl Object {
 
     /// Its layers, from the touched face down, and its back, on one line: by the name of a material, or by conductivity and
     /// heat capacity per volume.
-    #[must_use]
     pub fn description(&self) -> String {
         let layer = |layer: &Layer| {
             let medium = &layer.medium;

@@ -35,7 +35,6 @@ pub struct Clock {
 
 impl Clock {
     /// A clock that starts now.
-    #[must_use]
     pub fn start(speed: Speed) -> Self {
         Self {
             speed,
@@ -47,7 +46,6 @@ impl Clock {
     }
 
     /// Start of the device's time.
-    #[must_use]
     pub const fn started(&self) -> Instant {
         self.start
     }

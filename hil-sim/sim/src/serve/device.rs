@@ -35,7 +35,6 @@ pub fn read_scene(path: Option<&Path>) -> Result<Scene, SceneError> {
 }
 
 /// The same scene for each of five fingers, with noise of its own.
-#[must_use]
 pub fn scenes_of_five_fingers(scene: &Scene) -> [Scene; FINGERS] {
     std::array::from_fn(|finger| Scene {
         seed: scene.seed.wrapping_add(finger as u64),

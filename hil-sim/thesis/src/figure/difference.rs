@@ -26,7 +26,6 @@ pub struct FigureDifference {
 
 impl FigureDifference {
     /// The differences as a sentence.
-    #[must_use]
     pub fn text(&self) -> String {
         format!(
             "Figure {:<6} {}: off by at most {:.1e}, {:.1e} from 20 ms on, of values up to {:.1}",
@@ -36,7 +35,6 @@ impl FigureDifference {
 }
 
 /// Compares figures that were drawn alike; those that no source draws are left out.
-#[must_use]
 pub fn differences(figures: &[Figure], others: &[Figure]) -> Vec<FigureDifference> {
     let points = |figure: &Figure| -> Vec<(f64, f64)> {
         let points = figure.curves.iter().flat_map(|curve| &curve.points);

@@ -47,13 +47,11 @@ pub const VARIANTS: [Variant; 4] = [
 
 impl Variant {
     /// Name of the finger.
-    #[must_use]
     pub const fn finger(self) -> &'static str {
         if self.layered { "layered" } else { "thesis" }
     }
 
     /// Name of the law of the contact.
-    #[must_use]
     pub const fn contact(self) -> &'static str {
         if self.gap {
             "Eq. 6-8 and a gap of 200 W/(m² K)"
@@ -136,7 +134,6 @@ pub enum Shown {
 
 impl Shown {
     /// The word of JSON and CSS.
-    #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
             Self::Yes => "shows",
@@ -147,7 +144,6 @@ impl Shown {
     }
 
     /// The words of the report.
-    #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
             Self::Yes => "can show",
@@ -160,7 +156,6 @@ impl Shown {
 
 impl Measurement {
     /// Whether a variant of the plant agrees with the measurement.
-    #[must_use]
     pub fn shown(&self) -> Shown {
         let Some(plant) = self.plant else {
             return Shown::NotModelled;
@@ -177,7 +172,6 @@ impl Measurement {
     }
 
     /// Why Eq. 6-8 does not show it; empty where it does.
-    #[must_use]
     pub fn why(&self) -> &'static str {
         if self.shown() == Shown::Yes {
             ""

@@ -50,7 +50,6 @@ pub struct Roughness {
 
 impl Profile {
     /// Computes the roughness parameters.
-    #[must_use]
     pub fn roughness(&self) -> Roughness {
         let x_m = &self.x_m;
         let y_m = parameters::levelled(x_m, &self.z_m);

@@ -91,7 +91,6 @@ impl Default for DeviceClock {
 
 impl DeviceClock {
     /// Restarts of the device that its ticks have shown.
-    #[must_use]
     pub const fn restarts(&self) -> u32 {
         self.restarts
     }
@@ -177,7 +176,6 @@ impl DeviceClock {
     }
 
     /// When a tick since the device's last restart happened; `None` before its first telemetry.
-    #[must_use]
     pub fn time_of(&self, tick: u32) -> Option<TickTime> {
         let &(last_s, _) = self.minima.last()?;
         // The span that is not complete has not seen its earliest arrival yet.

@@ -45,7 +45,6 @@ pub enum ClientError {
 
 impl ClientError {
     /// The device's reason, without finger and `err`, if it refused the line.
-    #[must_use]
     pub fn refusal(&self) -> Option<&str> {
         let Self::Refused { answer, .. } = self else {
             return None;

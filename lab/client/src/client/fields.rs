@@ -18,7 +18,6 @@ impl<'a> Fields<'a> {
     }
 
     /// The whole text.
-    #[must_use]
     pub const fn text(&self) -> &'a str {
         self.0
     }

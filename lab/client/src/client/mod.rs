@@ -141,13 +141,11 @@ impl<L: Link> Client<L> {
     }
 
     /// Lines that were lost, damaged or dropped so far.
-    #[must_use]
     pub const fn counts(&self) -> LineCounts {
         self.counts
     }
 
     /// Device ticks against the link's clock, from the telemetry so far.
-    #[must_use]
     pub const fn clock(&self) -> &DeviceClock {
         &self.clock
     }

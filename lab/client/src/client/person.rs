@@ -50,7 +50,6 @@ impl Command for EnrolPerson {
 }
 
 /// What is stored of a person's finger, as the 40 hexadecimal digits that [`Person::read_finger`] reads.
-#[must_use]
 pub fn person_data(person: &Person) -> String {
     let digits = person.finger.iter().map(|byte| format!("{byte:02X}"));
     digits.collect()

@@ -129,27 +129,23 @@ pub const THERMISTORS: [ThermistorId; THERMISTOR_WORDS.len()] = [
 ];
 
 /// The thermistor with a word.
-#[must_use]
 pub fn thermistor(word: &str) -> Option<ThermistorId> {
     let mut all = THERMISTORS.into_iter();
     all.find(|thermistor| thermistor_word(*thermistor) == word)
 }
 
 /// Word of a thermistor on the line.
-#[must_use]
 pub const fn thermistor_word(thermistor: ThermistorId) -> &'static str {
     THERMISTOR_WORDS[thermistor as usize]
 }
 
 impl PlainCommand {
     /// Telemetry at this interval, ms, with all fields; 0 ends it.
-    #[must_use]
     pub const fn stream(interval_ms: u32) -> Self {
         Self::Stream(interval_ms, TelemetryFields::DEFAULT)
     }
 
     /// Telemetry at this interval, ms, with the fields of these names ([`TelemetryFields::NAMES`]).
-    #[must_use]
     pub fn stream_fields(interval_ms: u32, names: &[&str]) -> Self {
         let known = TelemetryFields::NAMES.iter().enumerate();
         let chosen = known.filter(|(_, name)| names.contains(name));
@@ -300,7 +296,6 @@ impl Command for PlainCommand {
 }
 
 /// The commands that upload an object: begin, one row for each relaxation, and commit.
-#[must_use]
 pub fn upload(object: &Impedance<'_>) -> Vec<PlainCommand> {
     let relaxations = object.relaxations;
     let mut commands = vec![PlainCommand::UploadBegin(
@@ -313,7 +308,6 @@ pub fn upload(object: &Impedance<'_>) -> Vec<PlainCommand> {
 }
 
 /// The commands that upload a course of points, s and °C (or K above the skin): begin, one row for each point, and commit.
-#[must_use]
 pub fn upload_course(temperatures: TemperatureKind, points: &[(f64, f64)]) -> Vec<PlainCommand> {
     let mut commands = vec![PlainCommand::UploadCourse(points.len(), temperatures)];
     let rows = points.iter().enumerate();

@@ -54,7 +54,6 @@ impl Identity {
     }
 
     /// Whether the firmware has this capability.
-    #[must_use]
     pub fn can(&self, capability: &str) -> bool {
         self.capabilities.iter().any(|known| known == capability)
     }
@@ -209,7 +208,6 @@ pub struct SettingsLine {
 
 impl SettingsLine {
     /// What the line sets.
-    #[must_use]
     pub const fn setting(&self) -> &Setting {
         &self.setting
     }

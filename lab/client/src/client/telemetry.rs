@@ -69,14 +69,12 @@ pub struct ReceivedTelemetry {
 
 impl Telemetry {
     /// Reads a line with the default fields, without its finger; `None` if it is not telemetry. Words after the known ones are ignored.
-    #[must_use]
     pub fn parse(line: &str) -> Option<Self> {
         Self::parse_fields(line, TelemetryFields::DEFAULT)
     }
 
     /// The same of a line with these fields only; those that are left out are `None`. If there are any, the line has no other
     /// words, so that one with more fields is not taken for it.
-    #[must_use]
     pub fn parse_fields(line: &str, fields: TelemetryFields) -> Option<Self> {
         let mut words = line.split(' ');
         let ("T", tick, state_name) = (words.next()?, words.next()?, words.next()?) else {
@@ -132,7 +130,6 @@ impl Telemetry {
     }
 
     /// Whether the finger does not press on the display; `None` if the force is not known.
-    #[must_use]
     pub fn is_lifted(&self) -> Option<bool> {
         self.force_n.map(|force_n| force_n < LIFTED_N)
     }
@@ -143,7 +140,6 @@ impl Telemetry {
     }
 
     /// The last word of the line: the fault by which the device is tripped, or `limited`.
-    #[must_use]
     pub const fn remark(&self) -> Option<&'static str> {
         match self.state.fault() {
             Some(fault) => Some(fault.name()),
@@ -153,7 +149,6 @@ impl Telemetry {
     }
 
     /// The fault by which the device is tripped.
-    #[must_use]
     pub const fn fault(&self) -> Option<Fault> {
         self.state.fault()
     }

@@ -73,7 +73,6 @@ macro_rules! words {
             pub const ALL: &[Self] = &[$(Self::$variant),+];
 
             /// Its word on the line.
-            #[must_use]
             pub const fn word(self) -> &'static str {
                 match self {
                     $(Self::$variant => $word,)+
@@ -164,7 +163,6 @@ words! {
 
 impl MeterPoint {
     /// Unit of what is shown.
-    #[must_use]
     pub fn unit(self) -> &'static str {
         match self.word().split(' ').next() {
             Some("ohm") => "ohm",

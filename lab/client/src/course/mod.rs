@@ -88,19 +88,16 @@ impl Course {
     }
 
     /// The points.
-    #[must_use]
     pub fn points(&self) -> &[CoursePoint] {
         &self.0
     }
 
     /// Time of the last point, s.
-    #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.0.last().map_or(0.0, |point| point.t_s)
     }
 
     /// Temperature at a time, °C.
-    #[must_use]
     pub fn at(&self, t_s: f64) -> f64 {
         let next = self.0.partition_point(|point| point.t_s <= t_s);
         match (next.checked_sub(1).map(|i| self.0[i]), self.0.get(next)) {
@@ -115,7 +112,6 @@ impl Course {
     }
 
     /// Largest difference to another course at any time from zero to the end of both, K.
-    #[must_use]
     pub fn largest_difference_k(&self, other: &Self) -> f64 {
         // Both are linear between all their points, and constant outside of them.
         let times = self.0.iter().chain(&other.0).map(|point| point.t_s);
@@ -194,7 +190,6 @@ impl Course {
     }
 
     /// Largest rate of change, K/s; 0 for one point.
-    #[must_use]
     pub fn rate_max_k_s(&self) -> f64 {
         let rates = self.0.windows(2).map(|segment| {
             ((segment[1].celsius - segment[0].celsius) / (segment[1].t_s - segment[0].t_s)).abs()
@@ -203,7 +198,6 @@ impl Course {
     }
 
     /// The points as CSV of two columns, which [`read_course`] reads.
-    #[must_use]
     pub fn csv(&self) -> String {
         let rows = self.0.iter();
         let rows = rows.map(|point| format!("{:.3},{:.4}\n", point.t_s, point.celsius));
@@ -211,7 +205,6 @@ impl Course {
     }
 
     /// The commands that upload the course to a device, with absolute temperatures.
-    #[must_use]
     pub fn upload_commands(&self) -> Vec<PlainCommand> {
         let points: Vec<_> = (self.0.iter())
             .map(|point| (point.t_s, point.celsius))

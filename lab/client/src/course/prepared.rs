@@ -27,7 +27,6 @@ pub struct TooCoarse {
 
 impl Prepared {
     /// Reduces and rounds a course.
-    #[must_use]
     pub fn new(whole: Course) -> Self {
         let points = reduce(&whole, COURSE_POINTS_MAX).course.rounded();
         Self {

@@ -23,7 +23,6 @@ pub struct Reduced {
 /// A bisection over the tolerance; for each the shortest path from the first to the last point, where two points are joined if
 /// the line between them passes all others within the tolerance. The cone of slopes that do so is narrowed from point to point,
 /// so that each pair costs one division (Imai and Iri, 1986).
-#[must_use]
 pub fn reduce(course: &Course, points_max: usize) -> Reduced {
     let points = course.points();
     let points_max = points_max.max(2);

@@ -12,7 +12,6 @@ fn with_lapses(observer: &ObserverParams, answers: f64, proportion: f64) -> f64 
 }
 
 /// Proportion of trials in which the first of two falls, K, is said to be the larger.
-#[must_use]
 pub fn colder(observer: &ObserverParams, [first_k, second_k]: [f64; 2]) -> f64 {
     let noise_k = libm::hypot(observer.sigma_k(first_k), observer.sigma_k(second_k));
     let off_k = first_k - second_k;
@@ -30,7 +29,6 @@ pub fn colder(observer: &ObserverParams, [first_k, second_k]: [f64; 2]) -> f64 {
 ///
 /// The farthest from the mean of all is chosen. With `u` the distance of the target from the middle of the distractors and
 /// `d` their difference, which are independent, this is the target if `|u| > 1.5 |d|`.
-#[must_use]
 pub fn different(observer: &ObserverParams, target_k: f64, distractor_k: f64) -> f64 {
     /// Steps of the trapezoidal rule up to 8 standard deviations.
     const STEPS: u32 = 400;
@@ -64,7 +62,6 @@ pub fn different(observer: &ObserverParams, target_k: f64, distractor_k: f64) ->
 }
 
 /// Proportions of the answers to a fall, K, among materials with these expected falls, K.
-#[must_use]
 pub fn identified(observer: &ObserverParams, fall_k: f64, expected_k: &[f64]) -> Vec<f64> {
     /// Steps of the midpoint rule over 16 standard deviations.
     const STEPS: u32 = 4000;

@@ -35,7 +35,6 @@ impl DisplayMode {
     pub const ALL: [Self; 2] = [Self::SemiInfinitePi10Hz, Self::ContactModel];
 
     /// Its words on the line.
-    #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
             Self::SemiInfinitePi10Hz => "semi-infinite/pi-10hz",

@@ -29,7 +29,6 @@ pub enum CellTask {
 
 impl Cell {
     /// Proportion of correct answers of an observer.
-    #[must_use]
     pub fn predicted(&self, observer: &ObserverParams) -> f64 {
         match self.task {
             CellTask::Colder(falls_k) => colder(observer, falls_k),
@@ -40,7 +39,6 @@ impl Cell {
     }
 
     /// Deviance against the published proportion.
-    #[must_use]
     pub fn deviance(&self, observer: &ObserverParams) -> f64 {
         let predicted = self.predicted(observer).clamp(1e-9, 1.0 - 1e-9);
         let term = |observed: f64, expected: f64| {
@@ -73,7 +71,6 @@ pub struct Fitted {
 
 impl Fitted {
     /// The observer with these parameters.
-    #[must_use]
     pub const fn observer(&self) -> ObserverParams {
         ObserverParams {
             s0_k: self.s0_k,

@@ -16,7 +16,6 @@ pub struct Folder {
 
 impl Folder {
     /// The files of a participant, a code of letters and digits, and a task in a data set.
-    #[must_use]
     pub fn new(root: &Path, participant: &str, task: &str) -> Self {
         Self {
             root: root.into(),
@@ -26,25 +25,21 @@ impl Folder {
     }
 
     /// The data set.
-    #[must_use]
     pub fn root(&self) -> &Path {
         &self.root
     }
 
     /// Code of the participant.
-    #[must_use]
     pub fn participant(&self) -> &str {
         &self.participant
     }
 
     /// Name of the task.
-    #[must_use]
     pub fn task(&self) -> &str {
         &self.task
     }
 
     /// A file in which the session was recorded.
-    #[must_use]
     pub fn source(&self, name: &str) -> PathBuf {
         let Self {
             root,
@@ -56,7 +51,6 @@ impl Folder {
     }
 
     /// A file of behavioural data, by the end of its name, such as `events.tsv`.
-    #[must_use]
     pub fn behaviour(&self, end: &str) -> PathBuf {
         let Self {
             root,

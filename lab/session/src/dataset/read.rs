@@ -55,7 +55,6 @@ impl RecordedSession {
     }
 
     /// The file with its telemetry.
-    #[must_use]
     pub fn telemetry_path(&self) -> PathBuf {
         self.folder.source(TELEMETRY)
     }

@@ -222,7 +222,6 @@ impl Recorder {
     }
 
     /// The records so far, also those of the runs before.
-    #[must_use]
     pub fn records(&self) -> &[TrialRecord] {
         &self.records
     }
@@ -298,7 +297,6 @@ impl Recorder {
     }
 
     /// The folder of the session.
-    #[must_use]
     pub const fn folder(&self) -> &Folder {
         &self.folder
     }

@@ -23,13 +23,11 @@ impl SessionError {
     }
 
     /// The line, from 1; `None` if the error is one of the whole file.
-    #[must_use]
     pub const fn line(&self) -> Option<usize> {
         self.line
     }
 
     /// What is wrong, and what is allowed.
-    #[must_use]
     pub fn problem(&self) -> &str {
         &self.problem
     }

@@ -53,7 +53,6 @@ pub struct Sphericity {
 
 impl Effect {
     /// Mean square of the error term.
-    #[must_use]
     pub fn mean_square_error(&self) -> f64 {
         self.error_sum_of_squares / self.error_df
     }

@@ -6,7 +6,6 @@ use crate::Key;
 
 /// The keys that were pressed in the window that is drawn now. Repetitions of a key that is held do not count: an answer is
 /// given once.
-#[must_use]
 pub fn pressed(ctx: &Context) -> Vec<Key> {
     ctx.input(|input| input.events.iter().filter_map(key).collect())
 }

@@ -60,19 +60,16 @@ impl TissueWeights {
     pub const MEAN: Self = Self([I2F30::ONE; WEIGHTS]);
 
     /// The given weights, those below [`Self::MIN`] raised to it.
-    #[must_use]
     pub fn at_least_min(weights: [I2F30; WEIGHTS]) -> Self {
         Self(weights.map(|weight| weight.max(Self::MIN)))
     }
 
     /// The weights.
-    #[must_use]
     pub const fn get(&self) -> &[I2F30; WEIGHTS] {
         &self.0
     }
 
     /// The mean finger's tissue with these weights, for ticks of 1 ms. Its gains have the error of their resolution.
-    #[must_use]
     pub fn tissue(&self) -> Body {
         let mut body = FingerBody::MEAN.tissue;
         body.state_scale *= SCALE;

@@ -48,19 +48,16 @@ impl ContactConductance {
 
     /// Scaled flux of the coming tick, K, if the surface would reach a change of `target` kelvin without
     /// the resistance.
-    #[must_use]
     pub fn scaled_flux(&self, target: Celsius, half_space: &HalfSpace) -> Celsius {
         self.scaled_flux_by(target.saturating_sub(half_space.free_response()))
     }
 
     /// Scaled flux of the coming tick, K, under a temperature difference that counts the free responses of all bodies, K.
-    #[must_use]
     pub fn scaled_flux_by(&self, difference: Celsius) -> Celsius {
         product(difference, self.series)
     }
 
     /// Temperature difference across the resistance under a scaled flux, both in K; saturates.
-    #[must_use]
     pub fn temperature_drop(&self, scaled_flux: Celsius) -> Celsius {
         saturating_product(scaled_flux, self.resistance)
     }
@@ -87,7 +84,6 @@ impl OwnResistances {
     };
 
     /// The contact of this finger at the pressure given by `log2(P / H)`, without its gap and factor.
-    #[must_use]
     pub fn contact(&self, pair: &ContactPair, log2_relative_pressure: Log2) -> Contact {
         match &self.law {
             None => pair.at_pressure(log2_relative_pressure),
@@ -141,7 +137,6 @@ fn resistance(ratio: Ratio, rate: MantissaExponent, weight: Fraction) -> U16F16 
 impl Contact {
     /// Conductance between skin and object. The [`HalfSpace`] is the cooling of the skin's surface on the
     /// object; its target is `w (T_skin,i - T_object,i)`.
-    #[must_use]
     pub fn object_conductance(&self) -> ContactConductance {
         ContactConductance::new(
             resistance(Ratio::ONE, self.root_rate_per_tick, Fraction::MAX),
@@ -151,13 +146,11 @@ impl Contact {
 
     /// Conductance between skin and display. The [`HalfSpace`] is the cooling of the skin's surface on the
     /// display; its target is `T_skin,i - T_display`.
-    #[must_use]
     pub fn display_conductance(&self) -> ContactConductance {
         ContactConductance::new(self.display_resistance(), TICK_GAIN)
     }
 
     /// Conductance between skin and display, for a finger that is another [`super::super::Body`].
-    #[must_use]
     pub fn display_conductance_of(&self, skin: &Body, own: &OwnResistances) -> ContactConductance {
         let of_contact = own.of_contact(self.display_resistance());
         ContactConductance::new(
@@ -168,7 +161,6 @@ impl Contact {
 
     /// Conductance between the bodies of skin and object. Its target is `T_skin,i - T_object,i`, less the free responses
     /// of both.
-    #[must_use]
     pub fn conductance_of(
         &self,
         skin: &Body,
@@ -182,7 +174,6 @@ impl Contact {
     }
 
     /// Resistance between skin and display over that between skin and object, as [`Self::ratio`], with a finger's own ones.
-    #[must_use]
     pub fn ratio_of(&self, own: &OwnResistances) -> Ratio {
         let object = own.of_contact(self.object_resistance()).to_bits().max(1);
         if own.law.is_some_and(|law| law.has_gap()) {
@@ -201,7 +192,6 @@ impl Contact {
 
     /// Resistance between skin and display without a factor that was learnt, and without the layer: its temperature difference
     /// per kelvin of scaled flux.
-    #[must_use]
     pub fn expected_display_resistance(&self, own: &OwnResistances) -> U16F16 {
         own.with_gap(self.display_resistance())
     }

@@ -45,7 +45,6 @@ impl Law {
     ];
 
     /// Word for this law in the protocol with the host, as in [`Self::PROTOCOL_WORDS`].
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Pi10Hz => "pi-10hz",
@@ -70,7 +69,6 @@ pub struct Controller {
 impl Controller {
     /// A controller with the default law `model` and no current, 0 A. No law ever chooses a current of more than
     /// `limit`, A, in magnitude.
-    #[must_use]
     pub fn new(parameters: &ControlParameters, limit: Current) -> Self {
         Self {
             law: Law::default(),
@@ -89,7 +87,6 @@ impl Controller {
     }
 
     /// The selected law, which chooses the current. The host's command `law` selects another.
-    #[must_use]
     pub const fn law(&self) -> Law {
         self.law
     }
@@ -106,7 +103,6 @@ impl Controller {
 
     /// Largest magnitude, A, of the current that [`Self::choose_current`] returns: the `limit` that [`Self::new`] has
     /// received from the settings.
-    #[must_use]
     pub const fn current_limit(&self) -> Current {
         self.pi.output_limit()
     }

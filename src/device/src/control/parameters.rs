@@ -35,7 +35,6 @@ pub struct ControlParameters {
 impl ControlParameters {
     /// Converts the settings of one finger to fixed point. Takes about a millisecond of floating-point computation, so
     /// it is too slow for the control tick: for start-up and the task that serves the host.
-    #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let pi = PiCoefficients::new(&settings.gains, UpdatePeriod::EveryTick);
         Self {

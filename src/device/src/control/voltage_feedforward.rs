@@ -79,7 +79,6 @@ pub struct VoltageFeedforward {
 impl VoltageFeedforward {
     /// Converts the electrical settings of the module to fixed point. Computed in floating point, so it is for
     /// start-up, not for the control tick.
-    #[must_use]
     pub fn new(module: &PeltierModule) -> Self {
         let resistance = |ohm: f64| to_fixed(ohm / module.supply_v);
         let dead_time = module.dead_time_v / module.supply_v;

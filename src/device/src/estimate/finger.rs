@@ -110,7 +110,6 @@ impl ContactConductances {
     }
 
     /// Contact resistance of skin and display without the factor that was learnt, K per K of scaled flux; `own` are the finger's.
-    #[must_use]
     pub fn expected_display_resistance(&self, own: &OwnResistances) -> U16F16 {
         self.contact.expected_display_resistance(own)
     }
@@ -177,7 +176,6 @@ impl FingerContact {
     }
 
     /// Running means of this contact's force, N, which also hold the mean for which set-points are computed.
-    #[must_use]
     pub const fn force_means(&self) -> &ForceMeans {
         &self.force
     }
@@ -185,14 +183,12 @@ impl FingerContact {
     /// Whether the last tick's force was noise, showed a drift, or was a jump; a landing also counts as a jump. After a
     /// drift or a jump the reference generator computes its interpolation of the closed-form set-point (Eq. 6-12)
     /// again: with the law `model` only while the closed form is valid for the contact, with the other laws always.
-    #[must_use]
     pub const fn force_change(&self) -> ForceChange {
         self.change
     }
 
     /// Ticks of 1 ms since landing, which is the tick in which the force rose from zero (to 3 mN), but at most 32 ticks
     /// before the contact was detected.
-    #[must_use]
     pub const fn ticks_since_landing(&self) -> u64 {
         self.elapsed
     }
@@ -203,7 +199,6 @@ impl FingerContact {
     /// 16 ms after landing, and the force's mean has stayed within 1/64 of its value 64 ms after landing. Otherwise,
     /// with the law `model`, the reference generator computes the set-point from the simulated skin on the object; with
     /// the other laws it uses the closed form in any case.
-    #[must_use]
     pub const fn closed_form_is_valid(&self) -> bool {
         self.closed_form_applies
     }
@@ -219,7 +214,6 @@ impl FingerContact {
 
     /// Contact conductances for a force within 1/1024 of the present mean force. `None` if no tick has computed them
     /// since landing, or since another object was presented.
-    #[must_use]
     pub const fn stored_conductances(&self) -> Option<&ContactConductances> {
         self.conductances.as_ref()
     }
@@ -242,7 +236,6 @@ impl FingerContact {
     /// Parameters of the contact under exactly the force for which set-points are computed. `None` if the stored
     /// conductances were computed for another force or not at all; then the interpolation of the set-point (Eq. 6-12)
     /// cannot be computed in this tick.
-    #[must_use]
     pub fn contact_if_computed_for_setpoint_force(&self) -> Option<&Contact> {
         let conductances = self.conductances.as_ref()?;
         (self.force.mean_for_setpoints() == conductances.force).then_some(&conductances.contact)
@@ -362,14 +355,12 @@ impl FingerEstimator {
     /// Filtered temperatures of skin and room, °C: those before the present or last contact, or, once no finger has
     /// touched for 2 s, the present ones. `None` until a first tick with valid readings, also after
     /// [`Self::invalidate`].
-    #[must_use]
     pub const fn temperatures_before_contact(&self) -> Option<PreContactTemperatures> {
         self.before_contact
     }
 
     /// The present contact; `None` while no finger touches, and after [`Self::invalidate`] until the next valid
     /// readings.
-    #[must_use]
     pub const fn contact(&self) -> Option<&FingerContact> {
         self.contact.as_ref()
     }
@@ -385,13 +376,11 @@ impl FingerEstimator {
     /// Thermal state of the skin on the display. Its output is the cooling of the skin's surface, K, by the contact
     /// with the display so far: positive where the skin is colder than before contact, negative where the display has
     /// warmed it. Decays to zero after lifting.
-    #[must_use]
     pub const fn skin_state_on_display(&self) -> &SkinState {
         &self.skin_state_on_display
     }
 
     /// Temperature of the skin before contact, °C, as its thermistor has it; `None` as [`Self::temperatures_before_contact`].
-    #[must_use]
     pub fn skin_before_contact_by_thermistor(&self) -> Option<Celsius> {
         let sensed = match &self.assumed_skin {
             None => self.before_contact.map(|before| before.skin),
@@ -414,7 +403,6 @@ impl FingerEstimator {
     }
 
     /// Flux of the last tick into the display by the modelled finger; 0 without contact.
-    #[must_use]
     pub fn modelled_flux(&self) -> FluxPerMm2 {
         (self.contact.as_ref()).map_or(FluxPerMm2::ZERO, |_| self.modelled_flux)
     }

@@ -85,7 +85,6 @@ pub enum ForceChange {
 
 impl ForceMeans {
     /// Starts the means with a single force, N, at landing and after each jump of the force.
-    #[must_use]
     pub const fn new(force: Force) -> Self {
         Self {
             recent_mean: force,
@@ -98,14 +97,12 @@ impl ForceMeans {
     /// Long running mean of the force, N: over all ticks since the last jump of the force while these are fewer than
     /// 64, later over the last quarter of them, with at least 64 and at most 4096 ticks. A drift starts this mean again
     /// from the mean of the last 64 ticks.
-    #[must_use]
     pub const fn long_mean(&self) -> Force {
         self.long_mean
     }
 
     /// Mean force, N, for which the present set-points are computed. A landing or a jump of the force sets it to the
     /// force of that tick; [`Self::use_long_mean_for_setpoints`] sets it to the long mean.
-    #[must_use]
     pub const fn mean_for_setpoints(&self) -> Force {
         self.mean_for_setpoints
     }
@@ -118,13 +115,11 @@ impl ForceMeans {
     /// Whether the number of ticks since the last jump of the force, the tick of the jump included, is a power of two
     /// from 16 on: 16, 32, 64 … 16384, where the number stops. The mean has then become more accurate, so new
     /// set-points may be worth the computing time. True also in the tick of a drift, which sets the number back to 64.
-    #[must_use]
     pub const fn ticks_since_jump_are_power_of_two(&self) -> bool {
         self.ticks >= MIN_TICKS_SINCE_JUMP_FOR_NEW_SETPOINT && self.ticks.is_power_of_two()
     }
 
     /// Whether the force has jumped in one of the last `ticks` ticks, at most 64; a landing counts as a jump.
-    #[must_use]
     pub const fn have_jumped_within(&self, ticks: u32) -> bool {
         self.ticks <= ticks
     }

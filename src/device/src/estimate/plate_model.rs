@@ -317,7 +317,6 @@ pub struct LegTemperatures {
 impl LegTemperatures {
     /// Temperatures of legs without current: the ends at the temperatures of display and sink, °C, and the mean half
     /// way between.
-    #[must_use]
     pub fn between_display_and_sink(display: Celsius, sink: Celsius) -> Self {
         Self {
             cold: display,
@@ -365,7 +364,6 @@ impl PlateModel {
     /// Model with the electrical properties of `module` and the identified dynamics of `tile`. Its temperatures are not
     /// valid until [`Self::initialise_steady_state`]. Computed in floating point, so it is too slow for the control
     /// tick: for start-up and the task that serves the host.
-    #[must_use]
     pub fn new(module: &PeltierModule, tile: &Tile) -> Self {
         let ratios = TileToClassRatios::of(tile);
         // In one loop: `map` unrolls.
@@ -444,13 +442,11 @@ impl PlateModel {
 
     /// Modelled temperature of the display's surface in the patch under the finger, °C, after the last step of the
     /// model; without the disturbance that the observer adds.
-    #[must_use]
     pub const fn surface(&self) -> Celsius {
         self.surface
     }
 
     /// Modelled temperatures of the legs' two ends and their mean, °C, after the last step of the model.
-    #[must_use]
     pub fn leg_end_and_mean_temperatures(&self) -> LegTemperatures {
         LegTemperatures {
             cold: self.surface,
@@ -463,7 +459,6 @@ impl PlateModel {
     /// temperature of the sink, °C. Pumped and Joule heat are limited to ±64 W, the finger's heat to ±8 W, and the sink
     /// to ±100 °C. The pumped heat is computed with the Seebeck coefficient at the mean temperature of the legs, which
     /// takes account of the Thomson heat.
-    #[must_use]
     #[inline(always)]
     pub fn inputs_of_tick(&self, current: Current, finger: Watt, sink: Celsius) -> PlateInputs {
         let above_data_sheet = (self.leg_mean.output())
@@ -496,7 +491,6 @@ impl PlateModel {
     /// Additional current, A (positive cools), with which the modelled surface reaches `target`, °C, after the control
     /// horizon of 12 ms; it is to be added to the current from which `inputs` were computed. Assumes that the finger's
     /// heat flow and the sink's temperature stay as in `inputs`, and neglects the change of the Joule heat.
-    #[must_use]
     pub fn additional_current_to_target(&self, target: Celsius, inputs: &PlateInputs) -> Current {
         const FIXED_POINT_ONE: I4F28 = I4F28::ONE;
         let [slowest, ..] = &self.relaxations;

@@ -83,7 +83,6 @@ pub struct PlateObserver {
 impl PlateObserver {
     /// An observer that starts from its first reading. `limit` is the controller's largest current, A: it limits the
     /// correcting current, and 1.25 times as much limits the current in the model.
-    #[must_use]
     pub fn new(parameters: &ObserverParameters, limit: Current) -> Self {
         let disturbance = Coefficient::from_time_constant_s(DISTURBANCE_FILTER_TIME_CONSTANT_S);
         Self {
@@ -129,7 +128,6 @@ impl PlateObserver {
     /// Temperature of the display's surface under the finger, °C: the modelled surface temperature plus the
     /// disturbance, which is the filtered difference between the thermistor's reading and the modelled reading. `None`
     /// until a reading has started the model, also after [`Self::invalidate`].
-    #[must_use]
     pub fn surface(&self) -> Option<Celsius> {
         self.valid
             .then(|| (self.plate.surface()).saturating_add(self.disturbance.output()))
@@ -137,7 +135,6 @@ impl PlateObserver {
 
     /// Modelled temperatures of the legs' cold and hot ends and their mean, °C. `None` until a reading has started the
     /// model, also after [`Self::invalidate`].
-    #[must_use]
     pub fn leg_end_and_mean_temperatures(&self) -> Option<LegTemperatures> {
         self.valid
             .then(|| self.plate.leg_end_and_mean_temperatures())
@@ -148,7 +145,6 @@ impl PlateObserver {
     /// between the thermistor's reading and the modelled reading), plus half a kelvin per ampere of the correcting
     /// current. If the excess lasts for 30 ms while the display follows a set-point, the station trips with the fault
     /// `unlike-model`.
-    #[must_use]
     pub fn residual_is_large(&self) -> bool {
         let correction: Celsius =
             (self.correction >> CORRECTION_CURRENT_WEIGHT_IN_RESIDUAL_SHIFT).lossy_into();
@@ -194,7 +190,6 @@ impl PlateObserver {
     /// present current in the model, plus the additional current that the model needs, plus the correcting current,
     /// because the real current is larger than that in the model by the correcting current. The sum is not limited
     /// here; the controller limits it.
-    #[must_use]
     pub fn current_to_target(&self, target: Celsius) -> Current {
         self.model_current
             .saturating_add(

@@ -149,7 +149,6 @@ impl SkinState {
     }
 
     /// The same state with updates of its slow relaxations at other ticks, for the simulated skin beside the real one.
-    #[must_use]
     pub fn staggered(&self, bodies: &Bodies) -> Self {
         match self {
             Self::HalfSpace(state) => Self::HalfSpace(state.staggered()),
@@ -158,7 +157,6 @@ impl SkinState {
     }
 
     /// Cooling of the skin's surface at the end of the coming tick, K, if no heat flows in it.
-    #[must_use]
     pub const fn free_response(&self) -> Celsius {
         match self {
             Self::HalfSpace(state) => state.free_response(),
@@ -170,7 +168,6 @@ impl SkinState {
 /// Scaled flux by which the heat that a skin loses differs from that before contact: `into_object` in contact, `None`
 /// without. `skin_above_room` is the temperature difference before contact, K, which drove the heat into the film of air
 /// that the contact takes away; without contact the film cools a warm skin, and warms a cold one less.
-#[must_use]
 pub fn flux_beyond_air(
     finger: &FingerBody,
     into_object: Option<Celsius>,

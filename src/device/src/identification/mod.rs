@@ -135,7 +135,6 @@ pub enum AbortReason {
 
 impl AbortReason {
     /// The reason as text for the reply to the host.
-    #[must_use]
     pub const fn description(self) -> &'static str {
         match self {
             Self::Touched => "a finger touches the display",
@@ -198,7 +197,6 @@ pub struct Identification {
 impl Identification {
     /// An identification that begins in the next tick. Its operating point is `sink`, the heat sink's temperature in
     /// °C, limited to 22 to 35 °C. Created by the host's command `tune`.
-    #[must_use]
     pub fn begin_at_sink_temperature(sink: Celsius) -> Self {
         let operating_point = sink.clamp(OPERATING_POINT_CLAMP_MIN, OPERATING_POINT_CLAMP_MAX);
         Self {
@@ -214,7 +212,6 @@ impl Identification {
 
     /// Temperature around which the pulses move the display, 22 to 35 °C; the display's set-point while the
     /// identification runs.
-    #[must_use]
     pub const fn operating_point(&self) -> Setpoint {
         self.operating_point
     }
@@ -231,7 +228,6 @@ impl Identification {
     ///
     /// # Errors
     /// The identification has ended early, for this reason.
-    #[must_use]
     pub const fn outcome(&self) -> Option<Result<(), AbortReason>> {
         match self.phase {
             IdentificationPhase::Done => Some(Ok(())),

@@ -131,7 +131,6 @@ pub struct NormalEquationAccumulator {
 impl NormalEquationAccumulator {
     /// All sums: one row for each of the eight unknowns, then the row of [statistics](StatisticIndex). They are
     /// complete once the identification has succeeded.
-    #[must_use]
     pub const fn rows_and_statistics(
         &self,
     ) -> &[NormalEquationRow; NORMAL_EQUATION_AND_STATISTICS_ROWS] {

@@ -60,7 +60,6 @@ impl BeyondModel {
     }
 
     /// What is to be added to the flux of the model.
-    #[must_use]
     pub const fn flux(&self) -> FluxPerMm2 {
         self.added
     }

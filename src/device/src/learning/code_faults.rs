@@ -65,13 +65,11 @@ impl CodeFaults {
     }
 
     /// Sum of the codes of the last window.
-    #[must_use]
     pub const fn last_sum(&self) -> u32 {
         self.last_sum
     }
 
     /// Whether the sensor was at a rail for so long that its flux is not known well enough.
-    #[must_use]
     pub const fn is_saturated(&self) -> bool {
         self.at_rail_windows >= AT_RAIL_WINDOWS_MAX
     }

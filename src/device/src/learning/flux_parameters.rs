@@ -32,7 +32,6 @@ pub struct FluxParameters {
 
 impl FluxParameters {
     /// Converts from `f64`, for some microseconds, so it is for set-up and the host's task only.
-    #[must_use]
     pub fn new(sensor: &FluxSensor) -> Self {
         let resistance_m2k_w = 1e-6 * sensor.resistance_mm2k_w;
         Self {
@@ -51,7 +50,6 @@ impl FluxParameters {
     }
 
     /// Mean flux of a window whose codes have this sum.
-    #[must_use]
     pub fn mean_flux(&self, codes: u32) -> Flux {
         let zeros = i64::from(self.zero.to_bits()) * i64::from(WINDOW_TICKS);
         let above_zeros = (i64::from(codes) << I28F4::FRAC_NBITS) - zeros;

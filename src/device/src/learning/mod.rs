@@ -81,7 +81,6 @@ impl FingerKnowledge {
     }
 
     /// Its word in the protocol.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::NoCode => "no-code",
@@ -140,7 +139,6 @@ pub struct FingerLearning {
 
 impl FingerLearning {
     /// Learning with this sensor, of a finger that is at `place` before its contacts.
-    #[must_use]
     pub fn new(parameters: &FluxParameters, place: PlaceBeforeContact) -> Self {
         Self {
             sums: WindowSums::default(),
@@ -295,7 +293,6 @@ impl FingerLearning {
     }
 
     /// Whether there is an input that the learner has not taken.
-    #[must_use]
     pub const fn has_input(&self) -> bool {
         self.input.is_some()
     }
@@ -321,32 +318,27 @@ impl FingerLearning {
     }
 
     /// The last flux, W/m²; `None` before the first code, and if the sensor's codes cannot be right.
-    #[must_use]
     pub fn flux(&self) -> Option<Flux> {
         let is_valid = self.code != 0 && self.faults.present().is_none();
         is_valid.then(|| (self.parameters).mean_flux(WINDOW_TICKS * u32::from(self.code)))
     }
 
     /// Flux to be added to that of the modelled finger in the present window.
-    #[must_use]
     pub const fn flux_beyond_model(&self) -> FluxPerMm2 {
         self.beyond_model.flux()
     }
 
     /// Mean code of half a second without contact, with the display at the temperature of the room.
-    #[must_use]
     pub const fn no_contact_code(&self) -> Option<NoContactCodeSum> {
         self.resting.last()
     }
 
     /// What is known of the person.
-    #[must_use]
     pub const fn person(&self) -> &PersonState {
         &self.person
     }
 
     /// What is known of the finger.
-    #[must_use]
     pub const fn knowledge(&self) -> FingerKnowledge {
         self.knowledge
     }

@@ -11,7 +11,6 @@ pub struct NoContactCodeSum(u32);
 
 impl NoContactCodeSum {
     /// Mean code, counts.
-    #[must_use]
     pub fn mean_counts(self) -> f64 {
         f64::from(self.0) / f64::from(WINDOWS * WINDOW_TICKS)
     }
@@ -41,7 +40,6 @@ impl NoContactCodes {
     }
 
     /// The last complete half second; `None` if there was none since the last contact.
-    #[must_use]
     pub const fn last(&self) -> Option<NoContactCodeSum> {
         self.last
     }

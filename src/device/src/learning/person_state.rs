@@ -15,7 +15,6 @@ pub struct PersonState {
 
 impl PersonState {
     /// Before the first contact.
-    #[must_use]
     pub const fn new(chosen: Option<Person>) -> Self {
         Self {
             chosen,
@@ -24,13 +23,11 @@ impl PersonState {
     }
 
     /// The finger with which the learner begins.
-    #[must_use]
     pub fn prior(&self) -> Option<PersonPrior> {
         self.chosen.map(|person| PersonPrior(person.finger))
     }
 
     /// Contacts from which what can be stored was learnt.
-    #[must_use]
     pub fn contacts(&self) -> u8 {
         self.learnt.map_or(0, |learnt| learnt.contacts())
     }

@@ -38,7 +38,6 @@ impl FluxSensorTest {
     ];
 
     /// Its word in lines to the host.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Passed => "ok",
@@ -54,7 +53,6 @@ impl FingerLearning {
     /// Tests the codes of the last window, on a display that is so much warmer than the room, K.
     #[cold]
     #[inline(never)]
-    #[must_use]
     pub fn test_sensor(&self, above_room: Celsius) -> FluxSensorTest {
         match self.faults.present() {
             Some(CodeFault::Missing) => FluxSensorTest::NoCode,

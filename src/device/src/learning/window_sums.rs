@@ -94,25 +94,21 @@ impl WindowSums {
     }
 
     /// Sum of the ten codes.
-    #[must_use]
     pub const fn codes(&self) -> u32 {
         self.of_window.codes
     }
 
     /// Mean flux of the modelled finger in the ticks of the codes.
-    #[must_use]
     pub const fn mean_modelled_flux(&self) -> FluxPerMm2 {
         FluxPerMm2::from_bits(self.of_window.modelled_flux.to_bits() / WINDOW_TICKS as i32)
     }
 
     /// Whether the finger pressed in a tick.
-    #[must_use]
     pub const fn has_contact(&self) -> bool {
         self.touching_ticks != 0
     }
 
     /// The contact of the window, if it had one.
-    #[must_use]
     pub fn contact(&self, state: &StateAtEnd) -> Option<ContactInput> {
         if !self.has_contact() {
             return None;

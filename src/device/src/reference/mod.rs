@@ -92,7 +92,6 @@ pub struct Reference {
 impl Reference {
     /// A reference from a set-point and a target, °C, each limited to the safe range of 15 to 42 °C. `limited` is set
     /// if the set-point was outside this range.
-    #[must_use]
     pub fn limited_to_safe_range(setpoint: Celsius, target: Celsius) -> Self {
         let (setpoint, limited) = Setpoint::clamp_celsius_with_flag(setpoint);
         let (target, _) = Setpoint::clamp_celsius_with_flag(target);
@@ -106,7 +105,6 @@ impl Reference {
     /// A reference whose set-point and target are the same temperature, °C, limited to 15 to 42 °C. Used while no
     /// object is presented, for the semi-infinite contact model, and, with the laws `pi` and `pi-10hz`, while no finger
     /// touches.
-    #[must_use]
     pub fn at(setpoint: Celsius) -> Self {
         Self::limited_to_safe_range(setpoint, setpoint)
     }
@@ -285,7 +283,6 @@ impl ReferenceGenerator {
 
     /// Number of evaluations since start-up of `erfcx`, the scaled complementary error function, which is the costly
     /// part of Eq. 6-12. For the telemetry; wraps at 2^32.
-    #[must_use]
     pub const fn erfcx_evaluations(&self) -> u32 {
         self.evaluations
     }

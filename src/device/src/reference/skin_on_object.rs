@@ -38,7 +38,6 @@ impl ContactPairFactors {
     /// Computes the constants of Eq. 6-12 for the contacts of the skin with object and display in `pair`: the weight of
     /// the object, its reciprocal, and the ratio of the contact resistances. The reciprocal takes a 64-bit division, for
     /// which the processor has no instruction, so it is computed only when another object is presented.
-    #[must_use]
     pub fn new(pair: &ContactPair, resistances: &OwnResistances) -> Self {
         // With a gap the set-point begins near the object's temperature, and has left it after some milliseconds: a display that
         // waited there would be late for all that follows.
@@ -60,7 +59,6 @@ impl ContactPairFactors {
 
     /// Whether these factors hold for `pair`, so that they need not be computed again: its weight and its ratio are
     /// equal to theirs.
-    #[must_use]
     pub fn were_computed_for(&self, pair: &ContactPair) -> bool {
         self.weight == pair.weight() && self.ratio == pair.ratio()
     }
@@ -88,7 +86,6 @@ pub struct SurfaceChanges {
 
 impl SurfaceChanges {
     /// The set-point, °C, as [`SkinOnObject::setpoint`], for a ratio of the resistances of display and object.
-    #[must_use]
     #[inline]
     pub fn setpoint(
         &self,
@@ -197,7 +194,6 @@ impl SkinOnObject {
     /// skin's temperature minus the object's, both before contact, K. `skin_state_on_display` is `None` during contact.
     /// While no finger touches, it is the state of the real skin, whose surface temperature is then used in place of the
     /// simulated one, because the real skin is the one that lands next.
-    #[must_use]
     pub fn setpoint(
         &self,
         factors: &ContactPairFactors,
@@ -230,7 +226,6 @@ impl SkinOnObject {
     /// temperature of the simulated skin on the object, if the correction stays; negative if the display must cool the
     /// real skin more. It is computed again in each tick of a contact. `display` is the conductance of the contact of
     /// skin and display.
-    #[must_use]
     #[inline(always)]
     pub fn skin_matching_correction(
         &self,

@@ -95,7 +95,6 @@ impl FaultDetectors {
 
     /// Thermal dose (CEM43) that skin would have received so far if it had always touched this station's display. The
     /// board saves it after every tick, so that a reset does not erase it.
-    #[must_use]
     pub const fn dose(&self) -> &ThermalDose {
         &self.dose
     }

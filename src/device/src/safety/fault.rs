@@ -20,7 +20,6 @@ macro_rules! faults {
 
             /// Word of the fault on the serial line to the host, in states, replies and telemetry, such as
             /// `display-open`.
-            #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$fault => $word,)+ }
             }
@@ -200,7 +199,6 @@ pub enum ThermistorId {
 
 impl Fault {
     /// The fault that names both which thermistor fails and whether it is open or shorted.
-    #[must_use]
     pub const fn of_open_or_shorted_thermistor(
         thermistor: ThermistorId,
         fault: ThermistorFault,

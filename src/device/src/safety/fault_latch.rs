@@ -20,14 +20,12 @@ pub struct FaultLatch {
 impl FaultLatch {
     /// Cause of the present trip or, after `clear`, of the last one; `None` if the station has never tripped since the
     /// start.
-    #[must_use]
     pub const fn last_trip_cause(&self) -> Option<&TripCause> {
         self.cause.as_ref()
     }
 
     /// Number of the tick (of 1 ms since the start) in which the station tripped last; 0 if it has never tripped or was
     /// tripped before the first tick. The device compares these numbers to report the earliest trip of all fingers.
-    #[must_use]
     pub const fn last_trip_tick_or_zero(&self) -> u32 {
         self.last_trip_tick_or_zero
     }

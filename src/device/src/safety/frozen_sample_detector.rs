@@ -83,7 +83,6 @@ impl Default for FrozenSampleDetector {
 
 impl FrozenSampleDetector {
     /// Whether a channel repeats for so long that the next tick's [`Samples::scattering_thermistors`] is needed.
-    #[must_use]
     pub const fn needs_scatter(&self) -> bool {
         self.suspicious
     }

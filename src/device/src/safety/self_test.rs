@@ -115,7 +115,6 @@ impl SelfTest {
     /// Whether the comparator's tests have not ended yet, in which the comparator cuts and releases the bridge's supply.
     /// It then pulls the bridge's fault line, which does not trip the station by [`Fault::Bridge`] while this is true;
     /// nor does the supply by [`Fault::Supply`], except by the tests themselves.
-    #[must_use]
     pub const fn is_testing_comparator(&self) -> bool {
         self.tick < COMPARATOR_TEST_TICKS
     }

@@ -55,7 +55,6 @@ pub enum SideLine {
 
 impl SideLine {
     /// Its word in lines to the host.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Follows => "ok",
@@ -81,7 +80,6 @@ pub enum SelfTestResult {
 
 impl SelfTestResult {
     /// Its word in lines to the host; of a failed self-test that of its fault.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::None => "none",

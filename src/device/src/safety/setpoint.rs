@@ -24,7 +24,6 @@ impl Setpoint {
     }
 
     /// The set-point as a plain temperature, 15 to 42 °C.
-    #[must_use]
     pub const fn celsius(self) -> Celsius {
         self.0
     }

@@ -45,13 +45,11 @@ impl PredictedDose {
     pub const LIMIT_MS: u32 = DOSE_LIMIT_TICKS;
 
     /// A dose in units of 2^-8 ms at 43 °C.
-    #[must_use]
     pub const fn from_sum(sum: u32) -> Self {
         Self(sum)
     }
 
     /// This dose several times, on top of one that was taken before.
-    #[must_use]
     pub const fn repeated_on_top_of(self, times: u16, before: &ThermalDose) -> Self {
         Self(
             self.0
@@ -61,13 +59,11 @@ impl PredictedDose {
     }
 
     /// Whether the station would trip by [`Fault::Dose`].
-    #[must_use]
     pub const fn reaches_limit(self) -> bool {
         self.milliseconds_at_43() >= DOSE_LIMIT_TICKS
     }
 
     /// The dose, ms at 43 °C.
-    #[must_use]
     pub const fn milliseconds_at_43(self) -> u32 {
         self.0 >> 8
     }
@@ -75,14 +71,12 @@ impl PredictedDose {
 
 impl ThermalDose {
     /// The dose in units of 2^-8 ms at 43 °C, as one 32-bit word, in which the board keeps it in RAM through a reset.
-    #[must_use]
     pub const fn to_retained_word(&self) -> u32 {
         self.sum
     }
 
     /// The dose from the word that [`to_retained_word`](Self::to_retained_word) returned before a reset; any word is accepted, because
     /// the next evaluation limits the dose.
-    #[must_use]
     pub const fn from_any_retained_word(sum: u32) -> Self {
         Self { sum, ticks: 0 }
     }

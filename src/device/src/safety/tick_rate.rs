@@ -26,7 +26,6 @@ pub struct TickRateMonitor {
 impl TickRateMonitor {
     /// A monitor for ticks that are `period` counts of SysTick apart (below 2^24; 180 000 for 1 ms at 180 MHz). Created
     /// before the first tick.
-    #[must_use]
     pub const fn new(period: u32) -> Self {
         Self {
             period: period << (u32::BITS - SYSTICK_BITS),

@@ -47,7 +47,6 @@ impl TripCause {
 
     /// The cause of a trip by `fault`, which tick number `tick` has detected with `readings`. `demanded` is the current
     /// that the tick before demanded of the bridge, A; positive cools.
-    #[must_use]
     pub fn new(fault: Fault, tick: u32, readings: &Readings, demanded: Current) -> Self {
         Self {
             fault,
@@ -62,7 +61,6 @@ impl TripCause {
 
     /// The cause of a trip by a fault that was detected outside of a tick, such as a watchdog reset: the tick number
     /// and the currents are zero, all temperatures are `None`.
-    #[must_use]
     pub const fn without_readings(fault: Fault) -> Self {
         Self {
             fault,
@@ -77,7 +75,6 @@ impl TripCause {
 
     /// Converts the trip cause to the words in which the board keeps it in RAM through a reset. Whoever changes the
     /// words here must also change the list of their names in [`Self::LAYOUT_HASH`].
-    #[must_use]
     pub fn to_retained_words(&self) -> [u32; Self::WORD_COUNT] {
         // Stands for an invalid reading: no thermistor reads the lowest representable temperature.
         let word = |t: Option<Celsius>| t.unwrap_or(Celsius::MIN).to_bits().cast_unsigned();
@@ -94,7 +91,6 @@ impl TripCause {
 
     /// The trip cause that [`to_retained_words`](Self::to_retained_words) converted before a reset; `None` if the first word is not the
     /// number of a fault.
-    #[must_use]
     pub fn from_retained_words(
         [fault, tick, display, check, sink, measured, demanded]: [u32; Self::WORD_COUNT],
     ) -> Option<Self> {

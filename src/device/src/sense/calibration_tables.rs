@@ -46,7 +46,6 @@ pub struct CalibrationTables {
 impl CalibrationTables {
     /// Converts calibration and self-heating from the settings. Computes in `f64`, so it is for start-up and for the
     /// task that serves the host, not for the control tick.
-    #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let self_heating_k = &settings.self_heating_k;
         let corrections = &settings.calibration.corrections;
@@ -95,7 +94,6 @@ impl AdcErrorTable {
     /// Subtracts the converter's error from a sum of 16 conversions (0 to 65520); the result is 0 to 65535.9375. Within
     /// two codes of a border of two segments the error is interpolated linearly: noise spreads the conversions over
     /// both segments there, and the sum does not show how many were in each.
-    #[must_use]
     pub fn correct_sum(&self, sum: u16) -> CorrectedSum {
         let shifted = u32::from(sum) + BORDER_TRANSITION_SUM_HALF_WIDTH;
         let segment = (shifted >> ADC_SEGMENT_SUM_WIDTH_LOG2) as usize;
@@ -149,7 +147,6 @@ impl ThermistorCorrection {
 
     /// Adds the correction to a thermistor's uncorrected temperature; both are in °C. The products do not overflow
     /// their 64 bits: `slope u` uses 57 of them, `curvature u²` 61.
-    #[must_use]
     pub fn corrected_temperature(&self, uncorrected: Celsius) -> Celsius {
         let u = uncorrected
             .saturating_sub(Self::POLYNOMIAL_CENTRE)

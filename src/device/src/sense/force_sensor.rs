@@ -70,7 +70,6 @@ pub(super) struct ForceChannel {
 impl ForceChannel {
     /// A channel with zero and sensitivity of the force sensor from the settings. Computes in `f64`, so it is for
     /// start-up and not for the control tick.
-    #[must_use]
     pub fn new(settings: &ForceSensor) -> Self {
         let zero = settings.zero_counts * 16.0;
         let max_change = FORCE_ZERO_TRACKING_RANGE_N * settings.counts_per_n * 16.0;
@@ -87,7 +86,6 @@ impl ForceChannel {
 
     /// Force on the display, N, for a sum of 16 conversions; 0 for a sum below the tracked zero. `None` if the sensor's
     /// wire is broken (sum below half of the zero in the settings) or shorted (more than 4060 counts a conversion).
-    #[must_use]
     pub fn force_of_sum(&self, sum: u16) -> Option<Force> {
         if sum < self.broken_below || sum > FORCE_SHORTED_ABOVE_SUM {
             return None;
@@ -152,7 +150,6 @@ impl ContactDetector {
     }
 
     /// Whether a finger touches the display, after debouncing, as of the last call of [`Self::update_contact`].
-    #[must_use]
     pub const fn touching(&self) -> bool {
         self.touching
     }
@@ -160,7 +157,6 @@ impl ContactDetector {
     /// Whether the force of the last call of [`Self::update_contact`] was off zero, 3 mN or more. Always true during a
     /// contact; false in the call that ends a contact. While it is true without a contact, the force may be that of a
     /// finger, so the zero of the force sensor is tracked with a time constant of 16 s instead of 1 s.
-    #[must_use]
     pub const fn is_force_nonzero(&self) -> bool {
         self.off_zero_ticks > 0
     }
@@ -168,7 +164,6 @@ impl ContactDetector {
     /// Whether the force has been off zero (3 mN or more) for at least two ticks in a row, which noise seldom causes: a
     /// finger may be landing. Stays true during a contact. The self-test treats this like a contact, and measures its
     /// baseline again.
-    #[must_use]
     pub const fn is_force_nonzero_debounced(&self) -> bool {
         self.off_zero_ticks >= CONTACT_DEBOUNCE_TICKS
     }
@@ -176,7 +171,6 @@ impl ContactDetector {
     /// Delay of the contact's detection, ticks of 1 ms, 2 to 32: for how long the force had been off zero when the
     /// contact was detected. By this delay the estimate of the finger dates the landing back. Meaningful only while a
     /// finger touches.
-    #[must_use]
     pub const fn detection_delay_ticks(&self) -> u32 {
         self.off_zero_ticks
     }

@@ -93,7 +93,6 @@ pub struct DigitalInputs {
 impl Samples {
     /// Sums of 16 conversions, 0 to 65520, of the five thermistors, in the order display, second display, sink, skin,
     /// room.
-    #[must_use]
     pub const fn thermistor_sums(&self) -> [u16; THERMISTOR_COUNT] {
         [
             self.display,
@@ -110,7 +109,6 @@ impl Samples {
     /// If the last conversion of a thermistor is that of an open or shorted wire, the thermistor's sum becomes 16 times
     /// that conversion. The plain sum of a tick in which a wire breaks mixes valid and invalid conversions, and could
     /// pass for a temperature.
-    #[must_use]
     pub fn from_scans(
         scans: &[Scan; SCANS_PER_TICK],
         inputs: DigitalInputs,
@@ -306,7 +304,6 @@ pub struct SampleConverter {
 impl SampleConverter {
     /// SampleConverter of one finger with these settings, before the first tick. Computes in `f64`, so it is for
     /// start-up and not for the control tick.
-    #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let per_unit = 1.0 / (settings.current_counts_per_a * SCANS_PER_TICK as f64);
         Self {
@@ -345,7 +342,6 @@ impl SampleConverter {
     /// thermistor and one of the others, in turn, and gives the last temperatures of the other three. A thermistor's reading
     /// is `Err` in every tick in which its own wire is open or shorted. All four are converted until one tick has found all
     /// of them connected, and when second display or sink have changed by 0.1 K since they were converted.
-    #[must_use]
     pub fn convert_samples(&mut self, samples: &Samples) -> Readings {
         let [display_sum, others @ ..] = samples.thermistor_sums();
         let [display_check, sink, skin, room] = self.temperatures_in_turn(others);

@@ -13,19 +13,16 @@ impl SupplyVoltage {
     pub const ZERO: Self = Self(0);
 
     /// The voltage that a sum of 16 conversions stands for.
-    #[must_use]
     pub const fn from_sum(sum: u16) -> Self {
         Self(sum)
     }
 
     /// A voltage of 0 to 14.19 V. For limits, at compile time.
-    #[must_use]
     pub const fn from_volts(volts: f64) -> Self {
         Self((volts * SUM_PER_VOLT) as u16)
     }
 
     /// The voltage in tenths of a volt, rounded, 0 to 142.
-    #[must_use]
     pub const fn decivolts(self) -> u32 {
         /// Tenths of a volt per unit of the sum, in units of 2^-32.
         const DECIVOLTS_PER_SUM: u64 = ((1u64 << 32) as f64 * 10.0 / SUM_PER_VOLT) as u64;

@@ -71,7 +71,6 @@ pub(super) struct ThermistorTable {
 impl ThermistorTable {
     /// Computes each cubic from four points of the thermistors' curve. Computes in `f64`, so it is for start-up and not
     /// for the control tick.
-    #[must_use]
     pub fn new(settings: &settings::ThermistorDivider) -> Self {
         let width = 65536.0 / CURVE_INTERVAL_COUNT as f64;
         Self {

@@ -27,14 +27,12 @@ impl ThermistorAverage {
     const STEADY_BLOCK_TOTALS_CHANGE_MAX: u32 = AVERAGED_BLOCK_TICKS * 16 * 12 / 100;
 
     /// Mean, over 512 ticks of 1 ms, of the sum of 16 conversions of 12 bits: 0 to 65520.
-    #[must_use]
     pub fn mean_sum(&self) -> f64 {
         f64::from(self.total) / f64::from(Self::AVERAGED_TICKS)
     }
 
     /// Whether the means of the two blocks differ by at most 0.12 counts a conversion, about 3 mK. A calibration
     /// accepts only a steady reading.
-    #[must_use]
     pub const fn is_steady(&self) -> bool {
         self.change.unsigned_abs() <= Self::STEADY_BLOCK_TOTALS_CHANGE_MAX
     }
@@ -75,7 +73,6 @@ impl ThermistorAverages {
 
     /// Average of one thermistor over the last two complete blocks, by its index (0 to 4: display, second display,
     /// sink, skin, room). `None` while fewer than two blocks are complete, and for a larger index.
-    #[must_use]
     pub fn of(&self, thermistor: usize) -> Option<ThermistorAverage> {
         let last = *self.last.get(thermistor)?;
         let second_last = *self.second_last.get(thermistor)?;

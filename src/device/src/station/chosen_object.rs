@@ -50,7 +50,6 @@ impl ChosenObject {
     /// Nothing chosen yet: no material, the default finger, the object at the room's temperature, the model with contact
     /// resistance.
     /// Computes the default contact constants for the display's surface in `f64`, so it is for the start only.
-    #[must_use]
     pub fn new(display: &Surface, display_layer: U16F16) -> Self {
         let mut chosen = Self {
             material: None,
@@ -72,7 +71,6 @@ impl ChosenObject {
     /// display: those of the chosen material or, before a choice, those of the first material in [`MATERIALS`]. Their
     /// part for skin and display is the same for all materials. `None` if no material is chosen and the display's
     /// surface in the settings is outside of the domain of the contact model.
-    #[must_use]
     pub fn contact_pair(&self) -> Option<&ContactPair> {
         let chosen = self.material.as_ref().map(|material| &material.pair);
         chosen.or(self.default_pair.as_ref())
@@ -161,20 +159,17 @@ impl ChosenObject {
     }
 
     /// The finger that is assumed for the one that touches.
-    #[must_use]
     pub const fn assumed_finger(&self) -> AssumedFinger {
         self.finger
     }
 
     /// The assumed finger and the object.
-    #[must_use]
     pub const fn bodies(&self) -> &Bodies {
         &self.bodies
     }
 
     /// Input of the reference generator, which computes set-point and target in the states preset and contact: contact
     /// constants, bodies, object temperature and contact model. `None` before a material is chosen.
-    #[must_use]
     pub fn presented_object_if_chosen(&self) -> Option<PresentedObject<'_>> {
         Some(PresentedObject {
             pair: &self.material.as_ref()?.pair,

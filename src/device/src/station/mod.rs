@@ -147,7 +147,6 @@ impl BridgeDemand {
 impl Station {
     /// A station with these settings in the state off, before its first tick, with no material chosen. Converts the
     /// settings from `f64`, which takes about a millisecond, so it is for the start only.
-    #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let parameters = ControlParameters::new(settings);
         let limit = to_fixed(settings.module.current_limit_a);
@@ -193,7 +192,6 @@ impl Station {
     }
 
     /// A station as [`Station::new`] makes it, tripped by `cause` if there is one.
-    #[must_use]
     pub fn new_optionally_tripped(cause: Option<TripCause>, settings: &Settings) -> Self {
         let mut station = Self::new(settings);
         if let Some(cause) = cause {
@@ -603,20 +601,17 @@ impl Station {
     }
 
     /// The station's present state, without its internal data; with the fault if the station is tripped.
-    #[must_use]
     pub const fn state(&self) -> StateName {
         self.state.state_name()
     }
 
     /// Whether the station is tripped, so that its bridge stays off until the host sends `clear`.
-    #[must_use]
     pub const fn is_tripped(&self) -> bool {
         self.state.latched_fault().is_some()
     }
 
     /// The station's fault latch, which stores the cause and the tick of the last trip. The device compares the latches
     /// of all fingers to find the cause of the earliest trip.
-    #[must_use]
     pub const fn fault_latch(&self) -> &FaultLatch {
         &self.latch
     }
@@ -624,7 +619,6 @@ impl Station {
     /// Thermal dose (CEM43, equivalent time at 43 °C) that skin would have received if it had always touched this
     /// finger's display. The board stores the dose after every tick, so that a reset does not erase it. At half a
     /// minute the station trips by [`Fault::Dose`].
-    #[must_use]
     pub const fn thermal_dose(&self) -> &ThermalDose {
         self.detectors.dose()
     }
@@ -642,7 +636,6 @@ impl Station {
 
     /// Telemetry of the last tick. `None` if the host has not switched telemetry on, or if the tick's number is not a
     /// multiple of the interval that the host has chosen.
-    #[must_use]
     pub fn telemetry_if_due(&self) -> Option<Telemetry> {
         if self.telemetry_ticks == 0 || !self.tick.is_multiple_of(self.telemetry_ticks) {
             return None;
@@ -671,7 +664,6 @@ impl Station {
     }
 
     /// Whether an event was not fetched yet.
-    #[must_use]
     pub fn has_event(&self) -> bool {
         self.events.has_event()
     }

@@ -82,7 +82,6 @@ pub enum Event<'a> {
 impl State {
     /// The state without its internal data, as status and telemetry report it; with the fault if the station is
     /// tripped.
-    #[must_use]
     pub const fn state_name(&self) -> StateName {
         match self {
             Self::Off => StateName::Off,
@@ -98,7 +97,6 @@ impl State {
 
     /// The transition table: the state to which `event` leads from this state, with the initial data of the new state;
     /// `None` if the event has no effect here. docs/safety.md shows the same table, and a unit test compares the two.
-    #[must_use]
     #[inline(always)]
     pub fn state_after(&self, event: Event<'_>) -> Option<Self> {
         Some(match (self, event) {
@@ -131,19 +129,16 @@ impl State {
 
     /// Whether an object is presented, with or without a finger on the display: true in preset and contact.
     /// Calibrations and new control parameters are refused in these states, because the finger would feel the change.
-    #[must_use]
     pub const fn is_presenting_object(&self) -> bool {
         matches!(self, Self::Preset | Self::Contact)
     }
 
     /// Whether a course plays or waits to begin. What would disturb it is refused, as while an object is presented.
-    #[must_use]
     pub const fn is_presenting_course(&self) -> bool {
         matches!(self, Self::Stimulus(Stimulus::Wait(..) | Stimulus::Play(_)))
     }
 
     /// The fault that has tripped the station; `None` in every state other than tripped.
-    #[must_use]
     pub const fn latched_fault(&self) -> Option<Fault> {
         match self {
             Self::Tripped(fault) => Some(*fault),

@@ -23,7 +23,6 @@ pub enum Approach {
 
 impl Approach {
     /// To `end`, °C.
-    #[must_use]
     pub const fn to(end: Celsius) -> Self {
         Self::Underway(end)
     }

@@ -34,7 +34,6 @@ impl TemperatureKind {
         [("absolute", Self::Absolute), ("relative", Self::AboveSkin)];
 
     /// Smallest and largest temperature of a point, °C or K.
-    #[must_use]
     pub const fn range(self) -> (Celsius, Celsius) {
         match self {
             Self::Absolute => (SETPOINT_MIN, SETPOINT_MAX),
@@ -103,7 +102,6 @@ impl Default for Course {
 
 impl Course {
     /// A course without points yet.
-    #[must_use]
     pub const fn new(kind: TemperatureKind) -> Self {
         Self {
             points: Vec::new(),
@@ -209,7 +207,6 @@ impl Course {
 
     /// Dose of the course if its temperatures are this much, °C, above what its points say. An upper bound: of a relative
     /// course with a largest temperature of 39 to 42 °C it also counts what is below 39 °C, down to 3 K below that largest one.
-    #[must_use]
     pub fn dose(&self, base: Celsius) -> PredictedDose {
         let largest = self.largest.saturating_add(base);
         if largest < DOSE_COUNTED_FROM {
@@ -219,25 +216,21 @@ impl Course {
     }
 
     /// The points.
-    #[must_use]
     pub fn points(&self) -> &[CoursePoint] {
         &self.points
     }
 
     /// What the temperatures of the points are.
-    #[must_use]
     pub const fn temperature_kind(&self) -> TemperatureKind {
         self.kind
     }
 
     /// Temperature of the first point, °C; 0 for a course without points.
-    #[must_use]
     pub fn first_temperature(&self) -> Celsius {
         (self.points.first()).map_or(Celsius::ZERO, |point| point.temperature)
     }
 
     /// Smallest and largest temperature of the points, °C, or K above the skin.
-    #[must_use]
     pub const fn extremes(&self) -> (Celsius, Celsius) {
         (self.smallest, self.largest)
     }

@@ -23,7 +23,6 @@ impl CourseMemory {
     }
 
     /// The course that was loaded last.
-    #[must_use]
     pub fn loaded(&self) -> Option<&Course> {
         self.loaded
             .then(|| &self.courses[usize::from(self.loaded_second)])
@@ -35,7 +34,6 @@ impl CourseMemory {
     }
 
     /// The course that plays.
-    #[must_use]
     pub fn playing(&self) -> &Course {
         &self.courses[usize::from(self.playing_second)]
     }

@@ -19,7 +19,6 @@ impl EquivalentTime {
     pub const ZERO: Self = Self(0);
 
     /// The dose of this time at a temperature, °C, of at most 43 °C.
-    #[must_use]
     pub fn at(self, largest: Celsius) -> PredictedDose {
         let weight = weight_below(DOSE_REFERENCE_TEMPERATURE.saturating_sub(largest));
         PredictedDose::from_sum(((u64::from(self.0) * weight) >> 32) as u32)

@@ -26,7 +26,6 @@ impl Hold {
 
     /// Moves from `start`, °C, clamped to 15 to 42 °C, to `target` at this rate, K/s, above zero. The last tick may be
     /// slower, so that the rate is never exceeded.
-    #[must_use]
     pub fn new(start: Celsius, target: Setpoint, rate_k_s: Celsius) -> Self {
         let start = Setpoint::clamp_celsius_with_flag(start).0.celsius();
         let target = target.celsius();
@@ -42,7 +41,6 @@ impl Hold {
     }
 
     /// Stays at this temperature, °C, which a display that is off it approaches.
-    #[must_use]
     pub const fn at(celsius: Celsius) -> Self {
         Self {
             start: celsius,

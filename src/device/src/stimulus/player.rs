@@ -25,7 +25,6 @@ impl CourseStart {
     ];
 
     /// Its word in the protocol.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Now => "now",
@@ -120,7 +119,6 @@ pub struct Player {
 
 impl Player {
     /// Plays a course that has `elapsed` ticks behind it in the first tick.
-    #[must_use]
     pub fn new(points: &[CoursePoint], base: Celsius, order: &PlayOrder, elapsed: u32) -> Self {
         let start = Place {
             time_ms: 0,

@@ -40,7 +40,6 @@ impl Cut {
     };
 
     /// Number of cells of a half-space.
-    #[must_use]
     pub fn cells(&self) -> usize {
         let skin = Layer {
             thickness_m: f64::INFINITY,

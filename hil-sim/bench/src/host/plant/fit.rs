@@ -12,7 +12,6 @@ pub struct Line {
 }
 
 /// Fits at least two points that differ in the first coordinate.
-#[must_use]
 pub fn line(points: &[(f64, f64)]) -> Line {
     let count = points.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
@@ -32,7 +31,6 @@ pub fn line(points: &[(f64, f64)]) -> Line {
 }
 
 /// Exponent of the power law through positive points.
-#[must_use]
 pub fn power(points: &[(f64, f64)]) -> f64 {
     let logarithms: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     line(&logarithms).slope

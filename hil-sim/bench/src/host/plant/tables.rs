@@ -8,7 +8,6 @@ use super::finger::{DURATION_S, FORCE_N, OBJECT};
 const SVG: &str = "plant-benchmark.svg";
 
 /// All tables with their explanations.
-#[must_use]
 pub fn tables(figures: &Figures) -> String {
     let fingers = grid(
         &[
@@ -87,7 +86,6 @@ pub fn tables(figures: &Figures) -> String {
 }
 
 /// The tables as a page with the plot.
-#[must_use]
 pub fn page(figures: &Figures) -> String {
     format!(
         "# Cost of the simulated plant\n\n\

@@ -32,7 +32,6 @@ pub(super) fn span(place: FaultScene) -> (f64, f64) {
 
 impl BitFlip {
     /// Draws a flip in an image's memory; it depends only on seed and number.
-    #[must_use]
     pub fn new(seed: u64, number: u64, memory: &FlippableMemory) -> Self {
         let mut draw =
             Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, &format!("flip {number}")));

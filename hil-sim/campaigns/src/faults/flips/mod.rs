@@ -90,7 +90,6 @@ impl ReferenceRun {
     }
 
     /// Largest stack use, bytes.
-    #[must_use]
     pub fn stack_bytes(&self) -> Option<u32> {
         self.outcome.cost?.stack_bytes
     }
@@ -98,7 +97,6 @@ impl ReferenceRun {
 
 impl BitFlip {
     /// Text of the scene.
-    #[must_use]
     pub fn text(&self) -> String {
         text(self.point.scene, &[(self.injected(), self.point.t_s)])
     }

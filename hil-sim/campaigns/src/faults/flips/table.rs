@@ -7,7 +7,6 @@ use crate::faults::Breach;
 use crate::faults::assessment::MICROSECONDS;
 
 /// Table of effects by region, with the causes of trips, followed by every flip that broke a limit or ended its run.
-#[must_use]
 pub fn flip_table(runs: &[FlipResult]) -> String {
     let mut text = format!("{:<24}", "");
     for region in FlipRegion::ALL {

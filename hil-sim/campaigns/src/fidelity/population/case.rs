@@ -43,7 +43,6 @@ impl PopulationCase {
     pub const FORCE_N: f64 = 2.0;
 
     /// The text of the scene: scenario A with 2 N.
-    #[must_use]
     pub fn text(&self, way: Way) -> String {
         let (told, assumed) = match way {
             Way::AsItIs => ("", ""),

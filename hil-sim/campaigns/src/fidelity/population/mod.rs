@@ -76,7 +76,6 @@ pub enum Since {
 
 impl Since {
     /// The time, s.
-    #[must_use]
     pub const fn since_s(self) -> f64 {
         match self {
             Self::Ms50 => 0.05,
@@ -106,7 +105,6 @@ const fn aim(since: Since, percent: f64, aim_mk: f64) -> Aim {
 
 impl Population {
     /// The scenario's name on the command line; F to I have several populations.
-    #[must_use]
     pub const fn scenario(self) -> &'static str {
         match self {
             Self::Objects => "E",
@@ -118,13 +116,11 @@ impl Population {
     }
 
     /// Whether its fingers are enrolled before.
-    #[must_use]
     pub const fn is_of_enrolled(self) -> bool {
         matches!(self, Self::EnrolledDesigned | Self::EnrolledHypothetical)
     }
 
     /// Description of the population.
-    #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
             Self::Objects => {
@@ -152,7 +148,6 @@ impl Population {
     }
 
     /// Percentiles of the largest skin error from a time on and their aims; none of drawn contact laws.
-    #[must_use]
     pub const fn aims(self) -> &'static [Aim] {
         use Since::{Ms50, Ms500};
         const OBJECTS: [Aim; 2] = [aim(Ms50, 95.0, 10.0), aim(Ms50, 100.0, 20.0)];
@@ -181,7 +176,6 @@ impl Population {
     }
 
     /// What its devices are told. Version 0.1 knew no sensor of the heat flux, and no contact law but Eq. 6-8.
-    #[must_use]
     pub const fn ways(self) -> &'static [Way] {
         match self {
             Self::DesignedSensor
@@ -342,7 +336,6 @@ fn device(seed: u64) -> String {
 
 /// So many items, spread over a list; all if there are fewer. One is taken from each of `count` equal parts of the list, from
 /// one part to the next a place later in it, so that a list in which six objects alternate does not give one of them only.
-#[must_use]
 pub fn spread<T: Clone>(items: &[T], count: usize) -> Vec<T> {
     let count = count.min(items.len());
     (0..count)

@@ -88,7 +88,6 @@ const LAYERED: [(&str, Layers, &str); 9] = [
 ];
 
 /// 216 slabs, nine half-spaces and nine layered objects.
-#[must_use]
 pub fn every_object() -> Vec<BodyObject> {
     let mut objects = Vec::new();
     for (material, _) in MATERIALS {
@@ -102,7 +101,6 @@ pub fn every_object() -> Vec<BodyObject> {
 }
 
 /// The objects of the finger's populations.
-#[must_use]
 pub fn six_objects() -> [BodyObject; 6] {
     [
         half_space("copper"),
@@ -140,7 +138,6 @@ fn layered((name, layers, back): (&str, Layers, &str)) -> BodyObject {
 
 /// The tables of a scene that describe layers, from the touched face down: material and thickness, mm; the last one may be
 /// endless.
-#[must_use]
 pub fn layer_keys(layers: &[(&str, f64)]) -> String {
     let mut keys = String::new();
     for (material, thickness_mm) in layers {

@@ -31,7 +31,6 @@ pub struct PopulationResult {
 
 impl PopulationResult {
     /// Largest skin error from a time on, mK.
-    #[must_use]
     pub const fn largest_mk(&self, since: Since) -> f64 {
         match since {
             Since::Ms50 => self.max_after_50ms_mk,
@@ -104,7 +103,6 @@ const WORST: usize = 5;
 
 impl PopulationReport {
     /// Statistics of a population's results, of each way that was run; `None` if there are none of the object as it is.
-    #[must_use]
     pub fn new(
         population: Population,
         results: &[PopulationResult],
@@ -165,7 +163,6 @@ fn statistics(way: Way, mut own: Vec<&PopulationResult>) -> Option<WayStatistics
 }
 
 /// The statistics as text.
-#[must_use]
 pub fn table(reports: &[PopulationReport]) -> String {
     let mut text = String::new();
     for report in reports {

@@ -150,7 +150,6 @@ const fn factor(default: f64) -> Option<ValueRange> {
 
 impl FaultKind {
     /// The value of the kind, if it has one. The supply range is that of this class of drivers, 4.5 to 38 V.
-    #[must_use]
     pub const fn value(self) -> Option<ValueRange> {
         match self {
             Self::ThermistorDrift | Self::ThermistorOffset => required("K", -60.0, 60.0),
@@ -175,7 +174,6 @@ impl FaultKind {
     }
 
     /// Whether it affects one thermistor, which the scene may name.
-    #[must_use]
     pub const fn has_sensor(self) -> bool {
         matches!(
             self,
@@ -190,7 +188,6 @@ impl FaultKind {
     }
 
     /// Whether it affects the heat-flux sensor, which the scene must have.
-    #[must_use]
     pub const fn needs_flux_sensor(self) -> bool {
         matches!(
             self,
@@ -205,13 +202,11 @@ impl FaultKind {
     }
 
     /// Whether it exchanges two thermistors, of which the scene must name the second.
-    #[must_use]
     pub const fn needs_second_sensor(self) -> bool {
         matches!(self, Self::SensorsSwapped)
     }
 
     /// Whether it has a duration, so that the scene may give its end.
-    #[must_use]
     pub const fn has_duration(self) -> bool {
         !matches!(self, Self::HostGarbage)
     }

@@ -71,7 +71,6 @@ pub struct ScheduledFault {
 
 impl ScheduledFault {
     /// The fault as it is at a time, s; `None` if it is not present. A drift grows from its start on.
-    #[must_use]
     pub fn at(&self, t_s: f64) -> Option<ActiveFault> {
         if !(self.t_s..self.until_s).contains(&t_s) {
             return None;

@@ -46,7 +46,6 @@ pub struct Fit {
 impl Fit {
     /// Fits the samples with these numbers to a phantom of this effusivity, W s½/(m² K). The first sample is before the phantom was
     /// put on. `None` if they do not determine the unknowns, as without a flux.
-    #[must_use]
     pub fn new(samples: &[Sample], fitted: &[usize], effusivity: f64) -> Option<Self> {
         let flux: Vec<f64> = samples.iter().map(|sample| sample.flux_w_m2).collect();
         let (integrated, of_one) = (half_integral(&flux), half_integral(&vec![1.0; flux.len()]));

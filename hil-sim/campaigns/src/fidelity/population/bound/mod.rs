@@ -225,7 +225,6 @@ fn bounds(touch: &Touch, prior: &Prior, display_c: &[f64]) -> [[f64; 3]; TIMES_S
 }
 
 /// The rows of a population, by object and time; none without results.
-#[must_use]
 pub fn rows(population: Population, results: &[BoundResult]) -> Vec<BoundRow> {
     let own = results.iter().filter(|one| one.population == population);
     let own: Vec<_> = own.collect();
@@ -261,7 +260,6 @@ pub fn rows(population: Population, results: &[BoundResult]) -> Vec<BoundRow> {
 }
 
 /// The rows as text.
-#[must_use]
 pub fn table(rows: &[BoundRow]) -> String {
     let mut text = String::new();
     if rows.is_empty() {
