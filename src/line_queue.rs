@@ -48,10 +48,7 @@ pub struct LineConsumer<'a> {
 impl LineQueue {
     /// Creates a queue in which no line waits.
     pub const fn new() -> Self {
-        Self {
-            lines: Queue::new(),
-            refused: AtomicU32::new(0),
-        }
+        Self { lines: Queue::new(), refused: AtomicU32::new(0) }
     }
 
     /// Divides the queue into its writing end, for the receiving interrupt, and its reading end,
@@ -59,16 +56,7 @@ impl LineQueue {
     pub fn split(&mut self) -> (LineProducer<'_>, LineConsumer<'_>) {
         let (producer, consumer) = self.lines.split();
         let refused = &self.refused;
-        (
-            LineProducer {
-                lines: producer,
-                refused,
-            },
-            LineConsumer {
-                lines: consumer,
-                refused,
-            },
-        )
+        (LineProducer { lines: producer, refused }, LineConsumer { lines: consumer, refused })
     }
 }
 

@@ -114,10 +114,7 @@ mod app {
         };
         cx.shared.task_liveness.check_in(Task::Tick);
         // `spawn` fails while `host` still runs; `host` is then called at the next tick.
-        if cx
-            .local
-            .host_task_timer
-            .count_tick_and_check_due_or_telemetry(telemetry_is_due)
+        if cx.local.host_task_timer.count_tick_and_check_due_or_telemetry(telemetry_is_due)
             && host::spawn().is_ok()
         {
             cx.local.host_task_timer.restart();
@@ -163,14 +160,12 @@ mod app {
     #[task(priority = 1, shared = [device, &task_liveness], local = [console])]
     async fn host(mut cx: host::Context) {
         let device = &mut cx.shared.device;
-        cx.local
-            .console
-            .answer_lines_and_send_telemetry(|finger, command| {
-                // Locked for one finger at a time, so that the next tick begins in time.
-                execute_in_turn(finger, |one| {
-                    device.lock(|device| device.execute_on_finger(one, &command))
-                })
-            });
+        cx.local.console.answer_lines_and_send_telemetry(|finger, command| {
+            // Locked for one finger at a time, so that the next tick begins in time.
+            execute_in_turn(finger, |one| {
+                device.lock(|device| device.execute_on_finger(one, &command))
+            })
+        });
         cx.shared.task_liveness.check_in(Task::Host);
     }
 }

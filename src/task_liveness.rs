@@ -38,9 +38,7 @@ impl TaskLiveness {
     /// Whether every [`Task`] has checked in, so that the watchdog may be fed. If so, clears the
     /// set: all tasks must check in again before this function returns `true` again.
     pub fn clear_if_all_checked_in(&self) -> bool {
-        self.0
-            .compare_exchange(ALL_TASKS, 0, Ordering::Relaxed, Ordering::Relaxed)
-            .is_ok()
+        self.0.compare_exchange(ALL_TASKS, 0, Ordering::Relaxed, Ordering::Relaxed).is_ok()
     }
 }
 

@@ -122,10 +122,7 @@ pub fn figure(key: &str) -> &'static Figure {
 pub fn assert_figure(key: &str, measured: f64) {
     let figure = figure(key);
     figure.print(measured);
-    assert!(
-        figure.recorded_with.is_none(),
-        "{key} depends on the compiler: assert_compiled"
-    );
+    assert!(figure.recorded_with.is_none(), "{key} depends on the compiler: assert_compiled");
     if let Verdict::Differs(why) = figure.judge(measured) {
         panic!("{why}");
     }

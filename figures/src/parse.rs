@@ -41,10 +41,7 @@ pub fn figures(text: &str) -> Result<Vec<Figure>, String> {
     for (group, entries) in groups {
         for (name, entry) in entries {
             let start = entry.span().start;
-            found.push((
-                start,
-                figure(format!("{group}.{name}"), entry.into_inner())?,
-            ));
+            found.push((start, figure(format!("{group}.{name}"), entry.into_inner())?));
         }
     }
     found.sort_by_key(|(start, _)| *start);
@@ -141,18 +138,10 @@ mod tests {
     #[test]
     fn a_measurement_beyond_the_bound_or_far_better_than_stated_differs() {
         for (measured, expected) in [(9.0, true), (12.0, true), (13.1, false), (7.0, false)] {
-            assert_eq!(
-                holds("value = 10\nbound = 13", measured),
-                expected,
-                "{measured}"
-            );
+            assert_eq!(holds("value = 10\nbound = 13", measured), expected, "{measured}");
         }
         for (measured, expected) in [(10.0, true), (9.0, false), (14.0, false)] {
-            assert_eq!(
-                holds("value = 10\nleast = 9.5", measured),
-                expected,
-                "{measured}"
-            );
+            assert_eq!(holds("value = 10\nleast = 9.5", measured), expected, "{measured}");
         }
         for (measured, expected) in [(9.0, true), (11.0, true), (8.9, false), (11.1, false)] {
             let range = "value = 10\nleast = 9\nbound = 11";

@@ -58,25 +58,16 @@ fn one_polynomial(text: &mut String) -> std::fmt::Result {
         let y = 0.5 + 0.5 * s;
         2f64.powi(30) * erfcx(2.0 / y - 2.0)
     });
-    let doubled = powers
-        .iter()
-        .zip(0..)
-        .map(|(c, k)| (c * 2f64.powi(k)).round() as i32);
+    let doubled = powers.iter().zip(0..).map(|(c, k)| (c * 2f64.powi(k)).round() as i32);
     let powers: Vec<i32> = doubled.collect();
     constant(text, "ONE_POLYNOMIAL", "[i32; 15]", &powers)
 }
 
 /// `erfcx` at `nodes` equal steps of `z` from 0 to just below 16.
 fn uniform(text: &mut String, nodes: u32) -> std::fmt::Result {
-    let values: Vec<f32> = (0..nodes)
-        .map(|i| erfcx(16.0 * f64::from(i) / f64::from(nodes)) as f32)
-        .collect();
-    constant(
-        text,
-        &format!("UNIFORM_{nodes}"),
-        &format!("[f32; {nodes}]"),
-        &values,
-    )
+    let values: Vec<f32> =
+        (0..nodes).map(|i| erfcx(16.0 * f64::from(i) / f64::from(nodes)) as f32).collect();
+    constant(text, &format!("UNIFORM_{nodes}"), &format!("[f32; {nodes}]"), &values)
 }
 
 fn constant(text: &mut String, name: &str, kind: &str, value: &impl Debug) -> std::fmt::Result {
@@ -85,19 +76,13 @@ fn constant(text: &mut String, name: &str, kind: &str, value: &impl Debug) -> st
 
 /// `erfcx(z)` for `z >= 0`, rounded.
 fn erfcx(z: f64) -> f64 {
-    if z == 0.0 {
-        1.0
-    } else {
-        erfcx_of_root(exact_product(z, z)).high
-    }
+    if z == 0.0 { 1.0 } else { erfcx_of_root(exact_product(z, z)).high }
 }
 
 /// Coefficients, lowest power first, of the polynomial of `count` terms that meets `f` at the Chebyshev points of
 /// -1 to 1; within a few per cent of the best one for functions as smooth as these.
 fn fit(count: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    let angles: Vec<f64> = (0..count)
-        .map(|i| PI * (i as f64 + 0.5) / count as f64)
-        .collect();
+    let angles: Vec<f64> = (0..count).map(|i| PI * (i as f64 + 0.5) / count as f64).collect();
     let values: Vec<f64> = angles.iter().map(|angle| f(angle.cos())).collect();
     let mut powers = vec![0.0; count];
     // T_k in powers, from T_(k-1) and the one before it.
@@ -105,9 +90,7 @@ fn fit(count: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
     this[0] = 1.0;
     for k in 0..count {
         let samples = angles.iter().zip(&values);
-        let sum: f64 = samples
-            .map(|(angle, value)| value * (k as f64 * angle).cos())
-            .sum();
+        let sum: f64 = samples.map(|(angle, value)| value * (k as f64 * angle).cos()).sum();
         let weight = if k == 0 { 1.0 } else { 2.0 } * sum / count as f64;
         for (power, t) in powers.iter_mut().zip(&this) {
             *power += weight * t;

@@ -65,14 +65,7 @@ pub fn lines(reader: impl BufRead + Send + 'static) -> Lines {
 impl<'a> BenchOperator<'a> {
     /// A person at a device, or at one of its fingers, who enters `lines` and reads the screen.
     pub fn new(finger: Option<u8>, lines: Lines, screen: &'a mut dyn Write) -> Self {
-        Self {
-            finger,
-            lines,
-            screen,
-            asked_c: None,
-            entered_c: None,
-            points: 0,
-        }
+        Self { finger, lines, screen, asked_c: None, entered_c: None, points: 0 }
     }
 
     pub(crate) fn tell(&mut self, text: &str) {
@@ -196,11 +189,7 @@ impl<L: Link> Surroundings<L> for BenchOperator<'_> {
                 ClientError::Link(error) => ended(error),
                 error => SurroundingsError::Failed(error.to_string()),
             })?;
-            let far_k = if self.points < FEW_POINTS {
-                FAR_K
-            } else {
-                FAR_CALIBRATED_K
-            };
+            let far_k = if self.points < FEW_POINTS { FAR_K } else { FAR_CALIBRATED_K };
             match device_c.filter(|device_c| (celsius - device_c).abs() > far_k) {
                 Some(device_c) if entered_before_c != Some(celsius) => {
                     entered_before_c = Some(celsius);
@@ -226,8 +215,7 @@ impl<L: Link> Surroundings<L> for BenchOperator<'_> {
         } else {
             "Take the probe off the display, and touch nothing"
         };
-        self.ask(client, &format!("  {what}, then press Enter: "))
-            .map(drop)
+        self.ask(client, &format!("  {what}, then press Enter: ")).map(drop)
     }
 
     fn put_into_bath(
@@ -249,8 +237,7 @@ impl<L: Link> Surroundings<L> for BenchOperator<'_> {
             }
         };
         let what = what.replace("{}", &format!("{bath_c:.1}"));
-        self.ask(client, &format!("  {what}, then press Enter: "))
-            .map(drop)
+        self.ask(client, &format!("  {what}, then press Enter: ")).map(drop)
     }
 
     fn move_phantom(
@@ -267,8 +254,7 @@ impl<L: Link> Surroundings<L> for BenchOperator<'_> {
             }
             PhantomPlace::Away => "Take the phantom away and dry the display",
         };
-        self.ask(client, &format!("  {what}, then press Enter: "))
-            .map(drop)
+        self.ask(client, &format!("  {what}, then press Enter: ")).map(drop)
     }
 
     fn reads_again(&mut self, why: &str) -> bool {

@@ -25,11 +25,7 @@ pub struct StepScreen<'a> {
 impl<'a> StepScreen<'a> {
     /// A terminal that shows nothing yet.
     pub fn new(out: &'a mut dyn Write) -> Self {
-        Self {
-            out,
-            shown: "".into(),
-            calls: 0,
-        }
+        Self { out, shown: "".into(), calls: 0 }
     }
 
     /// Shows a step; to be called for each.

@@ -107,9 +107,9 @@ impl<'a> TerminalPeople<'a> {
             match orders.into_iter().find(|order| order.word() == line) {
                 Some(order) => self.order = Some(order),
                 None if line.is_empty() => {}
-                None => self.tell(&format!(
-                    "'{line}' is no order; allowed: arm, clear, abort, stop"
-                )),
+                None => {
+                    self.tell(&format!("'{line}' is no order; allowed: arm, clear, abort, stop"))
+                }
             }
             return;
         }
@@ -131,9 +131,7 @@ impl<'a> TerminalPeople<'a> {
                 Err(why) => self.tell(&why),
             }
         } else if !line.is_empty() {
-            self.tell(&format!(
-                "'{line}' is not expected now; `stop` ends with the bridge off"
-            ));
+            self.tell(&format!("'{line}' is not expected now; `stop` ends with the bridge off"));
         }
     }
 
@@ -176,9 +174,7 @@ impl<'a> TerminalPeople<'a> {
         let before = self.states.insert(received.finger, telemetry.state);
         if before != Some(telemetry.state) {
             let (word, meaning) = texts::state(telemetry.state);
-            let of = received
-                .finger
-                .map_or(String::new(), |finger| format!("finger {finger}: "));
+            let of = received.finger.map_or(String::new(), |finger| format!("finger {finger}: "));
             self.tell(&format!("{of}{word}: {meaning}"));
             if let Some(fault) = telemetry.fault() {
                 let words = thermal_client::fault_words(fault);
@@ -214,21 +210,12 @@ impl<'a> TerminalPeople<'a> {
 fn response(question: &Question, stations: usize, line: &str) -> Result<Response, String> {
     match &question.kind {
         AnswerKind::OneOf(words) => {
-            let number = line
-                .parse::<usize>()
-                .ok()
-                .filter(|number| (1..=words.len()).contains(number));
-            let word = || {
-                words
-                    .iter()
-                    .position(|word| word.eq_ignore_ascii_case(line))
-            };
+            let number =
+                line.parse::<usize>().ok().filter(|number| (1..=words.len()).contains(number));
+            let word = || words.iter().position(|word| word.eq_ignore_ascii_case(line));
             let index = number.map(|number| number - 1).or_else(word);
             index.map(Response::Choice).ok_or_else(|| {
-                format!(
-                    "'{line}' is no answer; allowed: 1 to {}, or the word",
-                    words.len()
-                )
+                format!("'{line}' is no answer; allowed: 1 to {}, or the word", words.len())
             })
         }
         AnswerKind::NumberPerStation(least, most) => {
@@ -238,9 +225,7 @@ fn response(question: &Question, stations: usize, line: &str) -> Result<Response
             let numbers: Option<Vec<f64>> = numbers.collect();
             let fits = |numbers: &Vec<f64>| {
                 numbers.len() == stations
-                    && numbers
-                        .iter()
-                        .all(|number| (*least..=*most).contains(number))
+                    && numbers.iter().all(|number| (*least..=*most).contains(number))
             };
             numbers.filter(fits).map(Response::Numbers).ok_or_else(|| {
                 format!("'{line}' is no answer; allowed: {stations} numbers from {least} to {most}")
@@ -332,10 +317,7 @@ mod tests {
         stop: &StopFlag,
     ) -> (TerminalPeople<'a>, Sender<io::Result<String>>) {
         let (sender, lines) = channel();
-        (
-            TerminalPeople::of_session(lines, screen, stop.clone(), None, 2),
-            sender,
-        )
+        (TerminalPeople::of_session(lines, screen, stop.clone(), None, 2), sender)
     }
 
     fn enter(sender: &Sender<io::Result<String>>, line: &str) {
@@ -363,10 +345,7 @@ mod tests {
         assert_eq!(people.response(), Some(Response::Choice(0)));
         drop(people);
         let screen = String::from_utf8(screen).unwrap();
-        assert!(
-            screen.contains("'3' is no answer; allowed: 1 to 2, or the word"),
-            "{screen}"
-        );
+        assert!(screen.contains("'3' is no answer; allowed: 1 to 2, or the word"), "{screen}");
     }
 
     #[test]

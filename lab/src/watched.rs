@@ -33,9 +33,7 @@ impl<P: People> People for Watched<'_, P> {
     fn decision(&mut self) -> Option<Decision> {
         let watcher = self.watcher.decision();
         let simulated = self.simulated.decision();
-        watcher
-            .filter(|decision| *decision == Decision::Stop)
-            .or(simulated)
+        watcher.filter(|decision| *decision == Decision::Stop).or(simulated)
     }
 }
 
@@ -50,12 +48,7 @@ pub struct Progress<'a> {
 impl<'a> Progress<'a> {
     /// A watcher who writes here, and presses this stop.
     pub fn new(screen: &'a mut dyn Write, stop: &'a StopFlag) -> Self {
-        Self {
-            screen,
-            stop,
-            trial: String::new(),
-            answer: String::new(),
-        }
+        Self { screen, stop, trial: String::new(), answer: String::new() }
     }
 
     fn tell(&mut self, text: &str) {
@@ -69,11 +62,8 @@ impl People for Progress<'_> {
         match update {
             Update::Trial { trial, attempt, of } => {
                 let levels = trial.levels.join(" ");
-                let again = if *attempt > 1 {
-                    format!(", attempt {attempt}")
-                } else {
-                    String::new()
-                };
+                let again =
+                    if *attempt > 1 { format!(", attempt {attempt}") } else { String::new() };
                 self.trial = format!(
                     "trial {} of {of}, block {}{again}: {levels}",
                     trial.number, trial.block
@@ -82,9 +72,7 @@ impl People for Progress<'_> {
             }
             Update::Answered(Some(_)) => self.answer = ", answered".into(),
             Update::TrialEnded { void } => {
-                let why = void
-                    .as_ref()
-                    .map_or(String::new(), |why| format!(", void: {why}"));
+                let why = void.as_ref().map_or(String::new(), |why| format!(", void: {why}"));
                 let line = format!("{}{}{why}", self.trial, self.answer);
                 self.tell(&line);
             }

@@ -24,10 +24,7 @@ fn main() -> io::Result<()> {
         .flat_map(|octave| (0..PIECES).map(move |piece| (octave, piece)))
         .collect();
     let mut record = Record::open()?;
-    let open: Vec<_> = pieces
-        .iter()
-        .filter(|piece| !record.done.contains_key(piece))
-        .collect();
+    let open: Vec<_> = pieces.iter().filter(|piece| !record.done.contains_key(piece)).collect();
     eprintln!(
         "{} inputs in {} pieces, {} of them done before; recorded in {}",
         PRACTICAL_OCTAVES.len() as u64 * INPUTS,
@@ -63,9 +60,7 @@ fn main() -> io::Result<()> {
                 })
             })
             .collect();
-        workers
-            .into_iter()
-            .try_for_each(|worker| worker.join().expect("no worker panics"))
+        workers.into_iter().try_for_each(|worker| worker.join().expect("no worker panics"))
     })?;
     eprintln!();
     report(&record)
@@ -89,11 +84,9 @@ impl Record {
             include_str!("../src/reference/erfcx.rs"),
             include_str!("../tests/verify/mod.rs"),
         );
-        let hash = sources
-            .bytes()
-            .fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| {
-                (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
-            });
+        let hash = sources.bytes().fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+        });
         let path = folder.join(format!("kernel-{hash:016x}.txt"));
         let text = fs::read_to_string(&path).unwrap_or_default();
         // The unfinished line of an interrupted run is ignored, and its piece is checked again.
@@ -102,17 +95,9 @@ impl Record {
     }
 
     fn add(&mut self, piece: (i32, u64), statistics: Statistics) -> io::Result<()> {
-        let mut file = fs::OpenOptions::new()
-            .create(true)
-            .append(true)
-            .open(&self.path)?;
-        let Statistics {
-            inputs,
-            worst,
-            correctly_rounded,
-            increases,
-            largest_increase,
-        } = statistics;
+        let mut file = fs::OpenOptions::new().create(true).append(true).open(&self.path)?;
+        let Statistics { inputs, worst, correctly_rounded, increases, largest_increase } =
+            statistics;
         let (octave, number) = piece;
         // In one write, and on a new line even if the last one is unfinished.
         let line = format!(
@@ -126,16 +111,8 @@ impl Record {
 
 fn parse(line: &str) -> Option<((i32, u64), Statistics)> {
     let words: Vec<_> = line.split(' ').collect();
-    let [
-        octave,
-        piece,
-        inputs,
-        worst,
-        correctly_rounded,
-        increases,
-        largest_increase,
-        "end",
-    ] = words[..]
+    let [octave, piece, inputs, worst, correctly_rounded, increases, largest_increase, "end"] =
+        words[..]
     else {
         return None;
     };
@@ -172,10 +149,7 @@ fn report(record: &Record) -> io::Result<()> {
         all.merge(&statistics);
     }
     line(&mut out, "all of them", &all)?;
-    writeln!(
-        out,
-        "\nin units of 2^-32; the reference is exact to {REFERENCE_ERROR} units"
-    )?;
+    writeln!(out, "\nin units of 2^-32; the reference is exact to {REFERENCE_ERROR} units")?;
     writeln!(
         out,
         "the other octaves, 2^{} to 2^{}: at most {proven:.4}, proven",

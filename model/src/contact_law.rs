@@ -19,11 +19,8 @@ pub struct ContactLaw {
 
 impl ContactLaw {
     /// Eq. 6-8 as the thesis has it.
-    pub const NOMINAL: Self = Self {
-        exponent: 0.95,
-        hardness_pa: SKIN_MICROHARDNESS_PA,
-        gap_w_m2k: 0.0,
-    };
+    pub const NOMINAL: Self =
+        Self { exponent: 0.95, hardness_pa: SKIN_MICROHARDNESS_PA, gap_w_m2k: 0.0 };
     /// Exponents that are accepted.
     pub const EXPONENTS: RangeInclusive<f64> = 0.3..=1.5;
     /// Microhardnesses that are accepted, Pa.

@@ -112,10 +112,7 @@ mod tests {
             5e-324,
         ] {
             for decimals in 0..=DECIMALS_MAX {
-                assert_eq!(
-                    Rounded(value, decimals).to_string(),
-                    format!("{value:.decimals$}")
-                );
+                assert_eq!(Rounded(value, decimals).to_string(), format!("{value:.decimals$}"));
             }
         }
         for value in [
@@ -145,10 +142,7 @@ mod tests {
         for value in [18_446_744_074.0, 1e12, 1e300] {
             assert_eq!(nearest_multiple(value, 9), u64::MAX, "{value}");
         }
-        assert_eq!(
-            nearest_multiple(18_446_744_073.0, 9),
-            18_446_744_073_000_000_000
-        );
+        assert_eq!(nearest_multiple(18_446_744_073.0, 9), 18_446_744_073_000_000_000);
     }
 
     proptest! {

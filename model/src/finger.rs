@@ -14,10 +14,7 @@ pub struct FingerProperties {
 }
 
 const fn relaxation(rate_1_s: f64, gain_m2k_j: f64) -> Relaxation {
-    Relaxation {
-        rate_1_s,
-        gain_m2k_j,
-    }
+    Relaxation { rate_1_s, gain_m2k_j }
 }
 
 /// The thesis's finger: a half-space of skin (section 2.1), insulated before contact. Its impedance is within 1.2e-4 of the
@@ -62,10 +59,7 @@ pub const MEAN: FingerProperties = FingerProperties {
 };
 
 /// The mean finger that rests on an insulating pad before contact: 0.5 to 3 W/(m² K) instead of a film of air.
-pub const MEAN_ON_PAD: FingerProperties = FingerProperties {
-    air_w_m2k: 1.75,
-    ..MEAN
-};
+pub const MEAN_ON_PAD: FingerProperties = FingerProperties { air_w_m2k: 1.75, ..MEAN };
 
 /// How fingers differ: relative deviations of the weights of [`MEAN`] per unit of the two largest components of the
 /// differences, whose standard deviations over the simulated fingers are 1. The weights are those of the relaxations from the
@@ -76,12 +70,8 @@ pub const MEAN_ON_PAD: FingerProperties = FingerProperties {
 /// weight of these fingers is below 0.67 of that of [`MEAN`]. `cargo test --release -p system-tests finger_components --
 /// --nocapture` prints all of this.
 pub const COMPONENTS: [[f64; 9]; 2] = [
-    [
-        -0.1476, -0.0858, -0.1855, -0.1129, -0.1484, -0.1537, -0.1313, -0.1665, -0.1202,
-    ],
-    [
-        -0.0417, -0.0329, -0.0374, 0.0403, 0.0341, -0.0079, 0.0067, 0.0094, 0.0026,
-    ],
+    [-0.1476, -0.0858, -0.1855, -0.1129, -0.1484, -0.1537, -0.1313, -0.1665, -0.1202],
+    [-0.0417, -0.0329, -0.0374, 0.0403, 0.0341, -0.0079, 0.0067, 0.0094, 0.0026],
 ];
 
 /// Mean of each of the [`COMPONENTS`] over the same fingers.

@@ -23,22 +23,14 @@ impl Impedance<'_> {
     /// Impedance, m² K/W, at the real Laplace variable `s_1_s`, 1/s, which must be above 0.
     pub fn at(&self, s_1_s: f64) -> f64 {
         let terms = self.relaxations.iter();
-        self.direct_m2k_w
-            + terms
-                .map(|one| one.gain_m2k_j / (s_1_s + one.rate_1_s))
-                .sum::<f64>()
+        self.direct_m2k_w + terms.map(|one| one.gain_m2k_j / (s_1_s + one.rate_1_s)).sum::<f64>()
     }
 
     /// Rise of the surface per flux, m² K/W, `t_s` seconds after a constant flux has begun.
     pub fn step_response(&self, t_s: f64) -> f64 {
         let term = |one: &Relaxation| {
             let x = one.rate_1_s * t_s;
-            one.gain_m2k_j
-                * if x > 0.0 {
-                    -libm::expm1(-x) / one.rate_1_s
-                } else {
-                    t_s
-                }
+            one.gain_m2k_j * if x > 0.0 { -libm::expm1(-x) / one.rate_1_s } else { t_s }
         };
         self.direct_m2k_w + self.relaxations.iter().map(term).sum::<f64>()
     }

@@ -50,11 +50,7 @@ impl Material {
 /// Skin of the fingertip: conductivity 0.37 W/(m K), diffusivity 1e-7 m²/s (section 2.1); surface finish averaged
 /// over women and men (Table 6-1).
 pub const SKIN: Material = Material {
-    surface: Surface {
-        conductivity_w_mk: 0.37,
-        roughness_um: 21.69,
-        slope_rad: 0.30,
-    },
+    surface: Surface { conductivity_w_mk: 0.37, roughness_um: 21.69, slope_rad: 0.30 },
     density_kg_m3: 1000.0,
     specific_heat_j_kgk: 3700.0,
 };
@@ -63,19 +59,12 @@ pub const SKIN: Material = Material {
 pub const SKIN_MICROHARDNESS_PA: f64 = 0.1225e6;
 
 /// Display surface with which the ratios `R_display / R_object` of section 6.3 result.
-pub const REFERENCE_DISPLAY: Surface = Surface {
-    conductivity_w_mk: 36.0,
-    roughness_um: 1.0,
-    slope_rad: 0.138,
-};
+pub const REFERENCE_DISPLAY: Surface =
+    Surface { conductivity_w_mk: 36.0, roughness_um: 1.0, slope_rad: 0.138 };
 
 const fn solid(k: f64, rho: f64, c: f64, roughness_um: f64, slope_rad: f64) -> Material {
     Material {
-        surface: Surface {
-            conductivity_w_mk: k,
-            roughness_um,
-            slope_rad,
-        },
+        surface: Surface { conductivity_w_mk: k, roughness_um, slope_rad },
         density_kg_m3: rho,
         specific_heat_j_kgk: c,
     }
@@ -96,8 +85,5 @@ pub const MATERIALS: [(&str, Material); 9] = [
 
 /// Looks up a material by its name in [`MATERIALS`].
 pub fn find(name: &str) -> Option<&'static Material> {
-    MATERIALS
-        .iter()
-        .find(|(known, _)| *known == name)
-        .map(|(_, material)| material)
+    MATERIALS.iter().find(|(known, _)| *known == name).map(|(_, material)| material)
 }

@@ -4,13 +4,8 @@
 //! is interpolated linearly over force, and outside them it is constant.
 
 /// The five points of the thesis: force, N, and mean contact pressure, Pa.
-pub const THESIS_PRESSURES: [(f64, f64); 5] = [
-    (0.1, 730.0),
-    (0.25, 1680.0),
-    (0.5, 3140.0),
-    (1.0, 5900.0),
-    (2.0, 10980.0),
-];
+pub const THESIS_PRESSURES: [(f64, f64); 5] =
+    [(0.1, 730.0), (0.25, 1680.0), (0.5, 3140.0), (1.0, 5900.0), (2.0, 10980.0)];
 
 /// Contact area in m² of a fingertip pressed with `force_n` (N, not negative); relative error below 1e-15.
 pub fn contact_area_m2(force_n: f64) -> f64 {

@@ -95,10 +95,7 @@ impl Slab {
         };
         let diffusion_1_s =
             self.conductivity_w_mk / (self.capacity_j_m3k * self.thickness_m * self.thickness_m);
-        Relaxation {
-            rate_1_s: x * x * diffusion_1_s,
-            gain_m2k_j,
-        }
+        Relaxation { rate_1_s: x * x * diffusion_1_s, gain_m2k_j }
     }
 
     /// The relaxations of the slab, the slowest first. If there are more than [`RELAXATIONS_MAX`], the static impedance of the
@@ -107,43 +104,26 @@ impl Slab {
     pub fn relaxations(&self) -> SlabRelaxations {
         let mut all = SlabRelaxations {
             direct_m2k_w: 0.0,
-            relaxations: [Relaxation {
-                rate_1_s: 0.0,
-                gain_m2k_j: 0.0,
-            }; RELAXATIONS_MAX],
+            relaxations: [Relaxation { rate_1_s: 0.0, gain_m2k_j: 0.0 }; RELAXATIONS_MAX],
             count: 0,
         };
         let mut first = 0;
         let mut kept_m2k_w = 0.0;
         while all.count < RELAXATIONS_MAX {
-            let end = if first < EXACT_MODES {
-                first + 1
-            } else {
-                first + first.div_ceil(2)
-            };
+            let end = if first < EXACT_MODES { first + 1 } else { first + first.div_ceil(2) };
             let (mut gain_m2k_j, mut static_m2k_w) = (0.0, 0.0);
             for n in first..end {
                 let mode = self.mode(n);
                 gain_m2k_j += mode.gain_m2k_j;
-                static_m2k_w += if mode.rate_1_s > 0.0 {
-                    mode.gain_m2k_j / mode.rate_1_s
-                } else {
-                    0.0
-                };
+                static_m2k_w +=
+                    if mode.rate_1_s > 0.0 { mode.gain_m2k_j / mode.rate_1_s } else { 0.0 };
             }
-            let rate_1_s = if static_m2k_w > 0.0 {
-                gain_m2k_j / static_m2k_w
-            } else {
-                0.0
-            };
+            let rate_1_s = if static_m2k_w > 0.0 { gain_m2k_j / static_m2k_w } else { 0.0 };
             if rate_1_s > RATE_MAX_1_S {
                 break;
             }
             kept_m2k_w += static_m2k_w;
-            all.relaxations[all.count] = Relaxation {
-                rate_1_s,
-                gain_m2k_j,
-            };
+            all.relaxations[all.count] = Relaxation { rate_1_s, gain_m2k_j };
             all.count += 1;
             first = end;
         }

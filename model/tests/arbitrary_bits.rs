@@ -54,21 +54,13 @@ fn property() -> impl Strategy<Value = f64> {
 
 fn surface() -> impl Strategy<Value = Surface> {
     (property(), property(), property()).prop_map(|(conductivity_w_mk, roughness_um, slope_rad)| {
-        Surface {
-            conductivity_w_mk,
-            roughness_um,
-            slope_rad,
-        }
+        Surface { conductivity_w_mk, roughness_um, slope_rad }
     })
 }
 
 fn material() -> impl Strategy<Value = Material> {
     (surface(), property(), property()).prop_map(|(surface, density_kg_m3, specific_heat_j_kgk)| {
-        Material {
-            surface,
-            density_kg_m3,
-            specific_heat_j_kgk,
-        }
+        Material { surface, density_kg_m3, specific_heat_j_kgk }
     })
 }
 

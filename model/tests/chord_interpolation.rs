@@ -28,10 +28,7 @@ impl Counted {
             elapsed,
             Celsius::from_num(tolerance_k),
         );
-        Self {
-            chords,
-            evaluations,
-        }
+        Self { chords, evaluations }
     }
 
     fn setpoint_c(&self) -> f64 {
@@ -143,12 +140,9 @@ fn curvature_of_e_has_the_bound_that_the_chord_lengths_assume() {
 #[test]
 fn transients_below_the_tolerance_need_no_evaluation() {
     let contact = contact_of(3, 2.0);
-    for (object_c, tolerance_k) in [
-        (SKIN_C, 0.5e-3),
-        (SKIN_C + 0.001, 0.5e-3),
-        (24.0, 2.0),
-        (44.0, 2.0),
-    ] {
+    for (object_c, tolerance_k) in
+        [(SKIN_C, 0.5e-3), (SKIN_C + 0.001, 0.5e-3), (24.0, 2.0), (44.0, 2.0)]
+    {
         let mut chords = Counted::new(&contact, object_c, 0, tolerance_k);
         for tick in 1..1000 {
             let error_k = chords.next_c() - exact_c(&contact, object_c, f64::from(tick));
@@ -185,10 +179,7 @@ fn set_points_are_within_tolerance_after_years_of_contact() {
             for tick in 0..200 {
                 let error_k =
                     chords.setpoint_c() - exact_c(&contact, 24.0, (elapsed + tick) as f64);
-                assert!(
-                    error_k.abs() <= TOLERANCE_K,
-                    "{elapsed} + {tick}: {error_k} K"
-                );
+                assert!(error_k.abs() <= TOLERANCE_K, "{elapsed} + {tick}: {error_k} K");
                 chords.next_c();
             }
         }
@@ -206,14 +197,8 @@ fn set_point_is_continuous_between_the_longest_chords() {
         for tick in 1..10 {
             let now_c = chords.next_c();
             let error_k = now_c - exact_c(&contact, 24.0, (elapsed + tick) as f64);
-            assert!(
-                error_k.abs() <= TOLERANCE_K,
-                "{elapsed} + {tick}: {error_k} K"
-            );
-            assert!(
-                (now_c - previous_c).abs() < 1e-6,
-                "{elapsed} + {tick}: a jump"
-            );
+            assert!(error_k.abs() <= TOLERANCE_K, "{elapsed} + {tick}: {error_k} K");
+            assert!((now_c - previous_c).abs() < 1e-6, "{elapsed} + {tick}: a jump");
             previous_c = now_c;
         }
         assert!(chords.evaluations <= 4);

@@ -10,17 +10,13 @@ pub type Row = HashMap<String, String>;
 
 pub fn rows(name: &str) -> Vec<Row> {
     let path = format!("{}/tests/data/{name}.csv", env!("CARGO_MANIFEST_DIR"));
-    let rows = csv::Reader::from_path(&path)
-        .expect("golden table")
-        .into_deserialize();
+    let rows = csv::Reader::from_path(&path).expect("golden table").into_deserialize();
     rows.collect::<Result<_, _>>().expect("golden row")
 }
 
 /// The number in a column of a row.
 pub fn number(row: &Row, column: &str) -> f64 {
-    row[column]
-        .parse()
-        .unwrap_or_else(|_| panic!("{column} is {:?}", row[column]))
+    row[column].parse().unwrap_or_else(|_| panic!("{column} is {:?}", row[column]))
 }
 
 pub fn material(row: &Row) -> &'static Material {

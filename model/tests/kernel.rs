@@ -59,10 +59,7 @@ fn kernel_saturates_outside_the_octaves_of_its_table() {
     let (start, end) = (OCTAVES.start as i16, OCTAVES.end as i16);
     for fraction in [0, 1, u32::MAX / 3, u32::MAX] {
         for exponent in [i16::MIN, -1000, start - 1, start] {
-            assert_eq!(
-                erfcx(Ticks::ONE, MantissaExponent::new(exponent, fraction)),
-                Fraction::MAX
-            );
+            assert_eq!(erfcx(Ticks::ONE, MantissaExponent::new(exponent, fraction)), Fraction::MAX);
         }
         for exponent in [end - 1, end, 1000, i16::MAX] {
             for elapsed in [Ticks::ONE, Ticks::MAX] {

@@ -37,10 +37,7 @@ fn no_heat_flows_without_contact() {
         let absent = pair.at_pressure(Log2::MIN);
         for elapsed in [0, 1, u32::MAX] {
             let at = absent.at(elapsed, SKIN_C, OBJECT_C);
-            assert_eq!(
-                (at.skin(), at.object(), at.flux_w_m2()),
-                (SKIN_C, OBJECT_C, Flux::ZERO)
-            );
+            assert_eq!((at.skin(), at.object(), at.flux_w_m2()), (SKIN_C, OBJECT_C, Flux::ZERO));
         }
     }
 }
@@ -54,15 +51,9 @@ fn contact_without_resistance_gives_the_interface_temperature_at_once() {
             assert!(agree(t, interface, 1), "{t} {interface}");
         }
         // A resistance below the range of the type gives the largest flux.
-        let landing = pair
-            .at_pressure(Log2::MAX)
-            .at(0, SKIN_C, OBJECT_C)
-            .flux_w_m2();
+        let landing = pair.at_pressure(Log2::MAX).at(0, SKIN_C, OBJECT_C).flux_w_m2();
         assert_eq!(landing, Flux::MAX);
-        let landing = pair
-            .at_pressure(Log2::MAX)
-            .at(0, OBJECT_C, SKIN_C)
-            .flux_w_m2();
+        let landing = pair.at_pressure(Log2::MAX).at(0, OBJECT_C, SKIN_C).flux_w_m2();
         assert_eq!(landing, -Flux::MAX);
     }
 }

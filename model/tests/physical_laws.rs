@@ -19,20 +19,13 @@ const PRESSURES_PA: std::ops::Range<f64> = 10.0..1e5;
 
 fn contact<F: Real>(skin_c: f64, object: &Material, object_c: f64, pressure_pa: f64) -> Contact<F> {
     let f = F::from_f64;
-    Contact::new(
-        (&SKIN, f(skin_c)),
-        (object, f(object_c)),
-        &REFERENCE_DISPLAY,
-        f(pressure_pa),
-    )
+    Contact::new((&SKIN, f(skin_c)), (object, f(object_c)), &REFERENCE_DISPLAY, f(pressure_pa))
 }
 
 fn fixed(skin: &Material, object: &Material, pressure_pa: f64, tick_s: f64) -> Fixed {
     ContactPair::new(skin, object, &REFERENCE_DISPLAY, tick_s)
         .expect("within the domain")
-        .at_pressure(Log2::saturating_from_num(
-            (pressure_pa / SKIN_MICROHARDNESS_PA).log2(),
-        ))
+        .at_pressure(Log2::saturating_from_num((pressure_pa / SKIN_MICROHARDNESS_PA).log2()))
 }
 
 fn celsius(t_c: f64) -> Celsius {
@@ -41,26 +34,15 @@ fn celsius(t_c: f64) -> Celsius {
 
 /// Solids between foam and copper, with a wider range of surface finishes.
 fn any_material() -> impl Strategy<Value = Material> {
-    (
-        0.02..400.0f64,
-        20.0..9000.0f64,
-        300.0..4000.0f64,
-        0.05..20.0f64,
-        0.01..0.4f64,
+    (0.02..400.0f64, 20.0..9000.0f64, 300.0..4000.0f64, 0.05..20.0f64, 0.01..0.4f64).prop_map(
+        |(conductivity_w_mk, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad)| {
+            Material {
+                surface: Surface { conductivity_w_mk, roughness_um, slope_rad },
+                density_kg_m3,
+                specific_heat_j_kgk,
+            }
+        },
     )
-        .prop_map(
-            |(conductivity_w_mk, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad)| {
-                Material {
-                    surface: Surface {
-                        conductivity_w_mk,
-                        roughness_um,
-                        slope_rad,
-                    },
-                    density_kg_m3,
-                    specific_heat_j_kgk,
-                }
-            },
-        )
 }
 
 /// Change of the surface temperature of a half-space of effusivity `e` that loses `flux`, by Duhamel's integral
@@ -72,11 +54,7 @@ fn duhamel(e: f64, t_s: f64, flux: impl Fn(f64) -> f64) -> f64 {
     let sum: f64 = (0..=STEPS)
         .map(|i| {
             let cos = (h * f64::from(i)).cos();
-            let simpson = if i == 0 || i == STEPS {
-                1.0
-            } else {
-                f64::from(2 + 2 * (i % 2))
-            };
+            let simpson = if i == 0 || i == STEPS { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
             simpson * flux(t_s * cos * cos) * cos
         })
         .sum();
@@ -225,10 +203,7 @@ fn error_does_not_grow_over_days_of_contact() {
         for hour in 1..=Ticks::MAX.get() / 3_600_000 {
             let ticks = hour * 3_600_000;
             let expected = exact.at(f64::from(ticks) * 1e-3).display_c;
-            let display_c: f64 = integer
-                .at(ticks, celsius(34.0), celsius(24.0))
-                .display()
-                .to_num();
+            let display_c: f64 = integer.at(ticks, celsius(34.0), celsius(24.0)).display().to_num();
             assert!(
                 (display_c - expected).abs() < FIXED_K,
                 "{name}, hour {hour}: {display_c} {expected}"

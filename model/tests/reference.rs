@@ -11,17 +11,11 @@ use crate::golden::{material, number, rows};
 fn effusivity_and_average_slope_agree_with_golden_values() {
     for row in rows("semi_infinite") {
         let expected = number(&row, "e_from_k_rho_c");
-        assert!(
-            relative(material(&row).effusivity(), expected) < 1e-14,
-            "{row:?}"
-        );
+        assert!(relative(material(&row).effusivity(), expected) < 1e-14, "{row:?}");
     }
     for row in rows("roughness_sinusoid") {
         let slope = average_slope_rad(number(&row, "Rdq"));
-        assert!(
-            relative(slope, number(&row, "Rdq_over_1.25")) < 1e-14,
-            "{row:?}"
-        );
+        assert!(relative(slope, number(&row, "Rdq_over_1.25")) < 1e-14, "{row:?}");
     }
 }
 
@@ -32,10 +26,7 @@ fn no_heat_flows_at_zero_pressure() {
     let contact = Contact::<f64>::new((&SKIN, skin_c), (copper, object_c), &REFERENCE_DISPLAY, 0.0);
     for t_s in [0.0, 1e-3, 1e9] {
         let at = contact.at(t_s);
-        assert_eq!(
-            (at.skin_c, at.object_c, at.flux_w_m2),
-            (skin_c, object_c, 0.0)
-        );
+        assert_eq!((at.skin_c, at.object_c, at.flux_w_m2), (skin_c, object_c, 0.0));
     }
 }
 
@@ -48,10 +39,7 @@ fn flux_approaches_that_of_perfect_contact_as_resistance_vanishes() {
         for t_s in [1e-3, 1.0, 1e3] {
             let limit = -perfect.flux_w_m2(t_s).expect("after landing");
             let difference = 0.51 / (contact.rate_per_s * t_s) + 1e-12;
-            assert!(
-                relative(contact.at(t_s).flux_w_m2, limit) < difference,
-                "{name} at {t_s} s"
-            );
+            assert!(relative(contact.at(t_s).flux_w_m2, limit) < difference, "{name} at {t_s} s");
         }
         assert_eq!(perfect.flux_w_m2(0.0), None);
         assert_eq!(perfect.skin_at_depth(1e-3, 0.0), 34.0);
@@ -69,13 +57,9 @@ fn every_material_of_the_thesis_is_found_by_its_name() {
 /// Section 6.4.2: 0.73, 1.68, 3.14, 5.90 and 10.98 kPa at 0.1, 0.25, 0.5, 1 and 2 N.
 #[test]
 fn pressure_equals_the_five_points_of_the_thesis_and_area_is_constant_outside_them() {
-    for (force, pressure) in [
-        (0.1, 730.0),
-        (0.25, 1680.0),
-        (0.5, 3140.0),
-        (1.0, 5900.0),
-        (2.0, 10980.0),
-    ] {
+    for (force, pressure) in
+        [(0.1, 730.0), (0.25, 1680.0), (0.5, 3140.0), (1.0, 5900.0), (2.0, 10980.0)]
+    {
         assert!(relative(pressure_pa(force), pressure) < 1e-12);
     }
     assert_eq!(contact_area_m2(0.0), contact_area_m2(0.1));

@@ -42,24 +42,15 @@ fn material_outside_the_range_is_refused_with_the_name_of_the_property() {
     };
     assert_eq!(
         with(|m| m.density_kg_m3 = -1.0),
-        Err(ContactPairError::Property {
-            name: "density (kg/m3)",
-            value: -1.0
-        })
+        Err(ContactPairError::Property { name: "density (kg/m3)", value: -1.0 })
     );
     assert!(with(|m| m.surface.roughness_um = f64::NAN).is_err());
     assert!(with(|m| m.surface.slope_rad = f64::INFINITY).is_err());
-    assert!(matches!(
-        with(|m| m.surface.slope_rad = 1e4),
-        Err(ContactPairError::Ratio(_))
-    ));
+    assert!(matches!(with(|m| m.surface.slope_rad = 1e4), Err(ContactPairError::Ratio(_))));
     assert!(with(|_| ()).is_ok());
     assert!(matches!(
         ContactPair::new(&copper, &copper, &REFERENCE_DISPLAY, 0.0),
-        Err(ContactPairError::Property {
-            name: "tick (s)",
-            ..
-        })
+        Err(ContactPairError::Property { name: "tick (s)", .. })
     ));
     let with_skin = |change: fn(&mut Material)| {
         let mut skin = SKIN;

@@ -63,10 +63,9 @@ impl Console {
                     .map_err(|error| WithSourceFinger::from_whole_device(Error::from(error)))
                     .and_then(|line| self.handler.answer(&line, &mut execute));
                 match answer {
-                    Ok(WithSourceFinger {
-                        content: Reply::Restart(order),
-                        ..
-                    }) => self.storage_order = Some(order),
+                    Ok(WithSourceFinger { content: Reply::Restart(order), .. }) => {
+                        self.storage_order = Some(order)
+                    }
                     Ok(reply) => self.send(&reply),
                     Err(error) => {
                         defmt::warn!("line refused: {}", defmt::Display2Format(&error));
@@ -83,7 +82,6 @@ impl Console {
 
     fn send(&mut self, content: &dyn Display) {
         let handler = &self.handler;
-        self.outbox
-            .enqueue_or_drop(|line| handler.write_line(line, content));
+        self.outbox.enqueue_or_drop(|line| handler.write_line(line, content));
     }
 }

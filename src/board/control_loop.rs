@@ -101,8 +101,7 @@ impl ControlLoop {
         if !self.chip_monitor.has_fault_at_start()
             && (self.trip_cause_recorder.has_stored_cause() || device.is_finger_tripped(finger))
         {
-            self.trip_cause_recorder
-                .store_or_erase(device.earliest_trip_cause());
+            self.trip_cause_recorder.store_or_erase(device.earliest_trip_cause());
         }
         save_dose_if_changed(finger, device.finger_thermal_dose(finger));
         self.comparator_side.select(outputs.comparator_test);
@@ -150,8 +149,7 @@ impl ControlLoop {
         self.stages.iter_mut().for_each(FingerPowerStage::off);
         self.sampler.stop();
         device.trip_all(error.fault());
-        self.trip_cause_recorder
-            .store_or_erase(device.earliest_trip_cause());
+        self.trip_cause_recorder.store_or_erase(device.earliest_trip_cause());
         defmt::error!("sampling stopped: {}", error);
     }
 }

@@ -32,11 +32,7 @@ impl Lines {
     fn mean_voltage(&self) -> Option<f64> {
         let mut sum = 0;
         for step in 0..STEPS {
-            sum += match (
-                self.enable.get(),
-                step < self.in1.get(),
-                step < self.in2.get(),
-            ) {
+            sum += match (self.enable.get(), step < self.in1.get(), step < self.in2.get()) {
                 (false, ..) | (true, false, false) => return None,
                 (true, true, false) => 1,
                 (true, false, true) => -1,
@@ -100,11 +96,7 @@ fn mean_voltage_is_the_duty_to_half_a_step() {
 
 #[test]
 fn off_makes_the_outputs_high_impedance_by_the_enable_line_and_by_the_inputs() {
-    let lines = Lines {
-        in1: STEPS.into(),
-        in2: STEPS.into(),
-        enable: true.into(),
-    };
+    let lines = Lines { in1: STEPS.into(), in2: STEPS.into(), enable: true.into() };
     let mut bridge = lines.bridge();
     let is_off = || (lines.in1.get(), lines.in2.get(), lines.enable.get()) == (0, 0, false);
     assert!(is_off(), "a new bridge is off");

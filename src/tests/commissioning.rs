@@ -32,17 +32,13 @@ pub struct Bench<const FINGERS: usize> {
 impl<const FINGERS: usize> Bench<FINGERS> {
     pub fn new() -> Self {
         let settings = Settings::default();
-        Self {
-            handler: CommandHandler::new(settings),
-            device: Device::new(&settings),
-        }
+        Self { handler: CommandHandler::new(settings), device: Device::new(&settings) }
     }
 
     /// Sends a line, and returns the answer.
     pub fn send(&mut self, line: &str) -> String {
-        let answer = self
-            .handler
-            .answer(line, |finger, command| self.device.execute(finger, command));
+        let answer =
+            self.handler.answer(line, |finger, command| self.device.execute(finger, command));
         answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }
 
@@ -59,9 +55,7 @@ impl<const FINGERS: usize> Bench<FINGERS> {
 
     /// The answers that report the settings of the finger that `address` names.
     fn settings(&mut self, address: &str) -> Vec<String> {
-        (1..=8)
-            .map(|line| self.send(&format!("{address}settings {line}")))
-            .collect()
+        (1..=8).map(|line| self.send(&format!("{address}settings {line}"))).collect()
     }
 
     /// Steps at 26 °C and a skin of 34 °C until all averages are complete.
@@ -94,8 +88,7 @@ impl Bench<1> {
     pub fn armed() -> Self {
         let mut one = Self::new();
         for tick in 0..10 {
-            one.device
-                .step_finger(FingerIndex::FIRST, &samples(tick % 2));
+            one.device.step_finger(FingerIndex::FIRST, &samples(tick % 2));
         }
         arm(&mut one.device, FingerIndex::FIRST);
         one
@@ -109,17 +102,11 @@ fn an_addressed_set_line_changes_only_its_finger() {
     for line in SETTINGS {
         assert_eq!(five.send(&format!("@3 {line}")), "@3 ok");
     }
-    let expected: Vec<_> = SETTINGS
-        .iter()
-        .map(|line| format!("@3 ok {line}"))
-        .collect();
+    let expected: Vec<_> = SETTINGS.iter().map(|line| format!("@3 ok {line}")).collect();
     assert_eq!(five.settings("@3 "), expected);
     for finger in [0, 1, 2, 4] {
         let address = format!("@{finger} ");
-        let expected: Vec<_> = unchanged
-            .iter()
-            .map(|line| line.replace("@0 ", &address))
-            .collect();
+        let expected: Vec<_> = unchanged.iter().map(|line| line.replace("@0 ", &address)).collect();
         assert_eq!(five.settings(&address), expected);
     }
 }
@@ -147,10 +134,7 @@ fn an_unaddressed_change_is_made_by_all_fingers_and_a_query_answered_by_the_firs
             "{answer}"
         );
     }
-    assert_eq!(
-        five.send("settings 7"),
-        "@0 ok set correction room 0.500000 0.0000000 0.00000000"
-    );
+    assert_eq!(five.send("settings 7"), "@0 ok set correction room 0.500000 0.0000000 0.00000000");
     assert_eq!(five.send("settings"), "@0 ok lines=8");
     assert_eq!(Bench::<1>::new().send("settings"), "ok lines=8");
     assert!(five.send("@2 margins").starts_with("@2 ok gain="));
@@ -158,10 +142,7 @@ fn an_unaddressed_change_is_made_by_all_fingers_and_a_query_answered_by_the_firs
     let answer = five.send("@1 calibrate display 26.5");
     assert!(answer.starts_with("@1 ok points=1 worst_mk=0."), "{answer}");
     // Requests that take long address one finger at a time.
-    assert_eq!(
-        five.send("calibrate display 26.5"),
-        "err finger (as @0) missing"
-    );
+    assert_eq!(five.send("calibrate display 26.5"), "err finger (as @0) missing");
     assert_eq!(five.send("tune result"), "err finger (as @0) missing");
 }
 
@@ -192,18 +173,12 @@ fn an_error_names_the_first_finger_that_refuses_and_the_others_execute_the_line(
         five.send("@1 calibrate sink 23.5"),
         "@1 err the device reads 26.04 C; allowed is within 2 C of that"
     );
-    assert_eq!(
-        five.send("@5 margins"),
-        "err unknown finger '5' after @; known: 0 to 4"
-    );
+    assert_eq!(five.send("@5 margins"), "err unknown finger '5' after @; known: 0 to 4");
     assert_eq!(
         five.send("@1 set colour 3"),
         "@1 err unknown setting 'colour'; known: steps correction tile flux surface"
     );
-    assert_eq!(
-        five.send("@0 tune result"),
-        "@0 err nothing was tuned since arm; tune first"
-    );
+    assert_eq!(five.send("@0 tune result"), "@0 err nothing was tuned since arm; tune first");
 }
 
 /// The current of the self-test moves the readings.
@@ -214,10 +189,7 @@ fn calibrate_is_refused_during_the_self_test() {
     assert_eq!(one.send("arm"), "ok");
     let before = one.settings("");
     let refused = one.send("calibrate room 25.5");
-    assert!(
-        refused.starts_with("err the self-test goes on"),
-        "{refused}"
-    );
+    assert!(refused.starts_with("err the self-test goes on"), "{refused}");
     assert_eq!(one.settings(""), before);
 }
 
@@ -226,49 +198,19 @@ fn invalid_arguments_are_refused_and_change_nothing() {
     let mut one = Bench::<1>::new();
     let before = one.settings("");
     for (line, answer) in [
-        (
-            "settings 0",
-            "err line of settings '0' out of range; 1 to 10 (whole)",
-        ),
-        (
-            "settings 1.5",
-            "err line of settings '1.5' out of range; 1 to 10 (whole)",
-        ),
-        (
-            "settings 11",
-            "err line of settings '11' out of range; 1 to 10 (whole)",
-        ),
-        (
-            "set",
-            "err setting missing; known: steps correction tile flux surface",
-        ),
+        ("settings 0", "err line of settings '0' out of range; 1 to 10 (whole)"),
+        ("settings 1.5", "err line of settings '1.5' out of range; 1 to 10 (whole)"),
+        ("settings 11", "err line of settings '11' out of range; 1 to 10 (whole)"),
+        ("set", "err setting missing; known: steps correction tile flux surface"),
         ("set steps", "err border missing; 10 to 22 (whole)"),
         ("set steps 10", "err step missing; -4 to 4 counts"),
-        (
-            "set steps 10.5 1",
-            "err border '10.5' out of range; 10 to 22 (whole)",
-        ),
-        (
-            "set steps 23 1",
-            "err border '23' out of range; 10 to 22 (whole)",
-        ),
+        ("set steps 10.5 1", "err border '10.5' out of range; 10 to 22 (whole)"),
+        ("set steps 23 1", "err border '23' out of range; 10 to 22 (whole)"),
         ("set steps 22 1 1", "err unexpected '1' after the command"),
-        (
-            "set steps 10 1 2 3 4 3 2 1 0",
-            "err unexpected '0' after the command",
-        ),
-        (
-            "set steps 10 1 2 nan",
-            "err step 'nan' is not a decimal number; -4 to 4 counts",
-        ),
-        (
-            "set correction",
-            "err sensor missing; known: display check sink skin room",
-        ),
-        (
-            "set correction skin 0 0",
-            "err curvature missing; -0.002 to 0.002 1/K",
-        ),
+        ("set steps 10 1 2 3 4 3 2 1 0", "err unexpected '0' after the command"),
+        ("set steps 10 1 2 nan", "err step 'nan' is not a decimal number; -4 to 4 counts"),
+        ("set correction", "err sensor missing; known: display check sink skin room"),
+        ("set correction skin 0 0", "err curvature missing; -0.002 to 0.002 1/K"),
         (
             "set correction skin 0 inf 0",
             "err slope 'inf' is not a decimal number; -0.05 to 0.05 K/K",
@@ -277,34 +219,13 @@ fn invalid_arguments_are_refused_and_change_nothing() {
             "set correction nose 0 0 0",
             "err unknown sensor 'nose'; known: display check sink skin room",
         ),
-        (
-            "set tile 2.7 0.06 0.1 0 0.01",
-            "err lag '0' out of range; 0.001 to 5 s",
-        ),
-        (
-            "set tile 1e30 0.06 0.1 0.1 0.01",
-            "err gain '1e30' out of range; 0.1 to 15 K/s/A",
-        ),
-        (
-            "calibrate",
-            "err sensor missing; known: display check sink skin room",
-        ),
-        (
-            "calibrate display",
-            "err reference temperature missing; 0 to 60 C",
-        ),
-        (
-            "calibrate display 26 C",
-            "err unexpected 'C' after the command",
-        ),
-        (
-            "calibrate display clear now",
-            "err unexpected 'now' after the command",
-        ),
-        (
-            "calibrate display 61",
-            "err reference temperature '61' out of range; 0 to 60 C",
-        ),
+        ("set tile 2.7 0.06 0.1 0 0.01", "err lag '0' out of range; 0.001 to 5 s"),
+        ("set tile 1e30 0.06 0.1 0.1 0.01", "err gain '1e30' out of range; 0.1 to 15 K/s/A"),
+        ("calibrate", "err sensor missing; known: display check sink skin room"),
+        ("calibrate display", "err reference temperature missing; 0 to 60 C"),
+        ("calibrate display 26 C", "err unexpected 'C' after the command"),
+        ("calibrate display clear now", "err unexpected 'now' after the command"),
+        ("calibrate display 61", "err reference temperature '61' out of range; 0 to 60 C"),
         ("tune it", "err unexpected 'it' after the command"),
         ("margins 3", "err unexpected '3' after the command"),
     ] {
@@ -324,25 +245,16 @@ fn a_point_refines_a_restored_calibration() {
     assert_eq!(one.send(set), "ok");
     let answer = one.send("calibrate display 26.5");
     assert!(answer.starts_with("ok points=1 worst_mk=0."), "{answer}");
-    let numbers: Vec<f64> = (one.send("settings 3").split(' '))
-        .filter_map(|word| word.parse().ok())
-        .collect();
-    let [_, slope, curvature] = numbers[..] else {
-        panic!("{numbers:?}")
-    };
-    assert!(
-        (slope - 0.01).abs() < 2e-3 && (curvature - 1e-4).abs() < 1e-5,
-        "{numbers:?}"
-    );
+    let numbers: Vec<f64> =
+        (one.send("settings 3").split(' ')).filter_map(|word| word.parse().ok()).collect();
+    let [_, slope, curvature] = numbers[..] else { panic!("{numbers:?}") };
+    assert!((slope - 0.01).abs() < 2e-3 && (curvature - 1e-4).abs() < 1e-5, "{numbers:?}");
     let steps = one.send("settings 1");
     assert!(steps.starts_with("ok set steps 10 0.0"), "{steps}");
     assert!(steps.contains(" 0.5"), "{steps}");
     // The steps are cleared with the last correction of the display's sensors.
     assert_eq!(one.send("calibrate display clear"), "ok");
-    assert_eq!(
-        one.send("settings 1"),
-        "ok set steps 10 0.000 0.000 0.000 0.000 0.000 0.000 0.000"
-    );
+    assert_eq!(one.send("settings 1"), "ok set steps 10 0.000 0.000 0.000 0.000 0.000 0.000 0.000");
 }
 
 /// Each point deviates by less than what is rejected by itself; together they end at the range that `set` accepts.
@@ -363,10 +275,7 @@ fn a_calibration_never_leaves_the_range_that_set_accepts() {
         if answer.starts_with("err ") {
             break;
         }
-        assert!(
-            answer.starts_with(&format!("ok points={point} ")),
-            "{answer}"
-        );
+        assert!(answer.starts_with(&format!("ok points={point} ")), "{answer}");
     }
     assert_eq!(
         answer,

@@ -20,31 +20,19 @@ const NOT_BEGUN: &str = "err no upload has begun; upload begin object COUNT DIRE
 fn every_wrong_course_is_refused_with_its_reason() {
     let mut bench = Bench::armed();
     let begin = "upload begin course 3 absolute";
-    assert_eq!(
-        bench.send("play now"),
-        "err no course is loaded; upload begin course first"
-    );
+    assert_eq!(bench.send("play now"), "err no course is loaded; upload begin course first");
     for (lines, answer) in [
         (
             &["upload begin course 129 absolute"][..],
             "err number of points '129' out of range; 2 to 128 ",
         ),
-        (
-            &["upload begin course 3"],
-            "err temperatures missing; known: absolute relative",
-        ),
+        (&["upload begin course 3"], "err temperatures missing; known: absolute relative"),
         (
             &[begin, "upload row 0 1 30", "upload row 1 0.5 30"],
             "err row 1: time 500 ms is not after 1000 ms, that of the row before",
         ),
-        (
-            &[begin, "upload row 0 0 42.1"],
-            "err temperature '42.1' out of range; 15 to 42 C",
-        ),
-        (
-            &[begin, "upload row 0 0 14"],
-            "err temperature '14' out of range; 15 to 42 C",
-        ),
+        (&[begin, "upload row 0 0 42.1"], "err temperature '42.1' out of range; 15 to 42 C"),
+        (&[begin, "upload row 0 0 14"], "err temperature '14' out of range; 15 to 42 C"),
         (
             &["upload begin course 3 relative", "upload row 0 0 28"],
             "err temperature '28' out of range; -27 to 27 K",
@@ -53,41 +41,20 @@ fn every_wrong_course_is_refused_with_its_reason() {
             &[begin, "upload row 0 0 30", "upload row 1 0.01 32"],
             "err row 1: too fast: 200 K/s from the point before; at most 100 K/s",
         ),
-        (
-            &[begin, "upload row 0 4000 30"],
-            "err time '4000' out of range; 0 to 3600 s",
-        ),
-        (
-            &[begin, "upload row 1 0 30"],
-            "err not the next row, which is 0",
-        ),
-        (
-            &["play soon"],
-            "err unknown start of a course 'soon'; known: now trigger landing",
-        ),
+        (&[begin, "upload row 0 4000 30"], "err time '4000' out of range; 0 to 3600 s"),
+        (&[begin, "upload row 1 0 30"], "err not the next row, which is 0"),
+        (&["play soon"], "err unknown start of a course 'soon'; known: now trigger landing"),
         (&["play now 0"], "err repeats '0' out of range; 1 to 1000 "),
-        (
-            &["play now 2 off"],
-            "err unknown end of a course 'off'; known: hold neutral",
-        ),
-        (
-            &["hold 30 0.001"],
-            "err rate '0.001' out of range; 0.01 to 100 K/s",
-        ),
-        (
-            &["hold 43"],
-            "err temperature '43' out of range; 15 to 42 C",
-        ),
+        (&["play now 2 off"], "err unknown end of a course 'off'; known: hold neutral"),
+        (&["hold 30 0.001"], "err rate '0.001' out of range; 0.01 to 100 K/s"),
+        (&["hold 43"], "err temperature '43' out of range; 15 to 42 C"),
         (&["skin"], "err skin missing; sensor or 15 to 42 C"),
         (&["skin cold"], "err skin 'cold': sensor or 15 to 42 C"),
         (
             &["pulse 30 42 1 600 1"],
             "err too hot for too long: CEM43 would be 2.51 min; below 0.50 min is allowed",
         ),
-        (
-            &["events maybe"],
-            "err unknown events 'maybe'; known: on off",
-        ),
+        (&["events maybe"], "err unknown events 'maybe'; known: on off"),
         (
             &["trigger-out land,touch"],
             "err unknown event 'touch'; known: land lift start end flux none",
@@ -98,15 +65,9 @@ fn every_wrong_course_is_refused_with_its_reason() {
         assert_eq!(bench.send(last), answer, "{lines:?}");
     }
     let hot = bench.upload("absolute", &[(0.0, 42.0), (160.0, 42.0)]);
-    assert_eq!(
-        hot,
-        "err too hot for too long: CEM43 would be 0.67 min; below 0.50 min is allowed"
-    );
+    assert_eq!(hot, "err too hot for too long: CEM43 would be 0.67 min; below 0.50 min is allowed");
     // Nothing was loaded.
-    assert_eq!(
-        bench.send("play now"),
-        "err no course is loaded; upload begin course first"
-    );
+    assert_eq!(bench.send("play now"), "err no course is loaded; upload begin course first");
     bench.steps(1);
 }
 
@@ -130,32 +91,16 @@ fn a_course_whose_repeats_or_earlier_dose_would_trip_is_refused() {
 fn stimuli_need_a_driven_display_and_no_fault() {
     let mut bench = Bench::off();
     for (line, command) in [("hold 30", "hold"), ("play now", "play")] {
-        assert_eq!(
-            bench.send(line),
-            format!("err {command} needs a driven display: arm first")
-        );
+        assert_eq!(bench.send(line), format!("err {command} needs a driven display: arm first"));
     }
     // Loading needs no display.
     assert_eq!(bench.upload("absolute", &[(0.0, 30.0), (1.0, 31.0)]), "ok");
     bench.device.trip_all(Fault::Stack);
-    for line in [
-        "hold 30",
-        "play now",
-        "upload begin course 2 absolute",
-        "pulse 30 31 1 1 1",
-    ] {
-        assert_eq!(
-            bench.send(line),
-            "err tripped by stack; clear it first",
-            "{line}"
-        );
+    for line in ["hold 30", "play now", "upload begin course 2 absolute", "pulse 30 31 1 1 1"] {
+        assert_eq!(bench.send(line), "err tripped by stack; clear it first", "{line}");
     }
     // The upload has not begun.
-    assert!(
-        bench
-            .send("upload row 0 0 30")
-            .starts_with("err no upload has begun")
-    );
+    assert!(bench.send("upload row 0 0 30").starts_with("err no upload has begun"));
 }
 
 #[test]
@@ -188,32 +133,16 @@ fn points_that_are_too_many_not_later_or_out_of_turn_are_refused_and_the_upload_
             "err row 1: time 500 ms is not after 500 ms, that of the row before",
         ),
         ("upload row 2 1 30", "err not the next row, which is 1"),
-        (
-            "upload row 128 1 30",
-            "err row '128' out of range; 0 to 127 ",
-        ),
-        (
-            "upload row 1 -0.5 30",
-            "err time '-0.5' out of range; 0 to 3600 s",
-        ),
+        ("upload row 128 1 30", "err row '128' out of range; 0 to 127 "),
+        ("upload row 1 -0.5 30", "err time '-0.5' out of range; 0 to 3600 s"),
         ("upload row 1 1", "err temperature missing; 15 to 42 C"),
-        (
-            "upload row 1 1 warm",
-            "err temperature 'warm' is not a decimal number; 15 to 42 C",
-        ),
+        ("upload row 1 1 warm", "err temperature 'warm' is not a decimal number; 15 to 42 C"),
     ] {
         assert_eq!(bench.send(line), answer, "{line}");
     }
     bench.send_ok(&["upload row 1 1 31"]);
-    assert_eq!(
-        bench.send("upload row 2 2 32"),
-        "err not the next row, which is 2"
-    );
-    let lines = [
-        "upload begin course 2 absolute",
-        "upload row 0 0.5 30",
-        "upload row 1 1 31",
-    ];
+    assert_eq!(bench.send("upload row 2 2 32"), "err not the next row, which is 2");
+    let lines = ["upload begin course 2 absolute", "upload row 0 0.5 30", "upload row 1 1 31"];
     let commit = format!("upload commit {:08x}", checksum(&lines.map(String::from)));
     bench.send_ok(&[&commit, "play now"]);
 }
@@ -221,9 +150,8 @@ fn points_that_are_too_many_not_later_or_out_of_turn_are_refused_and_the_upload_
 #[test]
 fn a_course_of_the_most_points_is_accepted_and_one_point_more_is_not() {
     let mut bench = Bench::armed();
-    let points: Vec<_> = (0..129)
-        .map(|point| (f64::from(point), 30.0 + f64::from(point % 2)))
-        .collect();
+    let points: Vec<_> =
+        (0..129).map(|point| (f64::from(point), 30.0 + f64::from(point % 2))).collect();
     assert_eq!(bench.upload("absolute", &points[..128]), "ok");
     assert_eq!(
         bench.upload("absolute", &points),
@@ -282,16 +210,8 @@ fn half_an_upload_and_a_course_are_lost_by_a_reset() {
 #[test]
 fn an_upload_that_began_before_a_trip_is_refused_at_its_commit() {
     let mut bench = Bench::armed();
-    bench.send_ok(&[
-        "upload begin course 2 absolute",
-        "upload row 0 0 25",
-        "upload row 1 1 26",
-    ]);
-    let lines = [
-        "upload begin course 2 absolute",
-        "upload row 0 0 25",
-        "upload row 1 1 26",
-    ];
+    bench.send_ok(&["upload begin course 2 absolute", "upload row 0 0 25", "upload row 1 1 26"]);
+    let lines = ["upload begin course 2 absolute", "upload row 0 0 25", "upload row 1 1 26"];
     bench.device.trip_all(Fault::Stack);
     let commit = format!("upload commit {:08x}", checksum(&lines.map(String::from)));
     assert_eq!(bench.send(&commit), "err tripped by stack; clear it first");
@@ -356,31 +276,13 @@ fn a_relative_course_that_stays_below_39_c_gives_no_dose() {
 fn a_pulse_is_refused_for_each_of_its_numbers() {
     let mut bench = Bench::armed();
     for (line, answer) in [
-        (
-            "pulse 14 30 1 1 1",
-            "err temperature '14' out of range; 15 to 42 C",
-        ),
-        (
-            "pulse 30 43 1 1 1",
-            "err temperature '43' out of range; 15 to 42 C",
-        ),
-        (
-            "pulse 30 31 0 1 1",
-            "err rate '0' out of range; 0.01 to 100 K/s",
-        ),
-        (
-            "pulse 30 31 1 3601 1",
-            "err time '3601' out of range; 0 to 3600 s",
-        ),
-        (
-            "pulse 30 31 1 1 101",
-            "err rate '101' out of range; 0.01 to 100 K/s",
-        ),
+        ("pulse 14 30 1 1 1", "err temperature '14' out of range; 15 to 42 C"),
+        ("pulse 30 43 1 1 1", "err temperature '43' out of range; 15 to 42 C"),
+        ("pulse 30 31 0 1 1", "err rate '0' out of range; 0.01 to 100 K/s"),
+        ("pulse 30 31 1 3601 1", "err time '3601' out of range; 0 to 3600 s"),
+        ("pulse 30 31 1 1 101", "err rate '101' out of range; 0.01 to 100 K/s"),
         ("pulse 30 31 1 1", "err rate missing; 0.01 to 100 K/s"),
-        (
-            "pulse 15 35 0.015625 2400 0.01",
-            "err too long: 3680000 ms; 3600000 ms at most",
-        ),
+        ("pulse 15 35 0.015625 2400 0.01", "err too long: 3680000 ms; 3600000 ms at most"),
     ] {
         assert_eq!(bench.send(line), answer, "{line}");
     }

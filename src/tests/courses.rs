@@ -97,16 +97,9 @@ impl Bench {
         self.tick = self.tick.wrapping_add(1);
         self.device.note_host_activity();
         let untouched = samples(self.tick % 2);
-        let force = if self.touching {
-            450 * SCANS_PER_TICK as u16
-        } else {
-            0
-        };
-        let samples = Samples {
-            force: untouched.force + force,
-            current: self.current,
-            ..untouched
-        };
+        let force = if self.touching { 450 * SCANS_PER_TICK as u16 } else { 0 };
+        let samples =
+            Samples { force: untouched.force + force, current: self.current, ..untouched };
         self.outputs.push(self.device.step_finger(FIRST, &samples));
         while let Some(event) = self.device.take_finger_event(FIRST) {
             let line = self.unsolicited(event);
@@ -142,41 +135,24 @@ pub(super) fn upload_lines(kind: &str, points: &[(f64, f64)]) -> (Vec<String>, S
 }
 
 fn assert_close(actual_c: f64, expected_c: f64) {
-    assert!(
-        (actual_c - expected_c).abs() < 1e-5,
-        "{actual_c} °C, expected {expected_c} °C"
-    );
+    assert!((actual_c - expected_c).abs() < 1e-5, "{actual_c} °C, expected {expected_c} °C");
 }
 
 #[test]
 fn a_course_is_followed_between_its_points_and_ends_on_the_last_one() {
     let mut bench = Bench::armed();
-    assert_eq!(
-        bench.upload("absolute", &[(0.0, 30.0), (0.1, 31.0), (0.15, 30.5)]),
-        "ok"
-    );
+    assert_eq!(bench.upload("absolute", &[(0.0, 30.0), (0.1, 31.0), (0.15, 30.5)]), "ok");
     bench.send_ok(&["play now"]);
     let setpoints = bench.steps(400);
-    for (tick, expected_c) in [
-        (0, 30.0),
-        (50, 30.5),
-        (100, 31.0),
-        (125, 30.75),
-        (150, 30.5),
-        (399, 30.5),
-    ] {
+    for (tick, expected_c) in
+        [(0, 30.0), (50, 30.5), (100, 31.0), (125, 30.75), (150, 30.5), (399, 30.5)]
+    {
         assert_close(setpoints[tick], expected_c);
     }
     assert_eq!(bench.state(), "stimulus");
     assert_eq!(bench.events.len(), 2, "{:?}", bench.events);
-    let tick_of = |event: &str| {
-        event
-            .split(' ')
-            .nth(1)
-            .expect("a tick")
-            .parse::<u32>()
-            .expect("a number")
-    };
+    let tick_of =
+        |event: &str| event.split(' ').nth(1).expect("a tick").parse::<u32>().expect("a number");
     assert_eq!(tick_of(&bench.events[1]) - tick_of(&bench.events[0]), 150);
     assert!(bench.events[0].ends_with(" 0 start") && bench.events[1].ends_with(" 0 end"));
 }
@@ -184,19 +160,10 @@ fn a_course_is_followed_between_its_points_and_ends_on_the_last_one() {
 #[test]
 fn repeats_and_the_end_on_neutral() {
     let mut bench = Bench::armed();
-    assert_eq!(
-        bench.upload("absolute", &[(0.0, 30.0), (0.1, 31.0), (0.2, 30.0)]),
-        "ok"
-    );
+    assert_eq!(bench.upload("absolute", &[(0.0, 30.0), (0.1, 31.0), (0.2, 30.0)]), "ok");
     bench.send_ok(&["play now 3 neutral"]);
     let setpoints = bench.steps(601);
-    for (tick, expected_c) in [
-        (100, 31.0),
-        (200, 30.0),
-        (300, 31.0),
-        (500, 31.0),
-        (600, 30.0),
-    ] {
+    for (tick, expected_c) in [(100, 31.0), (200, 30.0), (300, 31.0), (500, 31.0), (600, 30.0)] {
         assert_close(setpoints[tick], expected_c);
     }
     assert_eq!(bench.state(), "armed");
@@ -207,35 +174,16 @@ fn a_course_waits_for_a_landing_and_begins_when_the_force_rose() {
     let mut bench = Bench::armed();
     assert_eq!(bench.upload("absolute", &[(0.0, 30.0), (1.0, 40.0)]), "ok");
     bench.send_ok(&["play landing"]);
-    assert!(
-        bench
-            .steps(100)
-            .iter()
-            .all(|setpoint_c| *setpoint_c == 30.0)
-    );
+    assert!(bench.steps(100).iter().all(|setpoint_c| *setpoint_c == 30.0));
     bench.touching = true;
     let before = u32::from(bench.step().tick as u16) - 1;
     let setpoints = bench.steps(50);
-    let started = setpoints
-        .iter()
-        .position(|setpoint_c| *setpoint_c > 30.0)
-        .expect("starts");
+    let started = setpoints.iter().position(|setpoint_c| *setpoint_c > 30.0).expect("starts");
     let event = |kind: &str| {
-        bench
-            .events
-            .iter()
-            .find(|event| event.ends_with(kind))
-            .expect("comes")
-            .clone()
+        bench.events.iter().find(|event| event.ends_with(kind)).expect("comes").clone()
     };
-    let tick_of = |event: String| {
-        event
-            .split(' ')
-            .nth(1)
-            .expect("a tick")
-            .parse::<u32>()
-            .expect("a number")
-    };
+    let tick_of =
+        |event: String| event.split(' ').nth(1).expect("a tick").parse::<u32>().expect("a number");
     let landed = tick_of(event(" land"));
     assert_eq!(landed, tick_of(event(" start")));
     assert!(landed.abs_diff(before + 1) <= 1, "{landed} {before}");
@@ -250,30 +198,15 @@ fn a_course_that_waits_for_the_trigger_begins_at_its_edge_and_marks_it() {
     assert_eq!(bench.upload("absolute", &[(0.0, 30.0), (0.1, 31.0)]), "ok");
     bench.send_ok(&["trigger-out start", "play trigger"]);
     bench.touching = true;
-    assert!(
-        bench
-            .steps(100)
-            .iter()
-            .all(|setpoint_c| *setpoint_c == 30.0)
-    );
+    assert!(bench.steps(100).iter().all(|setpoint_c| *setpoint_c == 30.0));
     let tick = bench.step().tick;
     bench.outputs.clear();
-    bench.device.note_trigger_edge(TriggerEdge {
-        us: 437,
-        ticks_ago: 1,
-    });
+    bench.device.note_trigger_edge(TriggerEdge { us: 437, ticks_ago: 1 });
     let setpoints = bench.steps(30);
     assert_close(setpoints[20], 30.2);
-    let expected = [
-        format!("E {tick} 437 trigger"),
-        format!("E {} 0 start", tick + 1),
-    ];
+    let expected = [format!("E {tick} 437 trigger"), format!("E {} 0 start", tick + 1)];
     assert_eq!(bench.events[bench.events.len() - 2..], expected);
-    let high: Vec<_> = bench
-        .outputs
-        .iter()
-        .map(|outputs| outputs.trigger_output)
-        .collect();
+    let high: Vec<_> = bench.outputs.iter().map(|outputs| outputs.trigger_output).collect();
     assert_eq!(high, [[true; 10], [false; 10], [false; 10]].concat());
 }
 
@@ -314,9 +247,8 @@ fn a_course_is_loaded_while_another_plays_and_a_broken_upload_leaves_the_old_one
 #[test]
 fn a_course_is_loaded_although_a_fault_trips_the_station_meanwhile() {
     let mut bench = Bench::armed();
-    let points: Vec<_> = (0..100)
-        .map(|point| (0.1 * f64::from(point), 20.0 + 0.1 * f64::from(point)))
-        .collect();
+    let points: Vec<_> =
+        (0..100).map(|point| (0.1 * f64::from(point), 20.0 + 0.1 * f64::from(point))).collect();
     let (lines, commit) = upload_lines("absolute", &points);
     for line in &lines {
         bench.send_ok(&[line]);
@@ -369,19 +301,12 @@ fn a_pulse_and_a_course_for_all_fingers_are_executed_by_those_that_are_not_tripp
 fn a_pulse_leaves_the_upload_of_an_object_and_ends_that_of_a_course() {
     let mut bench = Bench::armed();
     let [begin, row] = ["upload begin object 1 0.5", "upload row 0 2 40"];
-    let commit = format!(
-        "upload commit {:08x}",
-        checksum(&[begin, row].map(String::from))
-    );
+    let commit = format!("upload commit {:08x}", checksum(&[begin, row].map(String::from)));
     bench.send_ok(&["material copper", begin, "pulse 30 31 10 0.05 5", row]);
     bench.send_ok(&[&commit]);
     assert!(bench.send("state").contains("body=upload"));
     bench.send_ok(&["upload begin course 2 absolute", "pulse 30 31 10 0.05 5"]);
-    assert!(
-        bench
-            .send("upload row 0 0 30")
-            .starts_with("err no upload has begun")
-    );
+    assert!(bench.send("upload row 0 0 30").starts_with("err no upload has begun"));
 }
 
 /// The preset of foam is some kelvins above the display of the bench, which stays at room temperature.
@@ -419,14 +344,9 @@ fn a_pulse_is_a_course_of_four_points_that_begins_at_once() {
     let mut bench = Bench::armed();
     bench.send_ok(&["pulse 30 31 10 0.05 5"]);
     let setpoints = bench.steps(400);
-    for (tick, expected_c) in [
-        (0, 30.0),
-        (50, 30.5),
-        (100, 31.0),
-        (150, 31.0),
-        (250, 30.5),
-        (350, 30.0),
-    ] {
+    for (tick, expected_c) in
+        [(0, 30.0), (50, 30.5), (100, 31.0), (150, 31.0), (250, 30.5), (350, 30.0)]
+    {
         assert_close(setpoints[tick], expected_c);
     }
     bench.send_ok(&["play now"]);

@@ -66,11 +66,7 @@ pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: FingerInd
                 display: sound.display.wrapping_add_signed(moved),
                 display_check: sound.display_check.wrapping_add_signed(moved),
                 current,
-                supply: if test == ComparatorTest::None {
-                    sound.supply
-                } else {
-                    sound.supply / 3
-                },
+                supply: if test == ComparatorTest::None { sound.supply } else { sound.supply / 3 },
                 bridge_fault: test != ComparatorTest::None,
                 ..sound
             },
@@ -92,9 +88,7 @@ fn finger(index: usize) -> FingerIndex<FIVE> {
 
 fn state_of(device: &mut Device<FIVE>, finger: usize) -> String {
     let answer = host(device, &format!("@{finger} state"));
-    let words = answer
-        .strip_prefix(&format!("@{finger} ok state="))
-        .expect("an answer");
+    let words = answer.strip_prefix(&format!("@{finger} ok state=")).expect("an answer");
     words.split(' ').next().expect("a state").into()
 }
 
@@ -112,22 +106,11 @@ fn a_command_is_executed_by_the_addressed_finger_or_by_all() {
     // started already.
     assert_eq!(host(&mut device, "start"), "@0 err start needs arm first");
     arm(&mut device, finger(0));
-    assert_eq!(
-        host(&mut device, "start"),
-        "@0 err start needs a material first"
-    );
-    assert_eq!(
-        state_of(&mut device, 3),
-        "preset",
-        "the other fingers have executed it"
-    );
+    assert_eq!(host(&mut device, "start"), "@0 err start needs a material first");
+    assert_eq!(state_of(&mut device, 3), "preset", "the other fingers have executed it");
     assert_eq!(host(&mut device, "abort"), "ok");
     for finger in 0..FIVE {
-        let expected = if [0, 3].contains(&finger) {
-            "ready"
-        } else {
-            "off"
-        };
+        let expected = if [0, 3].contains(&finger) { "ready" } else { "off" };
         assert_eq!(state_of(&mut device, finger), expected, "{finger}");
     }
 }
@@ -139,27 +122,14 @@ fn a_fault_at_one_finger_does_not_affect_the_others() {
     FingerIndex::all().for_each(|finger| arm(&mut device, finger));
     for finger in FingerIndex::all() {
         let bridge_fault = finger.index() == 1;
-        let drive = device.step_finger(
-            finger,
-            &Samples {
-                bridge_fault,
-                ..samples(0)
-            },
-        );
+        let drive = device.step_finger(finger, &Samples { bridge_fault, ..samples(0) });
         assert_eq!(drive.drive == Drive::Off, bridge_fault, "{finger:?}");
     }
     assert_eq!(state_of(&mut device, 1), "tripped");
-    assert_eq!(
-        host(&mut device, "arm"),
-        "@1 err tripped by bridge; clear it first"
-    );
+    assert_eq!(host(&mut device, "arm"), "@1 err tripped by bridge; clear it first");
     assert_eq!(host(&mut device, "abort"), "ok");
     for finger in [0, 2, 3, 4].map(finger) {
-        assert_eq!(
-            device.step_finger(finger, &samples(1)).drive,
-            Drive::Off,
-            "{finger:?}"
-        );
+        assert_eq!(device.step_finger(finger, &samples(1)).drive, Drive::Off, "{finger:?}");
     }
     device.step_finger(finger(1), &samples(1));
     assert_eq!(host(&mut device, "clear"), "ok");
@@ -177,13 +147,9 @@ fn answers_and_telemetry_have_the_address_of_their_finger() {
         host(&mut device, "@2 frobnicate me").split(';').next(),
         Some("@2 err unknown command 'frobnicate'")
     );
-    for (line, named) in [
-        ("@5 arm", "5"),
-        ("@ arm", ""),
-        ("@-1 arm", "-1"),
-        ("@01 arm", "01"),
-        ("@x", "x"),
-    ] {
+    for (line, named) in
+        [("@5 arm", "5"), ("@ arm", ""), ("@-1 arm", "-1"), ("@01 arm", "01"), ("@x", "x")]
+    {
         let refused = format!("err unknown finger '{named}' after @; known: 0 to 4");
         assert_eq!(host(&mut device, line), refused);
     }
@@ -206,10 +172,7 @@ fn lines_of_a_single_finger_have_no_address() {
     assert!(host(&mut device, "state").starts_with("ok state=off"));
     assert_eq!(host(&mut device, "@0 arm"), "@0 ok");
     arm(&mut device, FingerIndex::FIRST);
-    assert_eq!(
-        host(&mut device, "@1 arm"),
-        "err unknown finger '1' after @; known: 0 to 0"
-    );
+    assert_eq!(host(&mut device, "@1 arm"), "err unknown finger '1' after @; known: 0 to 0");
     device.step_finger(FingerIndex::FIRST, &samples(0));
     let line = telemetry_line(&mut device, FingerIndex::FIRST).expect("telemetry");
     assert!(line.contains(" armed "), "{line}");

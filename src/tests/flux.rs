@@ -32,10 +32,7 @@ struct Learning {
 
 impl Learning {
     fn new() -> Self {
-        Self {
-            bench: Bench::new(),
-            learner: Learner::new(),
-        }
+        Self { bench: Bench::new(), learner: Learner::new() }
     }
 
     /// With the designed sensor.
@@ -65,11 +62,7 @@ impl Learning {
             if self.has_sensor() {
                 self.bench.device.note_flux_code(finger, code.into());
             }
-            let samples = Samples {
-                force: count(force),
-                room: count(room),
-                ..samples(tick % 2)
-            };
+            let samples = Samples { force: count(force), room: count(room), ..samples(tick % 2) };
             self.bench.device.step_finger(finger, &samples);
             if let Some(input) = self.bench.device.take_learner_input(finger) {
                 let output = self.learner.advance(&input);
@@ -83,9 +76,7 @@ impl Learning {
         let events =
             core::iter::from_fn(|| self.bench.device.take_finger_event(FingerIndex::FIRST));
         let kinds = events.map(|event| format!("{event:?}"));
-        kinds
-            .filter(|kind| kind.contains("FingerKnowledge"))
-            .count()
+        kinds.filter(|kind| kind.contains("FingerKnowledge")).count()
     }
 }
 
@@ -143,12 +134,7 @@ fn a_sensor_is_refused_while_an_object_is_presented() {
     assert_eq!(one.send("material copper"), "ok");
     assert_eq!(one.send("start"), "ok");
     let refused = "err not while an object or a course is presented: abort or arm first";
-    for line in [
-        "flux none",
-        "set flux none",
-        "flux set 0.1 2048 5 0",
-        "flux zero",
-    ] {
+    for line in ["flux none", "set flux none", "flux set 0.1 2048 5 0", "flux zero"] {
         assert_eq!(one.send(line), refused, "{line}");
     }
     assert_eq!(one.send("settings"), "ok lines=9");
@@ -158,10 +144,7 @@ fn a_sensor_is_refused_while_an_object_is_presented() {
 #[test]
 fn the_zero_is_the_mean_code_of_half_a_second_without_a_finger_at_the_rooms_temperature() {
     let mut one = Learning::new();
-    assert_eq!(
-        one.send("flux zero"),
-        "err flux zero needs a heat-flux sensor; flux set first"
-    );
+    assert_eq!(one.send("flux zero"), "err flux zero needs a heat-flux sensor; flux set first");
     assert_eq!(one.send(SET), "ok");
     one.step((FREE, SAME), noisy(2060).take(500));
     let early = "err not watched for long enough; wait half a second";
@@ -172,10 +155,7 @@ fn the_zero_is_the_mean_code_of_half_a_second_without_a_finger_at_the_rooms_temp
     assert_eq!(line, "ok set flux 0.119200 2060.500 5.000 30.000");
 
     one.step((TOUCHED, SAME), noisy(2300).take(600));
-    assert_eq!(
-        one.send("flux zero"),
-        "err flux zero needs a display without a finger on it"
-    );
+    assert_eq!(one.send("flux zero"), "err flux zero needs a display without a finger on it");
     one.step((FREE, SAME), noisy(2070).take(500));
     assert_eq!(one.send("flux zero"), early);
     one.step((FREE, SAME), noisy(2070).take(600));

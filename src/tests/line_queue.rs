@@ -25,10 +25,7 @@ fn lines_beyond_the_depth_are_taken_as_refused() {
         assert_eq!(outlet.dequeue_line_or_queue_full(), Some(Ok(line.clone())));
     }
     for _ in 0..3 {
-        assert_eq!(
-            outlet.dequeue_line_or_queue_full(),
-            Some(Err(LineError::QueueFull))
-        );
+        assert_eq!(outlet.dequeue_line_or_queue_full(), Some(Err(LineError::QueueFull)));
     }
     assert_eq!(outlet.dequeue_line_or_queue_full(), None);
 }

@@ -14,11 +14,8 @@ use crate::settings::Settings;
 const FIVE: usize = 5;
 
 /// An object of one relaxation that warms as fast as foam, and its checksum by Python's `zlib.crc32`.
-const UPLOAD: [&str; 3] = [
-    "upload begin object 1 0.5",
-    "upload row 0 2 40000",
-    "upload commit 185a2d42",
-];
+const UPLOAD: [&str; 3] =
+    ["upload begin object 1 0.5", "upload row 0 2 40000", "upload commit 185a2d42"];
 
 /// CRC-32 (ISO-HDLC) of lines with a line feed after each, bit by bit.
 pub fn checksum(lines: &[String]) -> u32 {
@@ -47,12 +44,7 @@ impl Bench {
         let fingers = [finger(1), finger(2)];
         fingers.into_iter().for_each(|one| arm(&mut device, one));
         let handler = CommandHandler::new(Settings::default());
-        let mut bench = Self {
-            device,
-            handler,
-            tick: 0,
-            currents: [0; 2],
-        };
+        let mut bench = Self { device, handler, tick: 0, currents: [0; 2] };
         bench.send_ok(&["material copper", "@1 start", "@2 start", "stream 1"]);
         bench.run(5);
         assert!(bench.send("@1 state").contains("state=contact"));
@@ -134,15 +126,9 @@ fn an_addressed_object_is_that_of_its_finger_only() {
     let bench = Bench::presenting();
     let half_space = after(&bench, &["object half-space"]);
     assert_eq!(half_space[0], half_space[1]);
-    let slab = after(
-        &bench,
-        &["@1 object slab 0.1mm insulated", "@2 object half-space"],
-    );
+    let slab = after(&bench, &["@1 object slab 0.1mm insulated", "@2 object half-space"]);
     assert_eq!(slab[1], half_space[1]);
-    assert!(
-        slab[0] > half_space[0] + 0.1,
-        "a foil soon is as warm as the finger: {slab:?}"
-    );
+    assert!(slab[0] > half_space[0] + 0.1, "a foil soon is as warm as the finger: {slab:?}");
     let [begin, row, commit] = UPLOAD.map(|line| format!("@1 {line}"));
     let uploaded = after(&bench, &[&begin, &row, &commit, "@2 object half-space"]);
     assert_eq!(uploaded[1], half_space[1]);
@@ -163,10 +149,7 @@ fn a_material_and_half_space_end_a_slab_or_an_upload() {
     }
     // A temperature is no shape.
     let slab = after(&bench, &["object slab 0.1mm insulated"]);
-    assert_eq!(
-        after(&bench, &["object slab 0.1mm insulated", "object room"]),
-        slab
-    );
+    assert_eq!(after(&bench, &["object slab 0.1mm insulated", "object room"]), slab);
 }
 
 #[test]
@@ -176,10 +159,7 @@ fn the_state_ends_with_the_body_of_the_object() {
         (&["object room"][..], "half-space"),
         (&["object slab 3mm held", "object room"], "slab"),
         // So thick that it is none.
-        (
-            &["material granite", "object slab 1000mm held"],
-            "half-space",
-        ),
+        (&["material granite", "object slab 1000mm held"], "half-space"),
         (&UPLOAD[..2], "half-space"),
         (&UPLOAD, "upload"),
         (&["object slab 3mm held"], "slab"),
@@ -190,10 +170,7 @@ fn the_state_ends_with_the_body_of_the_object() {
             bench.send(line);
         }
         let state = bench.send("@1 state");
-        assert!(
-            state.ends_with(&format!(" body={body}")),
-            "{lines:?}: {state}"
-        );
+        assert!(state.ends_with(&format!(" body={body}")), "{lines:?}: {state}");
     }
 }
 
@@ -216,10 +193,7 @@ fn an_upload_that_is_not_committed_changes_nothing_that_a_finger_feels() {
         let mut bench = bench.clone();
         let answers: Vec<_> = lines.iter().map(|line| bench.send(line)).collect();
         let refused = answers.iter().any(|answer| answer.starts_with("err "));
-        assert!(
-            refused || lines.last() != Some(&commit),
-            "{lines:?}: {answers:?}"
-        );
+        assert!(refused || lines.last() != Some(&commit), "{lines:?}: {answers:?}");
         assert_eq!(bench.run(100), undisturbed, "{lines:?}");
     }
 }
@@ -231,28 +205,19 @@ fn an_object_that_no_display_can_be_is_limited_and_trips_nothing() {
     for (celsius, limit_c) in [("-20", 15.0), ("60", 42.0)] {
         // It keeps its temperature: no heat of a finger moves it.
         let begin = String::from("upload begin object 0 0");
-        let commit = format!(
-            "upload commit {:08x}",
-            checksum(core::slice::from_ref(&begin))
-        );
+        let commit = format!("upload commit {:08x}", checksum(core::slice::from_ref(&begin)));
         let mut bench = bench.clone();
         bench.send_ok(&[&format!("object {celsius}"), &begin, &commit]);
         assert_eq!(bench.run(20), [limit_c; 2], "{celsius} C");
         let state = bench.send("@1 state");
-        assert!(
-            state.ends_with(" limited body=upload"),
-            "{celsius} C: {state}"
-        );
+        assert!(state.ends_with(" limited body=upload"), "{celsius} C: {state}");
     }
 }
 
 #[test]
 fn the_checksum_is_that_of_zip_files() {
     let [begin, row, commit] = UPLOAD.map(String::from);
-    assert_eq!(
-        format!("upload commit {:08x}", checksum(&[begin, row])),
-        commit
-    );
+    assert_eq!(format!("upload commit {:08x}", checksum(&[begin, row])), commit);
 }
 
 #[test]
@@ -301,10 +266,7 @@ fn another_contact_law_is_another_set_point() {
 #[test]
 fn fingers_have_the_same_tissue_if_both_or_neither_have_layers() {
     let fingers = AssumedFinger::PROTOCOL_WORDS.map(|(_, finger)| finger);
-    for (a, b) in fingers
-        .iter()
-        .flat_map(|a| fingers.iter().map(move |b| (a, b)))
-    {
+    for (a, b) in fingers.iter().flat_map(|a| fingers.iter().map(move |b| (a, b))) {
         let equal = a.body().tissue == b.body().tissue;
         assert_eq!(equal, a.is_layered() == b.is_layered(), "{a:?} {b:?}");
     }

@@ -27,10 +27,8 @@ fn windows<const FINGERS: usize>(
         bench.device.step_finger(finger, &samples(tick % 2));
         if let Some(input) = bench.device.take_learner_input(finger) {
             begun = input.restart.or(begun);
-            let output = LearnerOutput {
-                revision: input.sequence,
-                ..*Learner::new().advance(&input)
-            };
+            let output =
+                LearnerOutput { revision: input.sequence, ..*Learner::new().advance(&input) };
             let output = change(output);
             bench.device.put_learner_output(finger, &output);
         }
@@ -40,11 +38,7 @@ fn windows<const FINGERS: usize>(
 
 /// The finger was learnt from so many contacts.
 fn learnt(contacts: u8) -> impl Fn(LearnerOutput) -> LearnerOutput {
-    move |output| LearnerOutput {
-        trust: Trust::Trusted,
-        person: Some(record(contacts)),
-        ..output
-    }
+    move |output| LearnerOutput { trust: Trust::Trusted, person: Some(record(contacts)), ..output }
 }
 
 /// A record that was learnt from so many contacts.
@@ -62,10 +56,7 @@ fn persons_are_stored_listed_and_forgotten() {
         assert_eq!(one.send(&format!("person P{number} {DATA}")), "ok");
     }
     let full = format!("person Q {DATA}");
-    assert_eq!(
-        one.send(&full),
-        "err 16 persons are stored; forget person CODE"
-    );
+    assert_eq!(one.send(&full), "err 16 persons are stored; forget person CODE");
     assert_eq!(one.send(&format!("person P3 {DATA}")), "ok", "again");
     for missing in ["person Q", "forget person Q"] {
         let answer = "err no person Q is stored; persons lists those who are";
@@ -90,10 +81,7 @@ fn the_learner_begins_with_the_chosen_person() {
     let finger = FingerIndex::FIRST;
     let same = |output| output;
     let begun = windows(&mut one, finger, same).expect("a restart");
-    assert_eq!(
-        (begun.person, one.send("person").as_str()),
-        (None, "ok person=none contacts=0")
-    );
+    assert_eq!((begun.person, one.send("person").as_str()), (None, "ok person=none contacts=0"));
     assert_eq!(one.send("person P07"), "ok");
     let chosen = format!("ok person=P07 contacts=0 data={DATA}");
     assert_eq!(one.send("person"), chosen);
@@ -104,12 +92,7 @@ fn the_learner_begins_with_the_chosen_person() {
     // A person who is forgotten or stored anew is another one from the next choice on only.
     one.send("forget person P07");
     assert_eq!(one.send("person"), chosen);
-    for line in [
-        "finger mean-on-pad",
-        "contact 0.9 2e5 0",
-        SENSOR,
-        "person none",
-    ] {
+    for line in ["finger mean-on-pad", "contact 0.9 2e5 0", SENSOR, "person none"] {
         one.send(&format!("person P07 {DATA}"));
         one.send("person P07");
         assert_eq!(one.send(line), "ok", "{line}");
@@ -145,10 +128,8 @@ fn a_finger_is_enrolled_when_it_was_learnt_from_two_long_contacts() {
     assert_eq!(one.send("person enrol P07"), stored);
     assert_eq!(one.send("persons"), "ok persons=P07");
     // After a distrust nothing is known any more, and neither after another choice.
-    let distrusted = |output| LearnerOutput {
-        trust: Trust::Mean(thermal_learner::Distrust::Between),
-        ..output
-    };
+    let distrusted =
+        |output| LearnerOutput { trust: Trust::Mean(thermal_learner::Distrust::Between), ..output };
     windows(&mut one, finger, distrusted);
     assert_eq!(one.send("person enrol P08"), refused(0));
     windows(&mut one, finger, learnt(2));
@@ -166,10 +147,7 @@ fn each_finger_has_a_person_of_the_same_store() {
     assert_eq!(two.send("@0 persons"), "@0 ok persons=P07");
     assert_eq!(two.send("@1 person P07"), "@1 ok");
     assert_eq!(two.send("@0 person"), "@0 ok person=none contacts=0");
-    assert_eq!(
-        two.send("@1 person"),
-        format!("@1 ok person=P07 contacts=0 data={DATA}")
-    );
+    assert_eq!(two.send("@1 person"), format!("@1 ok person=P07 contacts=0 data={DATA}"));
     assert_eq!(two.send("person enrol P08"), "err finger (as @0) missing");
     assert_eq!(two.send("person P07"), "ok");
     // A question without a finger is answered by finger 0.

@@ -15,10 +15,7 @@ fn answer<const FINGERS: usize>(
     device: &mut Device<FINGERS>,
     line: &str,
 ) -> Reply {
-    handler
-        .answer(line, |finger, command| device.execute(finger, command))
-        .expect(line)
-        .content
+    handler.answer(line, |finger, command| device.execute(finger, command)).expect(line).content
 }
 
 fn refusal<const FINGERS: usize>(
@@ -34,14 +31,8 @@ fn refusal<const FINGERS: usize>(
 fn storage_orders_are_accepted_only_while_all_bridges_are_off() {
     let settings = Settings::default();
     let (mut handler, mut device) = (CommandHandler::<5>::new(settings), Device::new(&settings));
-    for (line, order) in [
-        ("save", StorageOrder::Save),
-        ("forget", StorageOrder::Forget),
-    ] {
-        assert_eq!(
-            answer(&mut handler, &mut device, line),
-            Reply::Restart(order)
-        );
+    for (line, order) in [("save", StorageOrder::Save), ("forget", StorageOrder::Forget)] {
+        assert_eq!(answer(&mut handler, &mut device, line), Reply::Restart(order));
         assert_eq!(
             refusal(&mut handler, &mut device, &format!("@2 {line}")),
             format!("@2 err {line} is for all fingers at once")
@@ -58,10 +49,7 @@ fn storage_orders_are_accepted_only_while_all_bridges_are_off() {
         answer(&mut handler, &mut device, "@3 abort");
     }
     device.trip_all(Fault::SettingsCorrupt);
-    assert_eq!(
-        answer(&mut handler, &mut device, "save"),
-        Reply::Restart(StorageOrder::Save)
-    );
+    assert_eq!(answer(&mut handler, &mut device, "save"), Reply::Restart(StorageOrder::Save));
     assert_eq!(
         refusal(&mut handler, &mut device, "@1 arm"),
         "@1 err tripped by settings-corrupt; clear it first"
@@ -86,14 +74,8 @@ fn the_record_holds_the_settings_of_each_finger_and_restores_them() {
         .expect("settings rather than factory defaults");
     assert_eq!(stored.fingers[0].calibration.corrections[3].offset_k, 0.125);
     assert_eq!(stored.fingers[0].tile, settings.tile);
-    assert_eq!(
-        stored.fingers[1].tile.to_array(),
-        [3.5, 0.06, 0.1, 0.2, 0.02]
-    );
-    assert_eq!(
-        stored.fingers[1].calibration.steps_counts[..3],
-        [0.5, -0.25, 0.0]
-    );
+    assert_eq!(stored.fingers[1].tile.to_array(), [3.5, 0.06, 0.1, 0.2, 0.02]);
+    assert_eq!(stored.fingers[1].calibration.steps_counts[..3], [0.5, -0.25, 0.0]);
 
     let mut restored = CommandHandler::from_stored(&stored);
     for line in

@@ -15,8 +15,7 @@ fn waits_at_c(lines: &[&str]) -> f64 {
         assert_eq!(one.send(line), "ok", "{line}");
     }
     for tick in 0..10 {
-        one.device
-            .step_finger(FingerIndex::FIRST, &samples(tick % 2));
+        one.device.step_finger(FingerIndex::FIRST, &samples(tick % 2));
     }
     let state: String = one.send("state");
     let (_, setpoint) = state.split_once("setpoint_c=").expect("a set-point");
@@ -42,18 +41,12 @@ fn a_surface_is_set_by_either_line_reported_and_made_nominal() {
         let expected = "ok conductivity_w_mk=30.000 roughness_um=1.2500 slope_rad=0.11000";
         assert_eq!(one.send("surface"), expected);
         assert_eq!(one.send("settings"), "ok lines=9");
-        assert_eq!(
-            one.send("settings 9"),
-            "ok set surface 30.000 1.2500 0.11000"
-        );
+        assert_eq!(one.send("settings 9"), "ok set surface 30.000 1.2500 0.11000");
         assert_eq!(one.send("flux set 0.1192 2048 5 30"), "ok");
         assert_eq!(one.send("settings"), "ok lines=10");
         let sensor = "ok set flux 0.119200 2048.000 5.000 30.000";
         assert_eq!(one.send("settings 9"), sensor);
-        assert_eq!(
-            one.send("settings 10"),
-            "ok set surface 30.000 1.2500 0.11000"
-        );
+        assert_eq!(one.send("settings 10"), "ok set surface 30.000 1.2500 0.11000");
         assert_eq!(one.send("surface nominal"), "ok");
         assert_eq!(one.send("surface"), NOMINAL);
         assert_eq!(one.send("settings"), "ok lines=9");
@@ -84,14 +77,8 @@ fn a_material_without_an_address_is_chosen_for_each_surface() {
     assert_eq!(two.send("surface"), std::format!("@0 {NOMINAL}"));
     // Too good a conductor for the second surface only: R_display / R_object is 25 there.
     let line = "material custom 4000 8000 400 0.1 1.5";
-    assert!(
-        two.send(line)
-            .starts_with("@1 err R_display / R_object is ")
-    );
-    assert_eq!(
-        two.send("@0 material custom 4000 8000 400 0.1 1.5"),
-        "@0 ok"
-    );
+    assert!(two.send(line).starts_with("@1 err R_display / R_object is "));
+    assert_eq!(two.send("@0 material custom 4000 8000 400 0.1 1.5"), "@0 ok");
     assert_eq!(two.send("material granite"), "ok");
 }
 
@@ -104,11 +91,7 @@ fn a_surface_is_refused_while_an_object_is_presented_and_with_a_material_that_it
     assert!(refused.starts_with(expected), "{refused}");
     assert_eq!(one.send("start"), "ok");
     let refused = "err not while an object or a course is presented: abort or arm first";
-    for line in [
-        "surface set 30 1 0.1",
-        "set surface nominal",
-        "surface nominal",
-    ] {
+    for line in ["surface set 30 1 0.1", "set surface nominal", "surface nominal"] {
         assert_eq!(one.send(line), refused, "{line}");
     }
     assert_eq!(one.send("surface"), NOMINAL);

@@ -6,22 +6,13 @@ use crate::task_liveness::{HostTaskTimer, Task, TaskLiveness};
 fn the_watchdog_is_fed_only_after_every_task_has_checked_in_again() {
     for (present, missing) in [(Task::Tick, Task::Host), (Task::Host, Task::Tick)] {
         let liveness = TaskLiveness::new();
-        assert!(
-            !liveness.clear_if_all_checked_in(),
-            "no task has checked in"
-        );
+        assert!(!liveness.clear_if_all_checked_in(), "no task has checked in");
         liveness.check_in(present);
         liveness.check_in(present);
-        assert!(
-            !liveness.clear_if_all_checked_in(),
-            "{missing:?} is missing"
-        );
+        assert!(!liveness.clear_if_all_checked_in(), "{missing:?} is missing");
         liveness.check_in(missing);
         assert!(liveness.clear_if_all_checked_in());
-        assert!(
-            !liveness.clear_if_all_checked_in(),
-            "all must check in again"
-        );
+        assert!(!liveness.clear_if_all_checked_in(), "all must check in again");
     }
 }
 

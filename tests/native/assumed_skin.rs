@@ -61,12 +61,9 @@ fn followed(finger: &str, line: &str) -> (f64, f64) {
     let setpoint_c = |row: &TraceRow| row.device.as_ref().and_then(|device| device.setpoint_c);
     let followed = between(&outcome, 2.1, 6.0)
         .filter_map(|row| Some((row.display_c, setpoint_c(row)?)))
-        .fold(
-            (0.0f64, f64::MIN),
-            |(most_k, most_c), (display_c, set_c)| {
-                (most_k.max((display_c - set_c).abs()), most_c.max(set_c))
-            },
-        );
+        .fold((0.0f64, f64::MIN), |(most_k, most_c), (display_c, set_c)| {
+            (most_k.max((display_c - set_c).abs()), most_c.max(set_c))
+        });
     println!("{finger}, {line}: {followed:?}");
     followed
 }
@@ -78,10 +75,7 @@ fn a_set_point_of_an_assumed_skin_is_followed_as_closely() {
         for (line, above_k) in [("skin 29", -2.0), ("skin 39", 2.0)] {
             let (assumed_k, assumed_c) = followed(finger, line);
             assert!(assumed_k < 1.5 * sensed_k, "{line}: {assumed_k} K");
-            assert!(
-                (assumed_c - sensed_c) * above_k > 1.0,
-                "{line}: {assumed_c} C"
-            );
+            assert!((assumed_c - sensed_c) * above_k > 1.0, "{line}: {assumed_c} C");
         }
     }
 }

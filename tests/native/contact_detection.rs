@@ -30,27 +30,17 @@ impl Bench {
     }
 
     fn scan(&mut self, count: usize) {
-        self.sum += (0..count)
-            .map(|_| self.plant.convert(Channel::Force))
-            .sum::<u16>();
+        self.sum += (0..count).map(|_| self.plant.convert(Channel::Force)).sum::<u16>();
     }
 
     /// One tick; `force_n` acts from the plant's step within it.
     fn tick(&mut self, force_n: f64) {
         self.plant.step(1e-3, &state(force_n));
         self.scan(SCANS_PER_TICK - SCANS_BEFORE);
-        let samples = Samples {
-            force: self.sum,
-            ..Samples::default()
-        };
-        let force = self
-            .sensors
-            .convert_samples(&samples)
-            .force
-            .expect("a sound sensor");
+        let samples = Samples { force: self.sum, ..Samples::default() };
+        let force = self.sensors.convert_samples(&samples).force.expect("a sound sensor");
         self.touch.update_contact(force);
-        self.sensors
-            .track_force_zero_unless_touching(&samples, &self.touch);
+        self.sensors.track_force_zero_unless_touching(&samples, &self.touch);
         self.sum = 0;
         self.scan(SCANS_BEFORE);
     }
@@ -128,10 +118,7 @@ fn a_force_of_0_1_n_is_detected_within_3_ms_and_its_landing_dated_to_a_tick() {
     }
     assert_eq!(landings, 1920);
     assert_figure("touch.noticed", latest.into());
-    assert_figure(
-        "touch.landings_off",
-        100.0 * f64::from(off) / f64::from(landings),
-    );
+    assert_figure("touch.landings_off", 100.0 * f64::from(off) / f64::from(landings));
 }
 
 /// One hour with a constant zero of the sensor, one with a zero that drifts by 0.07 N.
@@ -147,9 +134,6 @@ fn noise_and_a_drifting_zero_cause_no_detection_in_two_hours() {
             assert!(!bench.touch.touching(), "tick {tick}");
         }
         let (detected, estimated) = bench.land(drift_n_per_h * 0.05 + 0.1);
-        assert!(
-            detected <= 2 && estimated == detected,
-            "{detected}, {estimated}"
-        );
+        assert!(detected <= 2 && estimated == detected, "{detected}, {estimated}");
     }
 }

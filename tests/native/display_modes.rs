@@ -13,9 +13,7 @@ fn run(material: &str, mode: &str) -> Outcome {
 
 /// How much warmer than the real object's surface the display is in the first second of contact, K.
 fn too_warm_k(outcome: &Outcome) -> f64 {
-    mean(between(outcome, LANDED_S, LANDED_S + 1.0), |row| {
-        row.display_c - row.object_real_c
-    })
+    mean(between(outcome, LANDED_S, LANDED_S + 1.0), |row| row.display_c - row.object_real_c)
 }
 
 /// Root mean square of the skin's error in the first four seconds, K.
@@ -43,15 +41,11 @@ fn contact_mode_brings_the_skin_closer_to_the_real_contact() {
             skin_error_k(&contact)
         );
         // The error that remains is the controller's; it is below what people can feel.
-        assert!(
-            skin_error_k(&contact) < part * skin_error_k(&semi_infinite),
-            "{material}"
-        );
+        assert!(skin_error_k(&contact) < part * skin_error_k(&semi_infinite), "{material}");
         assert!(skin_error_k(&contact) < 5e-3, "{material}");
-        let warmer = mean(
-            between(&semi_infinite, LANDED_S + 0.05, LANDED_S + 1.0),
-            |row| row.skin_c - row.skin_real_c,
-        );
+        let warmer = mean(between(&semi_infinite, LANDED_S + 0.05, LANDED_S + 1.0), |row| {
+            row.skin_c - row.skin_real_c
+        });
         assert!(warmer > 0.0, "{material}: {warmer} K");
     }
 }

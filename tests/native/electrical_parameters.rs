@@ -72,10 +72,7 @@ fn plant_and_benches_have_the_pwm_period_of_the_firmware() {
     assert_near("bridge.pwm_hz", one_s.recip(), 1e-12);
     let phase_step = SCAN_STEPS / f64::from(PWM_PERIOD_STEPS_OF_ONE_FINGER) % 1.0;
     assert_near("sensors.mirror.phase_step", phase_step, 1e-3);
-    assert_eq!(
-        [benches::PERIOD_S, benches::PERIOD_OF_FIVE_FINGERS_S],
-        [one_s, five_s]
-    );
+    assert_eq!([benches::PERIOD_S, benches::PERIOD_OF_FIVE_FINGERS_S], [one_s, five_s]);
 
     let scene = |tables: &str| {
         let text = format!(
@@ -96,10 +93,7 @@ impl Simulated {
         let bench = benches::ALL.iter().find(|bench| bench.name == name);
         let bench = bench.unwrap_or_else(|| panic!("no bench is called {name}"));
         let quantities = bench.run(netlists);
-        Self(
-            name,
-            quantities.unwrap_or_else(|error| panic!("{name}: {error:#}")),
-        )
+        Self(name, quantities.unwrap_or_else(|error| panic!("{name}: {error:#}")))
     }
 
     /// All of them.
@@ -124,16 +118,8 @@ fn parameters_are_what_the_benches_simulate() {
     let netlists = netlists();
     let bench = |name: &'static str| Simulated::by_bench(name, &netlists);
     let thresholds = bench("thresholds");
-    assert_near(
-        "comparator.cold_c",
-        thresholds.of("cold threshold, nominal"),
-        0.015,
-    );
-    assert_near(
-        "comparator.hot_c",
-        thresholds.of("hot threshold, nominal"),
-        0.003,
-    );
+    assert_near("comparator.cold_c", thresholds.of("cold threshold, nominal"), 0.015);
+    assert_near("comparator.hot_c", thresholds.of("hot threshold, nominal"), 0.003);
     for (key, quantity) in [
         ("comparator.cold_c", "cold, lowest, circuit"),
         ("comparator.cold_c", "cold, highest, circuit"),
@@ -142,35 +128,22 @@ fn parameters_are_what_the_benches_simulate() {
     ] {
         let (_, low, high) = plant(key);
         let simulated_c = thresholds.of(quantity);
-        assert!(
-            (low..=high).contains(&simulated_c),
-            "{quantity}: {simulated_c}"
-        );
+        assert!((low..=high).contains(&simulated_c), "{quantity}: {simulated_c}");
     }
 
     let test = bench("self-test");
     let release = "comparator.release_s";
-    assert_near(
-        release,
-        1e-3 * test.of("hot: test line to nFAULT high"),
-        0.05,
-    );
+    assert_near(release, 1e-3 * test.of("hot: test line to nFAULT high"), 0.05);
     let (_, low_s, high_s) = plant(release);
     for which in ["slowest", "fastest"] {
         let simulated_s = 1e-3 * test.of(&format!("test line to nFAULT high, {which}"));
-        assert!(
-            (low_s..=high_s).contains(&simulated_s),
-            "{which}: {simulated_s}"
-        );
+        assert!((low_s..=high_s).contains(&simulated_s), "{which}: {simulated_s}");
     }
     // 120 uF through 150 ohm for 19.4 of 20 ms; the bench has no driver.
     let (node_f, ..) = plant("supply.node_f");
     let (bleeder_ohm, ..) = plant("supply.bleeder_ohm");
     let cut_v = 12.0 * (-19.4e-3 / (bleeder_ohm * node_f)).exp();
-    assert!(
-        (test.of("hot: bridge supply at the end") - cut_v).abs() < 0.1,
-        "{cut_v}"
-    );
+    assert!((test.of("hot: bridge supply at the end") - cut_v).abs() < 0.1, "{cut_v}");
 
     let transients = bench("transients");
     assert_near("bridge.trip_a", transients.of("over-current trip"), 0.02);
@@ -179,11 +152,7 @@ fn parameters_are_what_the_benches_simulate() {
 
     let edges = bench("edges");
     let dead_time = "bridge.dead_time_s";
-    assert_near(
-        dead_time,
-        1e-6 * edges.of("effective dead time at +6 A;"),
-        0.05,
-    );
+    assert_near(dead_time, 1e-6 * edges.of("effective dead time at +6 A;"), 0.05);
     let (_, _, longest_s) = plant(dead_time);
     assert!(1e-6 * edges.of("effective dead time at +6 A, 50 %") < longest_s);
     // Bridge and filter lose at most what the plant's path does, which includes the leads, at least what its lowest does.
@@ -197,21 +166,11 @@ fn parameters_are_what_the_benches_simulate() {
     );
     // The tile's ripple is nearly a sine.
     let mut bridge = Bridge::new(Params::nominal().bridge, 1.06);
-    let half = BridgeOutputs {
-        a: Leg::Duty(1.0),
-        b: Leg::Duty(0.5),
-        enabled: true,
-    };
-    let load = Load {
-        seebeck_v: 0.0,
-        resistance_ohm: 1.06,
-    };
+    let half = BridgeOutputs { a: Leg::Duty(1.0), b: Leg::Duty(0.5), enabled: true };
+    let load = Load { seebeck_v: 0.0, resistance_ohm: 1.06 };
     let ripple_a = 8f64.sqrt() * bridge.current(1e-3, &half, &load).ripple_a2.sqrt();
     let simulated_a = edges.of("ripple of the tile current");
-    assert!(
-        (ripple_a / simulated_a - 1.0).abs() < 0.15,
-        "{ripple_a}, {simulated_a}"
-    );
+    assert!((ripple_a / simulated_a - 1.0).abs() < 0.15, "{ripple_a}, {simulated_a}");
 
     // 2 % of the reading is the error that the plant draws.
     let (_, _, most) = plant("sensors.mirror.gain_error");

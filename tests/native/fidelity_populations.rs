@@ -16,12 +16,7 @@ use thermal_sim::{NativeRunner, SceneRunner};
 fn errors_mk(population: Population, draws: u64, sample: usize) -> Percentiles {
     let cases = spread(&population.cases(1, draws).expect("cases"), sample);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let results = parallel_map(
-        &cases,
-        threads,
-        |case| case.run(&NativeRunner, Way::AsItIs),
-        || (),
-    );
+    let results = parallel_map(&cases, threads, |case| case.run(&NativeRunner, Way::AsItIs), || ());
     let results = results.expect("every case runs");
     let faulty = results.iter().find(|one| !one.faults.is_empty());
     assert_eq!(faulty, None);
@@ -59,12 +54,7 @@ fn what_is_learnt_is_near_the_bound_of_cramer_and_rao() {
     let results = cases.map(|case| BoundResult::run(&case, &priors).expect("runs"));
     let rows = bound_rows(population, &results.collect::<Vec<_>>());
     let row = rows.into_iter().find(|row| row.since_s == 0.5);
-    let BoundRow {
-        contact,
-        tissue,
-        skin_mk,
-        ..
-    } = row.expect("a row");
+    let BoundRow { contact, tissue, skin_mk, .. } = row.expect("a row");
     assert_figure("learner_bound.contact", 100.0 * contact.bound);
     assert_figure("learner_bound.contact_error", 100.0 * contact.error);
     assert_figure("learner_bound.tissue", 100.0 * tissue.bound);
@@ -94,10 +84,7 @@ fn median_of_part_mk(part: Part, told: bool) -> f64 {
             scene.assumed_finger = AssumedFinger::Mean;
         }
         scene.seed = 1;
-        scene.params = Params {
-            finger,
-            ..Params::nominal()
-        };
+        scene.params = Params { finger, ..Params::nominal() };
         let (_, figures) = NativeRunner.run(&scene)?;
         Ok(figures.skin_max_mk().unwrap_or(f64::INFINITY))
     };
@@ -138,11 +125,7 @@ fn each_unknown_of_a_finger_costs_what_is_stated() {
             },
             false,
         ),
-        (
-            "blood",
-            |finger, drawn, _| finger.vessels = drawn.vessels,
-            false,
-        ),
+        ("blood", |finger, drawn, _| finger.vessels = drawn.vessels, false),
         ("place_not_told", place, false),
         ("place", place, true),
     ];

@@ -30,10 +30,7 @@ fn committed_components_are_those_of_the_drawn_fingers() {
     let committed = COMPONENTS.iter().flatten().chain(&COMPONENT_MEANS);
     let computed = found.weights.iter().flatten().chain(&found.means);
     for (committed, computed) in committed.zip(computed) {
-        assert!(
-            (committed - computed).abs() <= 5.1e-5,
-            "{committed}, not {computed}"
-        );
+        assert!((committed - computed).abs() <= 5.1e-5, "{committed}, not {computed}");
     }
     // As the documentation of the constants states them.
     let errors = found.errors.map(|error| (error * 1e3).round());

@@ -20,10 +20,7 @@ use thermal_sim::scene::Scene;
 use super::electrical_parameters::Simulated;
 
 fn plant(key: &str) -> Parameter {
-    let params = Params {
-        flux: Some(FluxParams::NOMINAL),
-        ..Params::nominal()
-    };
+    let params = Params { flux: Some(FluxParams::NOMINAL), ..Params::nominal() };
     let all = parameters::all(&params);
     let found = all.into_iter().find(|parameter| parameter.key == key);
     found.unwrap_or_else(|| panic!("the plant has no {key}"))
@@ -32,10 +29,7 @@ fn plant(key: &str) -> Parameter {
 #[track_caller]
 fn assert_near(key: &str, plant: f64, circuit: f64, share: f64) {
     let off = circuit / plant - 1.0;
-    assert!(
-        off.abs() <= share,
-        "{key}: {plant}, the circuit has {circuit}"
-    );
+    assert!(off.abs() <= share, "{key}: {plant}, the circuit has {circuit}");
 }
 
 #[test]
@@ -67,10 +61,7 @@ fn the_plants_sensor_is_that_of_circuit_and_budget() {
     let zero_w_m2 = bench.of("zero, all");
     assert_near("zero", 0.5 * plant("flux.zero_w_m2").high, zero_w_m2, 0.02);
     assert_figure("flux-sensor.zero", zero_w_m2);
-    assert_figure(
-        "flux-sensor.zero_uncorrected",
-        bench.of("zero, all, with a converter"),
-    );
+    assert_figure("flux-sensor.zero_uncorrected", bench.of("zero, all, with a converter"));
     let gain_percent = bench.of("gain, all");
     let drawn_percent = 50.0 * plant("flux.gain_error").high;
     assert_near("error of the gain", drawn_percent, gain_percent, 0.08);
@@ -80,9 +71,8 @@ fn the_plants_sensor_is_that_of_circuit_and_budget() {
     let page = include_str!("../../docs/flux.md");
     let mut lines = 0;
     for quantity in bench.quantities() {
-        let is_of_budget = ["zero, ", "noise, ", "gain, "]
-            .iter()
-            .any(|begin| quantity.name.starts_with(begin));
+        let is_of_budget =
+            ["zero, ", "noise, ", "gain, "].iter().any(|begin| quantity.name.starts_with(begin));
         if is_of_budget {
             let row = format!("| {} | {:.2} ", quantity.name, quantity.value);
             assert!(page.contains(&row), "docs/flux.md has no {row:?}");
@@ -106,10 +96,7 @@ fn an_exact_current_is_no_flux_sensor() {
     assert_figure("flux-current.fitted", of_current_w_m2(25e-6 / 5e-3));
     // 0.2 % of 1 A, and 1 % of the conductance at 10 K across the tile.
     assert_figure("flux-current.scale", of_current_w_m2(2e-3));
-    assert_figure(
-        "flux-current.conductance",
-        0.01 * tile.conductance_w_k() * 10.0 / area_m2,
-    );
+    assert_figure("flux-current.conductance", 0.01 * tile.conductance_w_k() * 10.0 / area_m2);
 }
 
 #[test]

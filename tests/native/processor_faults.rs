@@ -20,10 +20,7 @@ fn the_native_engine_refuses_or_models_each_processor_fault() {
             engine: "native"
         }))
     ));
-    assert!(matches!(
-        with(MachineFault::ResetPin, 2.5),
-        Err(RunError::InjectionTime { .. })
-    ));
+    assert!(matches!(with(MachineFault::ResetPin, 2.5), Err(RunError::InjectionTime { .. })));
     // No tick: the last duty stays until the window watchdog expires.
     for fault in [MachineFault::HungCore, MachineFault::AdcStopped] {
         let hung = with(fault, 1.0).expect("runs");

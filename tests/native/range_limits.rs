@@ -19,11 +19,7 @@ fn a_display_that_is_held_at_an_end_of_the_range_overshoots_by_less_than_0_8_k()
             println!("{law}, {held_c} C: {farthest_k:.2} K beyond");
             assert!(farthest_k < 0.8, "{law}, {held_c} C: {farthest_k} K beyond");
             let last = outcome.trace.rows().last().expect("a row");
-            assert!(
-                beyond(last).abs() < 0.05,
-                "{law}: {} C, {held_c}",
-                last.display_c
-            );
+            assert!(beyond(last).abs() < 0.05, "{law}: {} C, {held_c}", last.display_c);
         }
     }
 }
@@ -44,17 +40,9 @@ fn a_host_line_during_a_ramp_trips_nothing() {
         scene.object.start_c = Some(15.0);
         let outcome = natively(&scene);
         let (_, state) = outcome.answers.last().expect("an answer");
-        assert!(
-            state.starts_with("ok state=armed fault=-"),
-            "{law}, {lag_s} s: {state}"
-        );
+        assert!(state.starts_with("ok state=armed fault=-"), "{law}, {lag_s} s: {state}");
         // The display was moving when the line came.
-        let at_c = |t_s: f64| {
-            between(&outcome, t_s, t_s + 0.002)
-                .next()
-                .expect("a row")
-                .display_c
-        };
+        let at_c = |t_s: f64| between(&outcome, t_s, t_s + 0.002).next().expect("a row").display_c;
         assert!(at_c(3.6) - at_c(3.4) > 1.0, "{law}, {lag_s} s");
     }
 }
@@ -63,10 +51,7 @@ fn a_host_line_during_a_ramp_trips_nothing() {
 #[test]
 fn a_correction_that_is_set_while_the_display_is_held_trips_nothing() {
     let quick = "[plant]\nsensors.display.lag_s = 0.024\nsensors.check.lag_s = 0.024\n";
-    for line in [
-        "set correction display 1.2 0.03 0",
-        "set correction display -1.2 0.03 0",
-    ] {
+    for line in ["set correction display 1.2 0.03 0", "set correction display -1.2 0.03 0"] {
         let tables = host(&[(0.1, "hold 20"), (0.3, line), (1.5, "state")]) + quick;
         let mut scene = scene("copper", 2.0, "", &tables);
         scene.object.appears_t_s = scene.duration_s;
@@ -75,10 +60,7 @@ fn a_correction_that_is_set_while_the_display_is_held_trips_nothing() {
         let [state] = said.filter(|said| *said != "ok").collect::<Vec<_>>()[..] else {
             panic!("{line}: {:?}", outcome.answers);
         };
-        assert!(
-            state.starts_with("ok state=stimulus fault=-"),
-            "{line}: {state}"
-        );
+        assert!(state.starts_with("ok state=stimulus fault=-"), "{line}: {state}");
     }
 }
 
@@ -88,11 +70,9 @@ fn a_correction_that_is_set_while_the_display_is_held_trips_nothing() {
 fn a_finger_that_warms_a_display_at_its_current_limit_trips_nothing() {
     let weak = "tile.imax_a = 5.4\ntile.vmax_v = 7.38\ntile.dtmax_k = 60.3\ntile.ceramic_j_m3k = 3355000.0\n";
     let strong = "tile.imax_a = 6.6\ntile.vmax_v = 9.02\ntile.dtmax_k = 73.7\ntile.ceramic_j_m3k = 2745000.0\n";
-    for (law, lag_s, module) in [
-        ("model", 0.1, weak),
-        ("pi", 0.5, strong),
-        ("pi-10hz", 0.5, strong),
-    ] {
+    for (law, lag_s, module) in
+        [("model", 0.1, weak), ("pi", 0.5, strong), ("pi-10hz", 0.5, strong)]
+    {
         let plant = format!(
             "[device]\ncommissioned = true\n[plant]\n{module}tile.coolant_k = 16.0\n\
              sensors.display.lag_s = {lag_s}\nsensors.check.lag_s = {lag_s}\n"
@@ -102,10 +82,7 @@ fn a_finger_that_warms_a_display_at_its_current_limit_trips_nothing() {
         (scene.skin_c, scene.object.start_c) = (36.0, Some(15.0));
         let outcome = natively(&scene);
         let (_, state) = outcome.answers.last().expect("an answer");
-        assert!(
-            state.starts_with("ok state=contact fault=-"),
-            "{law}: {state}"
-        );
+        assert!(state.starts_with("ok state=contact fault=-"), "{law}: {state}");
         let reading_c = |row: &TraceRow| row.device.as_ref().and_then(|device| device.display_c);
         let mut coldest_c = f64::INFINITY;
         let mut back_k = 0.0f64;

@@ -28,18 +28,12 @@ fn ramps_of_1_and_5_k_s_are_followed_under_a_finger() {
 
 #[test]
 fn a_step_is_overshot_little() {
-    assert_figure(
-        "tracking.step_10",
-        worst_mk(&Stimulus::step(10.0), TouchingFinger::Thesis),
-    );
+    assert_figure("tracking.step_10", worst_mk(&Stimulus::step(10.0), TouchingFinger::Thesis));
 }
 
 #[test]
 fn a_tile_at_25_c_heats_faster_than_it_cools() {
-    let case = LimitCase {
-        touch: TouchingFinger::Thesis,
-        coolant_c: 25.0,
-    };
+    let case = LimitCase { touch: TouchingFinger::Thesis, coolant_c: 25.0 };
     let limits = case.run(&NativeRunner).expect("reaches both ends");
     assert_figure("tracking.heating", limits.heating_k_s);
     assert_figure("tracking.cooling", limits.cooling_k_s);

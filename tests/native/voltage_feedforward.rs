@@ -21,26 +21,15 @@ fn mean_current_a(current_a: f64, seebeck_v: f64) -> f64 {
     let mut bridge = Bridge::new(BridgeParams::NOMINAL, module.legs_ohm);
     let half = Celsius::from_num(0.5 * seebeck_v / module.seebeck_v_k);
     let mean = Celsius::lit("27");
-    let legs = LegTemperatures {
-        cold: mean - half,
-        hot: mean + half,
-        mean,
-    };
-    let load = Load {
-        seebeck_v,
-        resistance_ohm: module.legs_ohm,
-    };
+    let legs = LegTemperatures { cold: mean - half, hot: mean + half, mean };
+    let load = Load { seebeck_v, resistance_ohm: module.legs_ohm };
     let demanded = SafeCurrent::saturating(Current::from_num(current_a));
     let period = PWM_PERIOD_STEPS_OF_ONE_FINGER;
     let mut one_tick = || {
         let duty = voltage.duty_for_current(demanded, &legs);
         let (in1, in2) = duty.input_high_times(period);
         let level = |high: u16| Leg::Duty(f64::from(high) / f64::from(period));
-        let outputs = BridgeOutputs {
-            a: level(in1),
-            b: level(in2),
-            enabled: true,
-        };
+        let outputs = BridgeOutputs { a: level(in1), b: level(in2), enabled: true };
         bridge.current(STEP_S, &outputs, &load).mean_a
     };
     (0..TICKS).map(|_| one_tick()).sum::<f64>() / f64::from(TICKS)

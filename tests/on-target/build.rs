@@ -12,21 +12,14 @@ const EVERY: usize = 4;
 type Row = HashMap<String, String>;
 
 fn rows(name: &str) -> Result<Vec<Row>, Box<dyn Error>> {
-    let path = format!(
-        "{}/../../model/tests/data/{name}.csv",
-        env::var("CARGO_MANIFEST_DIR")?
-    );
+    let path = format!("{}/../../model/tests/data/{name}.csv", env::var("CARGO_MANIFEST_DIR")?);
     println!("cargo::rerun-if-changed={path}");
-    let rows = csv::Reader::from_path(path)?
-        .into_deserialize()
-        .collect::<Result<_, _>>()?;
+    let rows = csv::Reader::from_path(path)?.into_deserialize().collect::<Result<_, _>>()?;
     Ok(rows)
 }
 
 fn number(row: &Row, column: &str) -> Result<f64, Box<dyn Error>> {
-    let text = row
-        .get(column)
-        .ok_or_else(|| format!("no column {column}"))?;
+    let text = row.get(column).ok_or_else(|| format!("no column {column}"))?;
     Ok(text.parse()?)
 }
 
@@ -47,9 +40,7 @@ fn contacts(source: &mut String) -> Result<(), Box<dyn Error>> {
     writeln!(source, "pub const CONTACTS: &[GoldenContact] = &[")?;
     let rows = rows("contact")?;
     // At landing nothing is evaluated.
-    let later = rows
-        .iter()
-        .filter(|row| number(row, "t_s").is_ok_and(|t_s| t_s > 0.0));
+    let later = rows.iter().filter(|row| number(row, "t_s").is_ok_and(|t_s| t_s > 0.0));
     for row in later.step_by(EVERY) {
         writeln!(
             source,

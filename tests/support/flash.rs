@@ -89,10 +89,7 @@ impl NorFlash for Flash {
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Dead> {
-        assert!(
-            offset.is_multiple_of(4) && bytes.len().is_multiple_of(4),
-            "whole words"
-        );
+        assert!(offset.is_multiple_of(4) && bytes.len().is_multiple_of(4), "whole words");
         for (word, at) in bytes.chunks(4).zip((offset as usize..).step_by(4)) {
             self.0.borrow_mut().program(at, word);
             self.alive()?;

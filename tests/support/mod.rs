@@ -32,10 +32,7 @@ pub fn forces(pairs: &[(f64, f64)]) -> String {
 
 /// A scene's `[[host]]` tables of pairs of time, s, and line.
 pub fn host(lines: &[(f64, &str)]) -> String {
-    lines
-        .iter()
-        .map(|(t_s, line)| format!("[[host]]\nt_s = {t_s}\nline = {line:?}\n"))
-        .collect()
+    lines.iter().map(|(t_s, line)| format!("[[host]]\nt_s = {t_s}\nline = {line:?}\n")).collect()
 }
 
 /// 2 s with copper under 2 N from 0.5 s on.
@@ -57,11 +54,7 @@ pub fn natively(scene: &Scene) -> Outcome {
 
 /// Rows of a trace from one time up to another, s.
 pub fn between(outcome: &Outcome, from_s: f64, to_s: f64) -> impl Iterator<Item = &TraceRow> {
-    outcome
-        .trace
-        .rows()
-        .iter()
-        .filter(move |row| row.t_s >= from_s && row.t_s < to_s)
+    outcome.trace.rows().iter().filter(move |row| row.t_s >= from_s && row.t_s < to_s)
 }
 
 /// Largest skin error from a time after each landing or appearance on, K.

@@ -47,9 +47,7 @@ pub fn fetch_foreign() -> Result<()> {
 fn copy_examples() -> Result<()> {
     let query = ["metadata", "--format-version=1", "--offline", "--locked"];
     let metadata = Invocation::cargo(query).args(["--manifest-path", FOREIGN]);
-    let metadata = metadata
-        .answer()
-        .with_context(|| format!("`{metadata}` failed"))?;
+    let metadata = metadata.answer().with_context(|| format!("`{metadata}` failed"))?;
     let manifest = metadata
         .split("\"manifest_path\":\"")
         .filter_map(|rest| rest.split('"').next())
@@ -104,10 +102,7 @@ fn build(permission: Permission, folder: &str, package: &[&str], elf: &str) -> R
         .args(["--locked", "--target", TARGET, "--target-dir", &folder])
         .args(package.iter().copied())
         .without(&["CARGO_ENCODED_RUSTFLAGS"])
-        .env(
-            "RUSTFLAGS",
-            format!("-C link-arg=--nmagic -C link-arg=-Tlink.x -L {layout}"),
-        )
+        .env("RUSTFLAGS", format!("-C link-arg=--nmagic -C link-arg=-Tlink.x -L {layout}"))
         .run_to_stderr()?;
     let elf = workspace().join(folder).join(TARGET).join(elf);
     println!("{}", elf.display());

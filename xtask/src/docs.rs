@@ -38,16 +38,9 @@ pub fn run(check: bool) -> Result<()> {
         unasserted.join(", ")
     );
     if check && !differ.is_empty() {
-        bail!(
-            "{} differ from docs/figures.toml: cargo xtask docs",
-            differ.join(", ")
-        );
+        bail!("{} differ from docs/figures.toml: cargo xtask docs", differ.join(", "));
     }
-    println!(
-        "{} figures, {} documents written",
-        all().len(),
-        differ.len()
-    );
+    println!("{} figures, {} documents written", all().len(), differ.len());
     Ok(())
 }
 
@@ -67,10 +60,7 @@ fn sources(folder: &Path) -> Result<String> {
     let mut text = String::new();
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();
-        let name = path
-            .file_name()
-            .and_then(|name| name.to_str())
-            .unwrap_or_default();
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         if path.is_dir() && !matches!(name, "target" | "figures") && !name.starts_with('.') {
             text += &sources(&path)?;
         } else if name.ends_with(".rs") {
@@ -99,11 +89,7 @@ fn is_of(key: &str, format: &str) -> bool {
     };
     let mut parts = parts.peekable();
     while let Some(part) = parts.next() {
-        let found = if parts.peek().is_some() {
-            rest.find(part)
-        } else {
-            rest.rfind(part)
-        };
+        let found = if parts.peek().is_some() { rest.find(part) } else { rest.rfind(part) };
         let Some(at) = found else { return false };
         rest = &rest[at + part.len()..];
     }
@@ -124,9 +110,8 @@ fn fill(text: &str) -> Result<String> {
             ["figures", group] => (table(group)?, "<!-- /figures -->"),
             _ => bail!("not a marker: {marker}-->"),
         };
-        let (_, after) = after
-            .split_once(end)
-            .with_context(|| format!("{marker}--> without {end}"))?;
+        let (_, after) =
+            after.split_once(end).with_context(|| format!("{marker}--> without {end}"))?;
         write!(filled, "{before}{marker}-->{content}{end}")?;
         rest = after;
     }
@@ -148,11 +133,7 @@ fn stated(key: &str, part: &str) -> Result<String> {
 }
 
 fn with_unit(number: String, unit: &str) -> String {
-    if unit.is_empty() {
-        number
-    } else {
-        format!("{number} {unit}")
-    }
+    if unit.is_empty() { number } else { format!("{number} {unit}") }
 }
 
 /// The figures of a group as a table.
@@ -179,15 +160,9 @@ fn table(group: &str) -> Result<String> {
         // Several values would be cells of the table.
         let value = with_unit(figure.shown().replace(" | ", ", "), &figure.unit);
         let Figure { what, domain, .. } = figure;
-        writeln!(
-            text,
-            "| {what} | {value} | {allowed}{notes} | {domain} | {command} |"
-        )?;
+        writeln!(text, "| {what} | {value} | {allowed}{notes} | {domain} | {command} |")?;
     }
-    ensure!(
-        !before.is_empty(),
-        "docs/figures.toml has no figure {group}.*"
-    );
+    ensure!(!before.is_empty(), "docs/figures.toml has no figure {group}.*");
     Ok(text)
 }
 

@@ -131,11 +131,7 @@ pub fn describe(toolchain: &Toolchain, fingers: Fingers) -> Result<String> {
         .with_context(|| format!("in {}", script.display()))?;
     let usage =
         Usage::of_elf(&read(&path)?, &memory).with_context(|| format!("in {}", path.display()))?;
-    Ok(format!(
-        "image  {}\n{}",
-        path.display(),
-        usage.against(&memory)
-    ))
+    Ok(format!("image  {}\n{}", path.display(), usage.against(&memory)))
 }
 
 /// `cargo xtask firmware`

@@ -21,17 +21,13 @@ pub fn run() -> Result<()> {
         Invocation::cargo(["build", "--release", "-p", "thermal-lab"]).run_to_stderr()
     })?;
     let session = format!("{OUT}/p5.toml");
-    steps.run(
-        "running the session with a simulated participant",
-        "",
-        || {
-            prepare(&out)?;
-            let line = format!(
-                "run {session} --simulated --participant 01 --seed 1 --headless --out {OUT}/data"
-            );
-            Invocation::run_package("thermal-lab", line.split(' ')).run()
-        },
-    )?;
+    steps.run("running the session with a simulated participant", "", || {
+        prepare(&out)?;
+        let line = format!(
+            "run {session} --simulated --participant 01 --seed 1 --headless --out {OUT}/data"
+        );
+        Invocation::run_package("thermal-lab", line.split(' ')).run()
+    })?;
     steps.run("analysing it", "", || {
         let line = format!("analyse {OUT}/data --out {OUT}/analysis");
         Invocation::run_package("thermal-lab", line.split(' ')).run()

@@ -178,10 +178,7 @@ struct SetUp {
 
 impl SetUp {
     fn permission(self) -> Permission {
-        Permission {
-            yes: self.yes || setup::in_ci(),
-            choice: self.toolchain,
-        }
+        Permission { yes: self.yes || setup::in_ci(), choice: self.toolchain }
     }
 }
 
@@ -197,36 +194,18 @@ fn main() -> ExitCode {
             Ok(())
         }
         Task::Soak { set_up, only, .. } => soak::run(set_up.permission(), &only),
-        Task::Firmware {
-            set_up,
-            fingers,
-            print_path,
-        } => firmware::run(set_up.permission(), fingers, print_path),
-        Task::Bench {
-            set_up,
-            job,
-            report,
-        } => bench::run(set_up.permission(), job, report),
-        Task::Fidelity {
-            set_up,
-            report,
-            rest,
-        } => report::run(
+        Task::Firmware { set_up, fingers, print_path } => {
+            firmware::run(set_up.permission(), fingers, print_path)
+        }
+        Task::Bench { set_up, job, report } => bench::run(set_up.permission(), job, report),
+        Task::Fidelity { set_up, report, rest } => report::run(
             set_up.permission(),
             Invocation::run_package("hil-sim", ["fidelity"]),
             report,
             rest,
         ),
-        Task::Faults {
-            mutations: Some(names),
-            ..
-        } => mutations::run(&names),
-        Task::Faults {
-            set_up,
-            report,
-            rest,
-            ..
-        } => report::run(
+        Task::Faults { mutations: Some(names), .. } => mutations::run(&names),
+        Task::Faults { set_up, report, rest, .. } => report::run(
             set_up.permission(),
             Invocation::run_package("hil-sim", ["faults"]),
             report,
@@ -236,11 +215,9 @@ fn main() -> ExitCode {
         Task::BringUp { set_up, options } => bring_up::run(set_up.permission(), options),
         Task::Lab => lab::run(),
         Task::OnTarget { set_up, options } => on_target::run(set_up.permission(), &options),
-        Task::Proof {
-            set_up,
-            fingers,
-            code_only,
-        } => proof::run(set_up.permission(), fingers, code_only),
+        Task::Proof { set_up, fingers, code_only } => {
+            proof::run(set_up.permission(), fingers, code_only)
+        }
         Task::Fuzz { set_up, options } => fuzz::run(set_up.permission(), &options),
         Task::Docs { check } => docs::run(check),
         Task::BenchImage(set_up) => auxiliary_image::benchmark(set_up.permission()),

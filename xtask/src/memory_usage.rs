@@ -44,16 +44,10 @@ impl Memory {
                 number(rest.split(',').next()?.trim())
             };
             let shape = || {
-                format!(
-                    "`{}` is not of the form {name} : ORIGIN = 0x…, LENGTH = …K",
-                    line.trim()
-                )
+                format!("`{}` is not of the form {name} : ORIGIN = 0x…, LENGTH = …K", line.trim())
             };
             let origin = value("ORIGIN").with_context(shape)?;
-            Ok::<_, anyhow::Error>(Region {
-                origin,
-                length: value("LENGTH").with_context(shape)?,
-            })
+            Ok::<_, anyhow::Error>(Region { origin, length: value("LENGTH").with_context(shape)? })
         };
         Ok(Self {
             flash: region("FLASH")?,
@@ -71,9 +65,7 @@ fn number(text: &str) -> Option<u64> {
     }
     let (digits, unit) = match text.strip_suffix('K') {
         Some(digits) => (digits, 1 << 10),
-        None => text
-            .strip_suffix('M')
-            .map_or((text, 1), |digits| (digits, 1 << 20)),
+        None => text.strip_suffix('M').map_or((text, 1), |digits| (digits, 1 << 20)),
     };
     digits.trim().parse::<u64>().ok()?.checked_mul(unit)
 }
@@ -122,13 +114,7 @@ impl Usage {
 
     fn of_sections(sections: &[Section], memory: &Memory) -> Result<Self> {
         let mut usage = Self::default();
-        for Section {
-            name,
-            address,
-            size,
-            stored,
-        } in sections
-        {
+        for Section { name, address, size, stored } in sections {
             let in_ram = memory.ram.holds(*address);
             if !in_ram && !memory.flash.holds(*address) {
                 bail!("section {name} at {address:#010x} lies neither in FLASH nor in RAM");
@@ -146,10 +132,7 @@ impl Usage {
     pub fn against(&self, memory: &Memory) -> String {
         let line = |used: u64, length: u64| {
             let percent = 100.0 * used as f64 / length as f64;
-            format!(
-                "{used:>7} of {length} bytes ({percent:.1} % of {} KiB)",
-                length >> 10
-            )
+            format!("{used:>7} of {length} bytes ({percent:.1} % of {} KiB)", length >> 10)
         };
         format!(
             "flash  {}, without the settings'\nRAM    {}, beside the stack's {} KiB",
@@ -166,22 +149,10 @@ mod tests {
 
     /// RM0390 table 1 and section 2: 512 KiB from 0x0800_0000, of them sectors 1 to 3 of 16 KiB (table 4), 112 + 16 KiB from 0x2000_0000, of them one half each for the stack and the rest.
     const F446RE: Memory = Memory {
-        flash: Region {
-            origin: 0x0800_0000,
-            length: 524_288,
-        },
-        ram: Region {
-            origin: 0x2001_0000,
-            length: 65_536,
-        },
-        stack: Region {
-            origin: 0x2000_0000,
-            length: 65_536,
-        },
-        settings: Region {
-            origin: 0x0800_4000,
-            length: 49_152,
-        },
+        flash: Region { origin: 0x0800_0000, length: 524_288 },
+        ram: Region { origin: 0x2001_0000, length: 65_536 },
+        stack: Region { origin: 0x2000_0000, length: 65_536 },
+        settings: Region { origin: 0x0800_4000, length: 49_152 },
     };
 
     #[test]
@@ -193,18 +164,9 @@ mod tests {
     #[test]
     fn an_error_in_the_linker_script_is_reported_with_its_line() {
         let cases = [
-            (
-                "FLASH : ORIGIN = 0x08000000, LENGTH = 512K",
-                "no memory region RAM",
-            ),
-            (
-                "FLASH : ORIGIN = here, LENGTH = 512K\nRAM : ORIGIN = 0, LENGTH = 1",
-                "ORIGIN = here",
-            ),
-            (
-                "FLASH : ORIGIN = 0x0, LENGTH = 5Q\nRAM : ORIGIN = 0, LENGTH = 1",
-                "LENGTH = 5Q",
-            ),
+            ("FLASH : ORIGIN = 0x08000000, LENGTH = 512K", "no memory region RAM"),
+            ("FLASH : ORIGIN = here, LENGTH = 512K\nRAM : ORIGIN = 0, LENGTH = 1", "ORIGIN = here"),
+            ("FLASH : ORIGIN = 0x0, LENGTH = 5Q\nRAM : ORIGIN = 0, LENGTH = 1", "LENGTH = 5Q"),
         ];
         for (script, part) in cases {
             let error = Memory::parse(script).unwrap_err().to_string();
@@ -213,12 +175,7 @@ mod tests {
     }
 
     fn section(name: &str, address: u64, size: u64, stored: bool) -> Section {
-        Section {
-            name: name.into(),
-            address,
-            size,
-            stored,
-        }
+        Section { name: name.into(), address, size, stored }
     }
 
     #[test]
@@ -232,18 +189,9 @@ mod tests {
             section(".uninit", 0x2001_0024, 1024, false),
         ];
         let usage = Usage::of_sections(&sections, &F446RE).unwrap();
-        assert_eq!(
-            usage,
-            Usage {
-                flash: 452 + 1000 + 200 + 30,
-                ram: 30 + 4 + 1024
-            }
-        );
+        assert_eq!(usage, Usage { flash: 452 + 1000 + 200 + 30, ram: 30 + 4 + 1024 });
         let text = usage.against(&F446RE);
-        assert!(
-            text.contains("1682 of 475136 bytes (0.4 % of 464 KiB)"),
-            "{text}"
-        );
+        assert!(text.contains("1682 of 475136 bytes (0.4 % of 464 KiB)"), "{text}");
     }
 
     #[test]
@@ -251,10 +199,7 @@ mod tests {
         for (address, size) in [(0x0800_3ffc, 8), (0x0800_fffc, 4), (0x0800_0000, 0x1_0000)] {
             let error =
                 Usage::of_sections(&[section(".text", address, size, true)], &F446RE).unwrap_err();
-            assert!(
-                error.to_string().contains("where the settings are"),
-                "{error}"
-            );
+            assert!(error.to_string().contains("where the settings are"), "{error}");
         }
         let beside = [section(".vector_table", 0x0800_0000, 0x4000, true)];
         assert!(Usage::of_sections(&beside, &F446RE).is_ok());

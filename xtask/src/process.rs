@@ -18,9 +18,7 @@ const PROBE_LIMIT: Duration = Duration::from_secs(20);
 
 /// The root of the workspace, in which every command runs.
 pub fn workspace() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .unwrap_or(Path::new("."))
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
 }
 
 /// A command line with changes of the environment. Its `Display` is a shell command for the workspace's root, in which bytes
@@ -49,10 +47,7 @@ impl Invocation {
     /// The cargo that runs this program, printed as `cargo`.
     pub fn cargo<A: Into<OsString>>(args: impl IntoIterator<Item = A>) -> Self {
         let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        Self {
-            program,
-            ..Self::new("cargo", args)
-        }
+        Self { program, ..Self::new("cargo", args) }
     }
 
     /// This program, printed as `cargo xtask`. Started by cargo, it would wait for cargo's lock of the target folder, which the
@@ -154,14 +149,9 @@ impl Invocation {
     pub fn run_bounded(&self, limit: Duration) -> Result<()> {
         let mut command = self.command();
         command.stdin(Stdio::null()).stdout(std::io::stderr());
-        let child = command
-            .spawn()
-            .with_context(|| format!("`{self}` did not start"))?;
+        let child = command.spawn().with_context(|| format!("`{self}` did not start"))?;
         let Some(child) = wait(child, limit)? else {
-            bail!(
-                "`{self}` did not end within {} s and was stopped",
-                limit.as_secs()
-            );
+            bail!("`{self}` did not end within {} s and was stopped", limit.as_secs());
         };
         self.check(Ok(child))
     }
@@ -204,10 +194,7 @@ impl Background {
         let child = command.spawn();
         let mut child = child.with_context(|| format!("`{invocation}` did not start"))?;
         let stdout = child.stdout.take().context("no standard output")?;
-        Ok(Self {
-            child,
-            stdout: BufReader::new(stdout),
-        })
+        Ok(Self { child, stdout: BufReader::new(stdout) })
     }
 
     /// The next line that it prints; `None` after the last.
@@ -270,9 +257,7 @@ fn quoted(word: &str) -> String {
 /// Path of `program` on the search path.
 pub fn on_path(program: &str) -> Option<PathBuf> {
     let paths = std::env::var_os("PATH")?;
-    std::env::split_paths(&paths)
-        .map(|dir| dir.join(program))
-        .find(|path| path.is_file())
+    std::env::split_paths(&paths).map(|dir| dir.join(program)).find(|path| path.is_file())
 }
 
 #[cfg(test)]
@@ -282,9 +267,7 @@ mod tests {
     #[test]
     fn a_printed_command_can_be_run_by_a_shell() {
         let odd = "it's $HOME; \"two  words\"";
-        let shown = Invocation::new("printf", ["%s", odd])
-            .env("UNUSED", "a b")
-            .to_string();
+        let shown = Invocation::new("printf", ["%s", odd]).env("UNUSED", "a b").to_string();
         let echoed = Invocation::new("sh", ["-c", &shown]).answer();
         assert_eq!(echoed.as_deref(), Some(odd), "{shown}");
     }
@@ -302,9 +285,8 @@ mod tests {
 
     #[test]
     fn a_command_beyond_its_time_limit_is_stopped_and_named() {
-        let error = Invocation::new("sleep", ["600"])
-            .run_bounded(Duration::from_millis(50))
-            .unwrap_err();
+        let error =
+            Invocation::new("sleep", ["600"]).run_bounded(Duration::from_millis(50)).unwrap_err();
         assert!(error.to_string().contains("`sleep 600`"), "{error}");
     }
 
@@ -312,15 +294,8 @@ mod tests {
     fn a_failed_or_missing_command_is_an_error() {
         assert!(Invocation::new("true", [""; 0]).run().is_ok());
         assert!(Invocation::new("false", [""; 0]).run().is_err());
-        assert!(
-            Invocation::new("no-such-program-anywhere", [""; 0])
-                .run()
-                .is_err()
-        );
-        assert_eq!(
-            Invocation::new("sh", ["-c", "echo lost; exit 3"]).answer(),
-            None
-        );
+        assert!(Invocation::new("no-such-program-anywhere", [""; 0]).run().is_err());
+        assert_eq!(Invocation::new("sh", ["-c", "echo lost; exit 3"]).answer(), None);
     }
 
     #[test]
@@ -336,9 +311,6 @@ mod tests {
         assert_ne!(question.answer().as_deref(), Some("none here\n"));
         let hidden =
             Invocation::new("/bin/sh", ["-c", "echo ${HOME-none} $ADDED"]).env("ADDED", "here");
-        assert_eq!(
-            hidden.without(&["HOME"]).answer().as_deref(),
-            Some("none here\n")
-        );
+        assert_eq!(hidden.without(&["HOME"]).answer().as_deref(), Some("none here\n"));
     }
 }

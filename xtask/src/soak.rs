@@ -23,11 +23,7 @@ fn jobs() -> Vec<Job> {
     let jobs = lines.filter(|line| !line.starts_with('#'));
     let job = |line: &'static str| {
         let mut fields = line.split(" | ");
-        Some(Job {
-            name: fields.next()?,
-            title: fields.next()?,
-            line: fields.next()?,
-        })
+        Some(Job { name: fields.next()?, title: fields.next()?, line: fields.next()? })
     };
     jobs.filter_map(job).collect()
 }
@@ -41,25 +37,15 @@ pub fn run(permission: Permission, only: &[String]) -> Result<()> {
         bail!("--only {name}; known are {}", known.join(", "));
     }
     chosen.retain(|job| only.is_empty() || only.iter().any(|name| name == job.name));
-    let needs = Needs {
-        fuzzer: true,
-        ..Needs::EMULATOR
-    };
+    let needs = Needs { fuzzer: true, ..Needs::EMULATOR };
     setup::prepare(needs, permission)?;
     let folder = workspace().join("target/soak");
     fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
     let mut table = heading();
     let mut failed = Vec::new();
     for (number, job) in chosen.iter().enumerate() {
-        let command = permission
-            .choice
-            .handed_to(Invocation::cargo(job.line.split(' ')));
-        eprintln!(
-            "\n[{}/{}] {}: {command}",
-            number + 1,
-            chosen.len(),
-            job.title
-        );
+        let command = permission.choice.handed_to(Invocation::cargo(job.line.split(' ')));
+        eprintln!("\n[{}/{}] {}: {command}", number + 1, chosen.len(), job.title);
         let path = folder.join(job.name).with_extension("txt");
         let start = Instant::now();
         let done = command.run_with_stdout_in(&path);
@@ -117,9 +103,6 @@ mod tests {
     fn every_job_has_a_name_of_its_own() {
         let names: BTreeSet<_> = jobs().iter().map(|job| job.name).collect();
         let lines = include_str!("soak_jobs.txt").lines();
-        assert_eq!(
-            names.len(),
-            lines.filter(|line| !line.starts_with('#')).count()
-        );
+        assert_eq!(names.len(), lines.filter(|line| !line.starts_with('#')).count());
     }
 }

@@ -23,11 +23,7 @@ pub struct Steps {
 impl Steps {
     /// Announces `total` steps.
     pub fn new(total: usize) -> Self {
-        Self {
-            total,
-            begun: Instant::now(),
-            done: Vec::new(),
-        }
+        Self { total, begun: Instant::now(), done: Vec::new() }
     }
 
     /// Runs the next step under the heading `[n/total] title (hint)`; passes its result on.
@@ -37,11 +33,7 @@ impl Steps {
         hint: &str,
         step: impl FnOnce() -> Result<T>,
     ) -> Result<T> {
-        let hint = if hint.is_empty() {
-            String::new()
-        } else {
-            format!(" ({hint})")
-        };
+        let hint = if hint.is_empty() { String::new() } else { format!(" ({hint})") };
         let index = self.start(title, &hint);
         let start = Instant::now();
         let result = step();
@@ -62,11 +54,7 @@ impl Steps {
     pub fn finish(&mut self, index: usize, passed: bool, took: Duration) {
         let (_, outcome, time) = &mut self.done[index];
         *time = took;
-        *outcome = if passed {
-            Outcome::Passed
-        } else {
-            Outcome::Failed
-        };
+        *outcome = if passed { Outcome::Passed } else { Outcome::Failed };
     }
 
     /// Leaves the next step out and says why.

@@ -80,11 +80,7 @@ fn run(cli: &Cli) -> Result<bool> {
         return Ok(true);
     }
     let benches = chosen(&cli.only)?;
-    let mut reports = Reports {
-        passed: None,
-        skipped: None,
-        benches: Vec::new(),
-    };
+    let mut reports = Reports { passed: None, skipped: None, benches: Vec::new() };
     if ngspice::is_installed() {
         let netlists = Netlists::load()?;
         for bench in benches {
@@ -116,11 +112,7 @@ fn run(cli: &Cli) -> Result<bool> {
     } else if let Some(why) = reports.skipped {
         println!("skipped: {why}");
     } else {
-        let verdict = if passed {
-            "all simulated quantities are allowed"
-        } else {
-            "FAILED"
-        };
+        let verdict = if passed { "all simulated quantities are allowed" } else { "FAILED" };
         println!("{verdict}");
     }
     Ok(passed)
@@ -154,18 +146,12 @@ fn write_page(folder: &Path, reports: &[Report]) -> Result<()> {
 fn print_table(report: &Report) {
     println!("{} (simulated): {}", report.bench, report.title);
     let width = |text: &dyn Fn(&Quantity) -> String| {
-        let widths = report
-            .quantities
-            .iter()
-            .map(|quantity| text(quantity).chars().count());
+        let widths = report.quantities.iter().map(|quantity| text(quantity).chars().count());
         widths.max().unwrap_or(0)
     };
     let value = |quantity: &Quantity| format!("{} {}", Short(quantity.value), quantity.unit);
-    let (names, values, limits) = (
-        width(&|quantity| quantity.name.clone()),
-        width(&value),
-        width(&Quantity::allowed),
-    );
+    let (names, values, limits) =
+        (width(&|quantity| quantity.name.clone()), width(&value), width(&Quantity::allowed));
     for quantity in &report.quantities {
         let verdict = if quantity.holds() { "ok" } else { "FAILED" };
         println!(

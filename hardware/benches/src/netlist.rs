@@ -27,10 +27,7 @@ pub const FILES: [&str; 14] = [
 
 /// The folder of the netlists.
 pub fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .unwrap_or(Path::new("."))
-        .into()
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new(".")).into()
 }
 
 /// The text of all netlists. A bench changes a copy: another value of a parameter, or another line.
@@ -56,9 +53,7 @@ impl Netlists {
 
     /// Netlists of this text.
     pub fn from_text(text: &str) -> Self {
-        Self {
-            lines: text.lines().map(str::to_owned).collect(),
-        }
+        Self { lines: text.lines().map(str::to_owned).collect() }
     }
 
     /// All lines, for a deck.
@@ -111,13 +106,8 @@ impl Netlists {
     /// No line or several lines begin so.
     pub fn with_line(&self, start: &str, line: &str) -> Result<Self> {
         let mut changed = self.clone();
-        let mut found = changed
-            .lines
-            .iter_mut()
-            .filter(|old| old.starts_with(start));
-        let old = found
-            .next()
-            .with_context(|| format!("no line begins with {start:?}"))?;
+        let mut found = changed.lines.iter_mut().filter(|old| old.starts_with(start));
+        let old = found.next().with_context(|| format!("no line begins with {start:?}"))?;
         ensure!(found.next().is_none(), "several lines begin with {start:?}");
         *old = line.to_owned();
         Ok(changed)
@@ -144,10 +134,7 @@ mod tests {
         assert_eq!(netlists.param("r_in").unwrap(), 4.7e3);
         let changed = netlists.scaled("r_in", 2.0).unwrap();
         assert_eq!(changed.param("r_in").unwrap(), 9.4e3);
-        assert_eq!(
-            changed.param("c_in").unwrap(),
-            netlists.param("c_in").unwrap()
-        );
+        assert_eq!(changed.param("c_in").unwrap(), netlists.param("c_in").unwrap());
         assert!(netlists.with("r_out", 1.0).is_err());
     }
 

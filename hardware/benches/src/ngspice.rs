@@ -35,8 +35,7 @@ impl Measured {
     /// # Errors
     /// The measurement has failed, for instance because a level was never crossed, or does not exist.
     pub fn get(&self, name: &str) -> Result<f64> {
-        self.find(name)
-            .with_context(|| format!("the measurement {name} has failed"))
+        self.find(name).with_context(|| format!("the measurement {name} has failed"))
     }
 
     /// The result of a measurement that may fail, such as the time of an event that may not come.
@@ -144,25 +143,14 @@ fn output(title: &str, netlists: &Netlists, lines: &str) -> Result<String> {
     // Progress is printed in one line, by carriage returns.
     for line in text.split(['\n', '\r']).chain(errors.split(['\n', '\r'])) {
         let lower = line.to_ascii_lowercase();
-        if [
-            "aborted",
-            "no such",
-            "unknown",
-            "syntax",
-            "too small",
-            "can't find",
-        ]
-        .iter()
-        .any(|sign| lower.contains(sign))
+        if ["aborted", "no such", "unknown", "syntax", "too small", "can't find"]
+            .iter()
+            .any(|sign| lower.contains(sign))
         {
             bail!("{}: {line}", path.display());
         }
     }
-    ensure!(
-        text.contains("Total elapsed time"),
-        "{}: {errors}",
-        path.display()
-    );
+    ensure!(text.contains("Total elapsed time"), "{}: {errors}", path.display());
     Ok(text.into_owned())
 }
 

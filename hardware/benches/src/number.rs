@@ -29,11 +29,7 @@ pub fn parse(text: &str) -> Option<f64> {
         .iter()
         .find(|(suffix, _)| rest.starts_with(suffix))
         .map_or(1.0, |(_, scale)| *scale);
-    number
-        .parse::<f64>()
-        .ok()
-        .map(|number| number * scale)
-        .filter(|value| value.is_finite())
+    number.parse::<f64>().ok().map(|number| number * scale).filter(|value| value.is_finite())
 }
 
 #[cfg(test)]

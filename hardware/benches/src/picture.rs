@@ -10,12 +10,8 @@ use crate::netlist::Netlists;
 use crate::ngspice;
 
 /// Colours of the curves of a chart, in their order.
-const COLORS: [RGBColor; 4] = [
-    RGBColor(200, 60, 40),
-    RGBColor(40, 90, 180),
-    RGBColor(40, 140, 70),
-    RGBColor(140, 80, 160),
-];
+const COLORS: [RGBColor; 4] =
+    [RGBColor(200, 60, 40), RGBColor(40, 90, 180), RGBColor(40, 140, 70), RGBColor(140, 80, 160)];
 /// Width of a picture and height of one of its charts, pixels.
 const SIZE: (u32, u32) = (1000, 260);
 /// Width of the legends, pixels.
@@ -93,20 +89,15 @@ pub fn draw(name: &str, netlists: &Netlists, scene: &Scene) -> Result<String> {
 /// The points in a range, without those that a picture could not show apart from the one before.
 fn visible(points: impl Iterator<Item = (f64, f64)>, range: &Range<f64>) -> Vec<(f64, f64)> {
     let inside: Vec<_> = points.filter(|(x, _)| range.contains(x)).collect();
-    let (low, high) = inside
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, y)| {
+    let (low, high) =
+        inside.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, y)| {
             (low.min(*y), high.max(*y))
         });
-    let (wide, tall) = (
-        (range.end - range.start) / POINTS,
-        (high - low).max(f64::MIN_POSITIVE) / 200.0,
-    );
+    let (wide, tall) =
+        ((range.end - range.start) / POINTS, (high - low).max(f64::MIN_POSITIVE) / 200.0);
     let mut kept: Vec<(f64, f64)> = Vec::new();
     for (x, y) in inside {
-        let apart = kept
-            .last()
-            .is_none_or(|(x0, y0)| x - x0 > wide || (y - y0).abs() > tall);
+        let apart = kept.last().is_none_or(|(x0, y0)| x - x0 > wide || (y - y0).abs() > tall);
         if apart {
             kept.push((x, y));
         }

@@ -27,29 +27,17 @@ impl Quantity {
         unit: &'static str,
         (least, most): (f64, f64),
     ) -> Self {
-        Self {
-            name: name.into(),
-            value,
-            unit,
-            least: Some(least),
-            most: Some(most),
-        }
+        Self { name: name.into(), value, unit, least: Some(least), most: Some(most) }
     }
 
     /// A quantity that must not exceed `most`.
     pub fn at_most(name: impl Into<String>, value: f64, unit: &'static str, most: f64) -> Self {
-        Self {
-            least: None,
-            ..Self::between(name, value, unit, (most, most))
-        }
+        Self { least: None, ..Self::between(name, value, unit, (most, most)) }
     }
 
     /// A quantity that must not be below `least`.
     pub fn at_least(name: impl Into<String>, value: f64, unit: &'static str, least: f64) -> Self {
-        Self {
-            most: None,
-            ..Self::between(name, value, unit, (least, least))
-        }
+        Self { most: None, ..Self::between(name, value, unit, (least, least)) }
     }
 
     /// Whether the value is allowed.

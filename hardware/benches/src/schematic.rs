@@ -129,25 +129,12 @@ fn kinds(text: &str) -> BTreeMap<String, Kind> {
 
 /// The block of a file: its first `.subckt`, with the file's first line as its title.
 fn block(text: &str) -> Option<Block> {
-    let title = text
-        .lines()
-        .next()?
-        .trim_start_matches(['*', ' '])
-        .to_owned();
-    let above: Vec<_> = text
-        .lines()
-        .take_while(|line| !line.starts_with(".subckt "))
-        .collect();
-    let mut description: Vec<_> = above
-        .iter()
-        .rev()
-        .map_while(|line| line.strip_prefix("* "))
-        .map(str::to_owned)
-        .collect();
+    let title = text.lines().next()?.trim_start_matches(['*', ' ']).to_owned();
+    let above: Vec<_> = text.lines().take_while(|line| !line.starts_with(".subckt ")).collect();
+    let mut description: Vec<_> =
+        above.iter().rev().map_while(|line| line.strip_prefix("* ")).map(str::to_owned).collect();
     description.reverse();
-    let mut lines = text
-        .lines()
-        .skip_while(|line| !line.starts_with(".subckt "));
+    let mut lines = text.lines().skip_while(|line| !line.starts_with(".subckt "));
     let ports = lines.next()?.split_whitespace().skip(2);
     let ports = ports.map(str::to_owned).collect();
     let parts = lines
@@ -155,12 +142,7 @@ fn block(text: &str) -> Option<Block> {
         .filter(|line| line.starts_with(|c: char| c.is_ascii_alphabetic()))
         .filter_map(part)
         .collect();
-    Some(Block {
-        title,
-        description,
-        ports,
-        parts,
-    })
+    Some(Block { title, description, ports, parts })
 }
 
 /// A line of a part: name, nets, value or type.
@@ -193,25 +175,15 @@ fn part(line: &str) -> Option<Part> {
 
 /// A value as it is printed: that of its parameter with a suffix, or the type.
 fn shown(value: &str, netlists: &Netlists) -> Result<String> {
-    let Some(name) = value
-        .strip_prefix('{')
-        .and_then(|name| name.strip_suffix('}'))
-    else {
+    let Some(name) = value.strip_prefix('{').and_then(|name| name.strip_suffix('}')) else {
         return Ok(value.to_owned());
     };
     let number = netlists.param(name)?;
-    let (scale, suffix) = [
-        (1e6, "M"),
-        (1e3, "k"),
-        (1.0, ""),
-        (1e-3, "m"),
-        (1e-6, "µ"),
-        (1e-9, "n"),
-        (1e-12, "p"),
-    ]
-    .into_iter()
-    .find(|(scale, _)| number >= 0.9999 * scale)
-    .unwrap_or((1.0, ""));
+    let (scale, suffix) =
+        [(1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")]
+            .into_iter()
+            .find(|(scale, _)| number >= 0.9999 * scale)
+            .unwrap_or((1.0, ""));
     Ok(format!("{}{suffix}", Short(number / scale)))
 }
 
@@ -297,10 +269,7 @@ fn draw_part(
     if turned {
         ends.reverse();
     }
-    for (net, at, towards) in [
-        (&ends[0], top, middle - 18.0),
-        (&ends[1], bottom, middle + 18.0),
-    ] {
+    for (net, at, towards) in [(&ends[0], top, middle - 18.0), (&ends[1], bottom, middle + 18.0)] {
         line(svg, &[(x, at), (x, towards)]);
         terminal(svg, x, at, net, at < middle, is_port(net));
     }
@@ -322,63 +291,24 @@ fn draw_part(
         }
         'D' => {
             // The anode is the first net.
-            let (anode, cathode) = if turned {
-                (middle + 9.0, middle - 9.0)
-            } else {
-                (middle - 9.0, middle + 9.0)
-            };
-            line(
-                svg,
-                &[
-                    (x - 9.0, anode),
-                    (x + 9.0, anode),
-                    (x, cathode),
-                    (x - 9.0, anode),
-                ],
-            );
+            let (anode, cathode) =
+                if turned { (middle + 9.0, middle - 9.0) } else { (middle - 9.0, middle + 9.0) };
+            line(svg, &[(x - 9.0, anode), (x + 9.0, anode), (x, cathode), (x - 9.0, anode)]);
             line(svg, &[(x - 9.0, cathode), (x + 9.0, cathode)]);
             line(svg, &[(x, middle - 18.0), (x, middle - 9.0)]);
             line(svg, &[(x, middle + 9.0), (x, middle + 18.0)]);
         }
-        'S' => line(
-            svg,
-            &[
-                (x, middle - 18.0),
-                (x + 12.0, middle + 12.0),
-                (x, middle + 18.0),
-            ],
-        ),
+        'S' => line(svg, &[(x, middle - 18.0), (x + 12.0, middle + 12.0), (x, middle + 18.0)]),
         _ => {
             // Transistor: channel or base bar, control terminal on the left.
             line(svg, &[(x - 12.0, middle - 16.0), (x - 12.0, middle + 16.0)]);
-            line(
-                svg,
-                &[
-                    (x, middle - 18.0),
-                    (x, middle - 10.0),
-                    (x - 8.0, middle - 10.0),
-                ],
-            );
-            line(
-                svg,
-                &[
-                    (x, middle + 18.0),
-                    (x, middle + 10.0),
-                    (x - 8.0, middle + 10.0),
-                ],
-            );
+            line(svg, &[(x, middle - 18.0), (x, middle - 10.0), (x - 8.0, middle - 10.0)]);
+            line(svg, &[(x, middle + 18.0), (x, middle + 10.0), (x - 8.0, middle + 10.0)]);
             line(svg, &[(x - 8.0, middle - 16.0), (x - 8.0, middle + 16.0)]);
             line(svg, &[(x - 26.0, middle), (x - 12.0, middle)]);
             if kind == 'Q' {
                 // The emitter's arrow.
-                line(
-                    svg,
-                    &[
-                        (x - 5.0, middle + 6.0),
-                        (x, middle + 10.0),
-                        (x - 5.0, middle + 14.0),
-                    ],
-                );
+                line(svg, &[(x - 5.0, middle + 6.0), (x, middle + 10.0), (x - 5.0, middle + 14.0)]);
             } else {
                 // Source: arrow into the channel of an N channel, out of that of a P channel.
                 let (at, tip, tail) = if part.is_p_channel {
@@ -388,11 +318,7 @@ fn draw_part(
                 };
                 line(svg, &[(tail, at - 3.0), (tip, at), (tail, at + 3.0)]);
             }
-            let class = if is_port(&part.nets[1]) {
-                "port"
-            } else {
-                "net"
-            };
+            let class = if is_port(&part.nets[1]) { "port" } else { "net" };
             text(svg, x - 24.0, middle - 3.0, class, "end", &part.nets[1]);
         }
     }
@@ -426,20 +352,9 @@ fn draw_box(
     let height = f64::max(HEIGHT - 40.0, PIN * (rows as f64 + 2.5));
     let (left, right, top) = (x + 48.0, x + 2.0 * CELL - 48.0, y + 22.0);
     rect(svg, left, top, right - left, height - 22.0 + 8.0);
-    let bought = if kind.part.is_empty() {
-        &part.value
-    } else {
-        &kind.part
-    };
+    let bought = if kind.part.is_empty() { &part.value } else { &kind.part };
     let title = format!("{} {bought}", part.name);
-    text(
-        svg,
-        0.5 * (left + right),
-        top - 5.0,
-        "value",
-        "middle",
-        &title,
-    );
+    text(svg, 0.5 * (left + right), top - 5.0, "value", "middle", &title);
     for (index, (pin, net)) in pins.iter().zip(&part.nets).enumerate() {
         let at = top + PIN * ((index % rows) as f64 + 1.0);
         let (edge, out, inner, anchors) = if index < rows {
@@ -495,10 +410,7 @@ fn text(svg: &mut String, x: f64, y: f64, class: &str, anchor: &str, content: &s
 }
 
 fn line(svg: &mut String, points: &[(f64, f64)]) {
-    let points: Vec<_> = points
-        .iter()
-        .map(|(x, y)| format!("{x:.0},{y:.0}"))
-        .collect();
+    let points: Vec<_> = points.iter().map(|(x, y)| format!("{x:.0},{y:.0}")).collect();
     let _ = writeln!(svg, "<polyline points=\"{}\"/>", points.join(" "));
 }
 
@@ -517,10 +429,7 @@ mod tests {
     fn the_picture_in_the_repository_is_that_of_the_netlists() {
         let committed = fs::read_to_string(folder().join("schematic.svg")).unwrap();
         let drawn = draw().unwrap();
-        assert!(
-            committed == drawn,
-            "cargo xtask hardware --schematic hardware/schematic.svg"
-        );
+        assert!(committed == drawn, "cargo xtask hardware --schematic hardware/schematic.svg");
     }
 
     #[test]

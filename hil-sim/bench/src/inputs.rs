@@ -27,12 +27,7 @@ impl Input {
     pub fn new(elapsed: Ticks, per_tick: f64) -> Option<Self> {
         let rate = MantissaExponent::from_f64(per_tick)?;
         let double = rate.to_f64();
-        Some(Self {
-            elapsed,
-            rate,
-            double,
-            single: double as f32,
-        })
+        Some(Self { elapsed, rate, double, single: double as f32 })
     }
 
     /// The input with this index: uniform over octaves, and uniform over mantissas within an octave.
@@ -44,10 +39,7 @@ impl Input {
         let elapsed = Ticks::new(1 << tick_octave | below(scramble(bits), 1 << tick_octave))?;
         let exponent = octave - tick_octave as i32;
         let fraction = u64::from(scramble(bits ^ GOLDEN));
-        Self::new(
-            elapsed,
-            f64::from_bits(((1023 + exponent) as u64) << 52 | fraction << 20),
-        )
+        Self::new(elapsed, f64::from_bits(((1023 + exponent) as u64) << 52 | fraction << 20))
     }
 }
 

@@ -26,18 +26,10 @@ impl Job {
         let index = (pins & (SCENE - 1)) as usize;
         Some(if pins & SCENE == 0 {
             let call = KERNELS.get(index)?.call;
-            Self::Kernel(if only_return {
-                call.only_return()
-            } else {
-                call
-            })
+            Self::Kernel(if only_return { call.only_return() } else { call })
         } else {
             let scene = *SCENES.get(index)?;
-            let step = if only_return {
-                only_return_scene
-            } else {
-                scene.step
-            };
+            let step = if only_return { only_return_scene } else { scene.step };
             Self::Scene(Scene { step, ..scene })
         })
     }

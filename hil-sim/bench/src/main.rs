@@ -51,10 +51,7 @@ struct Results {
 }
 
 fn model(arguments: &Arguments, progress: impl Fn(&str)) -> anyhow::Result<Results> {
-    let effort = host::Effort {
-        inputs: arguments.inputs,
-        rounds: arguments.rounds.into(),
-    };
+    let effort = host::Effort { inputs: arguments.inputs, rounds: arguments.rounds.into() };
     let figures = host::measure(effort, progress)?;
     Ok(Results {
         json: serde_json::to_string_pretty(&figures)?,

@@ -98,11 +98,7 @@ impl Station {
                 0,
                 SETPOINT_INTERPOLATION_TOLERANCE,
             );
-            Ok(Finger {
-                pair,
-                chords,
-                set_point: Celsius::ZERO,
-            })
+            Ok(Finger { pair, chords, set_point: Celsius::ZERO })
         };
         let fixed = [fixed(0)?, fixed(1)?, fixed(2)?, fixed(3)?, fixed(4)?];
         let mut estimator = FingerEstimator::default();
@@ -155,11 +151,7 @@ fn idle(station: &mut Station, _: u32) -> u32 {
 
 fn semi_infinite(station: &mut Station, _: u32) -> u32 {
     let [finger, ..] = &station.fixed;
-    bits(
-        finger
-            .pair
-            .interface_temperature(station.skin, station.object),
-    )
+    bits(finger.pair.interface_temperature(station.skin, station.object))
 }
 
 fn constant_force(station: &mut Station, _: u32) -> u32 {
@@ -167,9 +159,7 @@ fn constant_force(station: &mut Station, _: u32) -> u32 {
 }
 
 fn streaming_force(station: &mut Station, tick: u32) -> u32 {
-    let contact = station.fixed[0]
-        .pair
-        .at_pressure(log2_relative_pressure(streaming_fixed(tick)));
+    let contact = station.fixed[0].pair.at_pressure(log2_relative_pressure(streaming_fixed(tick)));
     bits(contact.at(tick, station.skin, station.object).display())
 }
 
@@ -184,9 +174,7 @@ fn five_fingers(station: &mut Station, _: u32) -> u32 {
 /// was observed, so there always is a reference.
 #[inline]
 fn reference_step(station: &mut Station, force: Force) -> u32 {
-    station
-        .estimator
-        .update_by_readings(station.skin, station.object, Some(force), 1);
+    station.estimator.update_by_readings(station.skin, station.object, Some(force), 1);
     let scene = reference::PresentedObject {
         pair: &station.fixed[0].pair,
         bodies: &Bodies::HALF_SPACES,
@@ -194,9 +182,7 @@ fn reference_step(station: &mut Station, force: Force) -> u32 {
         mode: ContactModel::ContactResistance,
     };
     let reference =
-        station
-            .generator
-            .next_reference(&scene, &mut station.estimator, Celsius::ZERO, false);
+        station.generator.next_reference(&scene, &mut station.estimator, Celsius::ZERO, false);
     reference.map_or(0, |reference| bits(reference.setpoint.celsius()))
 }
 
@@ -237,11 +223,7 @@ const fn scene(
     arithmetic: Arithmetic,
     step: fn(&mut Station, u32) -> u32,
 ) -> Scene {
-    Scene {
-        kind,
-        arithmetic,
-        step,
-    }
+    Scene { kind, arithmetic, step }
 }
 
 use Arithmetic::{Firmware, Integers, LibmF32, LibmF64, Shepherd};

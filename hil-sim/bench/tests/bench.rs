@@ -23,9 +23,7 @@ const FIRMWARE: &str = "firmware";
 static RUNS: LazyLock<[Value; 2]> = LazyLock::new(|| [run("first"), run("second")]);
 
 fn out(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
-        .join("bench")
-        .join(name)
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("bench").join(name)
 }
 
 fn run(name: &str) -> Value {
@@ -44,9 +42,7 @@ fn rows<'a>(run: &'a Value, table: &str) -> &'a Vec<Value> {
 }
 
 fn kernel(id: &str) -> &'static Value {
-    let mut found = rows(&RUNS[0], "kernels")
-        .iter()
-        .filter(|row| row["id"] == id);
+    let mut found = rows(&RUNS[0], "kernels").iter().filter(|row| row["id"] == id);
     let row = found.next().unwrap_or_else(|| panic!("no kernel {id}"));
     assert!(found.next().is_none(), "{id} is unique");
     row
@@ -60,9 +56,7 @@ fn scene(kind: &str, arithmetic: &str) -> &'static Value {
 }
 
 fn number(row: &Value, name: &str) -> f64 {
-    row[name]
-        .as_f64()
-        .unwrap_or_else(|| panic!("{name} of {row} is a number"))
+    row[name].as_f64().unwrap_or_else(|| panic!("{name} of {row} is a number"))
 }
 
 /// Asserts that the ratio of `value` and `expected`, or its inverse, is below `1 + share`.
@@ -79,14 +73,7 @@ fn products_fail_where_exp_overflows() {
     for (id, z) in [("libm-f32", single), ("libm-f64", double)] {
         assert_near(id, number(kernel(id), "breaks_at_z"), z, 1e-4);
     }
-    for id in [
-        "firmware",
-        "shepherd",
-        "faddeeva",
-        "one-polynomial",
-        "linear-4",
-        "quadratic-64",
-    ] {
+    for id in ["firmware", "shepherd", "faddeeva", "one-polynomial", "linear-4", "quadratic-64"] {
         assert!(kernel(id)["breaks_at_z"].is_null(), "{id} never breaks");
     }
 }
@@ -98,28 +85,13 @@ fn products_fail_where_exp_overflows() {
 fn interpolation_errors_equal_their_formulas() {
     for (id, nodes) in [("linear-4", 1024.0), ("linear-16", 4096.0)] {
         let h: f64 = 16.0 / nodes;
-        assert_near(
-            id,
-            number(kernel(id), "worst_units"),
-            h.powi(2) / 4.0 * UNITS,
-            0.03,
-        );
+        assert_near(id, number(kernel(id), "worst_units"), h.powi(2) / 4.0 * UNITS, 0.03);
     }
     let h: f64 = 16.0 / 1024.0;
     let third = 8.0 / std::f64::consts::PI.sqrt();
     let quadratic = h.powi(3) / 16.0 * third * UNITS;
-    assert_near(
-        "quadratic-4",
-        number(kernel("quadratic-4"), "worst_units"),
-        quadratic,
-        0.1,
-    );
-    assert_near(
-        "as",
-        number(kernel("as"), "worst_units"),
-        (-8.2f64).exp2() * UNITS,
-        0.05,
-    );
+    assert_near("quadratic-4", number(kernel("quadratic-4"), "worst_units"), quadratic, 0.1);
+    assert_near("as", number(kernel("as"), "worst_units"), (-8.2f64).exp2() * UNITS, 0.05);
 }
 
 /// The firmware's kernel has its documented error: 0.51 units for its input and 0.07 for truncation. The others err in the
@@ -171,10 +143,7 @@ fn at_most_one_tick_in_a_hundred_evaluates_the_kernel() {
     let [fewest, mean, most] =
         ["min", "mean", "max"].map(|which| number(row, &format!("instructions_{which}")));
     assert!(most > 2.0 * fewest, "{row}");
-    assert!(
-        mean - fewest <= 100.0 / f64::from(TICKS) * (most - fewest),
-        "{row}"
-    );
+    assert!(mean - fewest <= 100.0 / f64::from(TICKS) * (most - fewest), "{row}");
 }
 
 /// Both processors compute the same bits, so that errors measured on the host hold for the costs on the microcontroller.
@@ -191,12 +160,7 @@ fn host_and_microcontroller_agree_to_the_bit() {
 fn costs_repeat_exactly() {
     for table in ["kernels", "scenes"] {
         for (first, second) in rows(&RUNS[0], table).iter().zip(rows(&RUNS[1], table)) {
-            for name in [
-                "instructions_mean",
-                "instructions_max",
-                "cycles_mean",
-                "cycles_max",
-            ] {
+            for name in ["instructions_mean", "instructions_max", "cycles_mean", "cycles_max"] {
                 assert_eq!(first[name], second[name], "{name} of {first}");
             }
         }
@@ -253,10 +217,7 @@ fn too_few_inputs_are_refused() {
         .expect("the benchmark starts");
     assert_eq!(done.status.code(), Some(2));
     let message = String::from_utf8_lossy(&done.stderr);
-    assert!(
-        message.contains("'0'") && message.contains("--inputs"),
-        "{message}"
-    );
+    assert!(message.contains("'0'") && message.contains("--inputs"), "{message}");
 }
 
 /// The error names the folder, before anything is measured.

@@ -69,10 +69,7 @@ fn shorter_steps_are_more_accurate_at_the_surface() {
     assert_eq!(steps, [0.5, 1.0, 2.0, 4.0]);
     for name in ["surface_mk", "flux"] {
         let errors = column("steps", &format!("/errors/counted/{name}"));
-        assert!(
-            errors.windows(2).all(|pair| pair[1] > 1.5 * pair[0]),
-            "{errors:?}"
-        );
+        assert!(errors.windows(2).all(|pair| pair[1] > 1.5 * pair[0]), "{errors:?}");
     }
 }
 

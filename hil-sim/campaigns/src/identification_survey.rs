@@ -141,9 +141,7 @@ fn tune(plants: &CommissioningSetup, settings: &[String]) -> anyhow::Result<(Ide
             match client.ask(&TuneResult) {
                 Ok(tile) => return Ok((tile, ratio_at_large_current(&pairs))),
                 Err(error)
-                    if error
-                        .refusal()
-                        .is_some_and(|why| why.starts_with("tuning goes on")) => {}
+                    if error.refusal().is_some_and(|why| why.starts_with("tuning goes on")) => {}
                 Err(error) => return Err(error.into()),
             }
         } else {
@@ -165,9 +163,7 @@ fn ratio_at_large_current(pairs: &[(f64, f64)]) -> f64 {
     let count = pairs.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
     let (demand_a, flows_a) = (mean(|pair| pair.0), mean(|pair| pair.1));
-    let off = pairs
-        .iter()
-        .map(|pair| (pair.0 - demand_a, pair.1 - flows_a));
+    let off = pairs.iter().map(|pair| (pair.0 - demand_a, pair.1 - flows_a));
     let (together, alone) = off.fold((0.0, 0.0), |(together, alone), (demand, flows)| {
         (together + demand * flows, alone + demand * demand)
     });

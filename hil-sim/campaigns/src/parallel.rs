@@ -53,10 +53,7 @@ mod tests {
             Ok(item * item)
         };
         let squares = parallel_map(&items, 4, slow_first, || ()).expect("no error");
-        assert_eq!(
-            squares,
-            items.iter().map(|item| item * item).collect::<Vec<_>>()
-        );
+        assert_eq!(squares, items.iter().map(|item| item * item).collect::<Vec<_>>());
     }
 
     #[test]

@@ -20,13 +20,9 @@ mod tests {
     #[test]
     fn percentiles_are_those_of_known_samples() {
         let ten: Vec<f64> = [7.0, 1.0, 10.0, 4.0, 2.0, 8.0, 3.0, 9.0, 5.0, 6.0].into();
-        for (percent, expected) in [
-            (0.0, 1.0),
-            (50.0, 5.5),
-            (95.0, 9.55),
-            (99.0, 9.91),
-            (100.0, 10.0),
-        ] {
+        for (percent, expected) in
+            [(0.0, 1.0), (50.0, 5.5), (95.0, 9.55), (99.0, 9.91), (100.0, 10.0)]
+        {
             let value = percentile(&ten, percent).expect("values");
             assert!((value - expected).abs() < 1e-12, "{percent}: {value}");
         }

@@ -24,9 +24,7 @@ pub fn svg_element(svg: &str) -> &str {
 
 /// Text with HTML's special characters escaped.
 pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// Writes a file of a report into an existing folder.

@@ -80,20 +80,13 @@ impl Panel<'_> {
                 self.chart(area, curves)?;
                 let mut width = 0;
                 for curve in curves {
-                    width = width.max(
-                        area.estimate_text_size(&curve.name, &FONT.into_text_style(area))?
-                            .0,
-                    );
+                    width = width
+                        .max(area.estimate_text_size(&curve.name, &FONT.into_text_style(area))?.0);
                 }
-                let (width, height) = (
-                    width as i32 + SAMPLE + 2 * PADDING,
-                    LINE_HEIGHT * curves.len() as i32,
-                );
+                let (width, height) =
+                    (width as i32 + SAMPLE + 2 * PADDING, LINE_HEIGHT * curves.len() as i32);
                 let left = all as i32 - MARGIN - PADDING - width;
-                let corners = [
-                    (left, MARGIN + PADDING),
-                    (left + width, MARGIN + PADDING + height),
-                ];
+                let corners = [(left, MARGIN + PADDING), (left + width, MARGIN + PADDING + height)];
                 area.draw(&Rectangle::new(corners, WHITE.mix(0.85).filled()))?;
                 area.draw(&Rectangle::new(corners, BLACK.mix(0.3)))?;
                 legend(area, (left + PADDING / 2, corners[0].1), curves)
@@ -107,14 +100,10 @@ impl Panel<'_> {
     }
 
     fn chart(&self, area: &Area<'_>, curves: &[Curve]) -> anyhow::Result<()> {
-        let values = || {
-            curves
-                .iter()
-                .flat_map(|curve| curve.points.iter().map(|(_, value)| *value))
-        };
-        let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-            (l.min(v), h.max(v))
-        });
+        let values =
+            || curves.iter().flat_map(|curve| curve.points.iter().map(|(_, value)| *value));
+        let (low, high) =
+            values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
         let margin = ((high - low) * 0.08).max(0.05);
         let span = high - low + 2.0 * margin;

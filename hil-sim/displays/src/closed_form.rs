@@ -44,14 +44,8 @@ pub fn static_temperature_c(touch: &SingleContact) -> f64 {
 /// The static temperature until the landing, then the contact temperature from `ramp_s` on.
 pub fn static_then_contact(touch: &SingleContact, ramp_s: f64) -> Course {
     course(vec![
-        CoursePoint {
-            t_s: 0.0,
-            celsius: static_temperature_c(touch),
-        },
-        CoursePoint {
-            t_s: ramp_s,
-            celsius: contact_temperature_c(touch),
-        },
+        CoursePoint { t_s: 0.0, celsius: static_temperature_c(touch) },
+        CoursePoint { t_s: ramp_s, celsius: contact_temperature_c(touch) },
     ])
 }
 

@@ -40,11 +40,7 @@ impl Tissue {
 
     /// The tissue of a scene.
     pub fn of(scene: &Scene) -> Self {
-        if scene.params.finger.is_half_space() {
-            Self::HalfSpace
-        } else {
-            Self::Layered
-        }
+        if scene.params.finger.is_half_space() { Self::HalfSpace } else { Self::Layered }
     }
 }
 
@@ -164,9 +160,7 @@ fn ideal_errors(touch: &SingleContact, course: &Course) -> anyhow::Result<Vec<(f
     let shown_c = skin_on_ideal_tile(touch, course)?;
     let real_c = skin_on_object(touch)?;
     let pairs = shown_c.iter().zip(&real_c).enumerate();
-    Ok(pairs
-        .map(|(step, (shown_c, real_c))| (step as f64 * STEP_S, shown_c - real_c))
-        .collect())
+    Ok(pairs.map(|(step, (shown_c, real_c))| (step as f64 * STEP_S, shown_c - real_c)).collect())
 }
 
 /// What a display is.
@@ -192,19 +186,12 @@ pub struct Report {
 impl Report {
     /// The report of comparisons of which each scene has one of ours at most.
     pub fn new(mut rows: Vec<Comparison>) -> Self {
-        let ours: Vec<_> = rows
-            .iter()
-            .filter(|row| row.display == Display::Ours)
-            .cloned()
-            .collect();
+        let ours: Vec<_> =
+            rows.iter().filter(|row| row.display == Display::Ours).cloned().collect();
         for row in &mut rows {
             let same =
                 |ours: &&Comparison| (&ours.material, ours.tissue) == (&row.material, row.tissue);
-            let Some(ours) = ours
-                .iter()
-                .find(same)
-                .filter(|_| row.display != Display::Ours)
-            else {
+            let Some(ours) = ours.iter().find(same).filter(|_| row.display != Display::Ours) else {
                 continue;
             };
             let below = |own: Option<f64>, ours: Option<f64>| Some(own? < ours?);

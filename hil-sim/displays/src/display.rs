@@ -236,10 +236,7 @@ impl Display {
             limited = touch.sampled(|t_s| limited.at(t_s));
         }
         let course = reduce(&limited, COURSE_POINTS_MAX).course.rounded();
-        Ok(Showing::Course {
-            error_k: course.largest_difference_k(&computed),
-            course,
-        })
+        Ok(Showing::Course { error_k: course.largest_difference_k(&computed), course })
     }
 
     /// The scene with the device told to show what the display would have shown.

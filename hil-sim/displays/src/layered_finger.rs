@@ -10,10 +10,7 @@ use crate::recording::touch_object;
 use crate::touch::SingleContact;
 
 /// Contact law and factor on the contact resistance with which nearly none is left: 1e-7 m² K/W.
-const NEARLY_PERFECT: ContactLaw = ContactLaw {
-    gap_w_m2k: 1e5,
-    ..ContactLaw::NOMINAL
-};
+const NEARLY_PERFECT: ContactLaw = ContactLaw { gap_w_m2k: 1e5, ..ContactLaw::NOMINAL };
 const RESISTANCE_FACTOR: f64 = 0.01;
 
 /// The skin that touches the object without resistance: three layers with blood and metabolism (Eq. 1-1) that keep flowing.
@@ -43,10 +40,7 @@ pub fn bio_heat(touch: &SingleContact) -> Result<Course, ConfigError> {
 /// # Errors
 /// The scene's plant does not accept a value.
 pub fn mean_finger(touch: &SingleContact) -> Result<Course, ConfigError> {
-    let mut finger = FingerParams {
-        vessels: None,
-        ..FingerParams::layered()
-    };
+    let mut finger = FingerParams { vessels: None, ..FingerParams::layered() };
     for layer in &mut finger.layers {
         layer.medium.perfusion_w_m3k = 0.0;
         layer.medium.metabolism_w_m3 = 0.0;
@@ -65,12 +59,5 @@ pub fn mean_finger(touch: &SingleContact) -> Result<Course, ConfigError> {
 
 /// The touch's plant with a nominal device and another finger and contact.
 fn with_finger(touch: &SingleContact, finger: FingerParams, contact: ContactLaw) -> PlantConfig {
-    PlantConfig {
-        params: Params {
-            finger,
-            contact,
-            ..Params::nominal()
-        },
-        ..touch.plant.clone()
-    }
+    PlantConfig { params: Params { finger, contact, ..Params::nominal() }, ..touch.plant.clone() }
 }

@@ -29,15 +29,10 @@ pub struct RcLadder {
 impl RcLadder {
     /// Surface temperature of the skin, °C. At the landing only the resistors divide the difference of skin and object.
     pub fn skin(&self, touch: &SingleContact) -> Course {
-        let resistance_m2k_w: f64 = contact_resistance(
-            &SKIN.surface,
-            &touch.object.surface,
-            pressure_pa(touch.force_n),
-        );
-        let ladders = [
-            self.ladder(&SKIN, touch.contact_s),
-            self.ladder(&touch.object, touch.contact_s),
-        ];
+        let resistance_m2k_w: f64 =
+            contact_resistance(&SKIN.surface, &touch.object.surface, pressure_pa(touch.force_n));
+        let ladders =
+            [self.ladder(&SKIN, touch.contact_s), self.ladder(&touch.object, touch.contact_s)];
         let halves_m2k_w = [0, 1].map(|side| ladders[side].surface_m2k_w);
         let link_w_m2k = 1.0 / (halves_m2k_w[0] + resistance_m2k_w + halves_m2k_w[1]);
         let lengths_s = [STEP_S, STEP_S / f64::from(FIRST_PARTS)];
@@ -45,11 +40,7 @@ impl RcLadder {
         let mut cells = SlabBatch::new([skin, object], [touch.skin_c, touch.object_c], &lengths_s);
         touch.sampled(|t_s| {
             if t_s > 0.0 {
-                let (parts, length) = if t_s < 1.5 * STEP_S {
-                    (FIRST_PARTS, 1)
-                } else {
-                    (1, 0)
-                };
+                let (parts, length) = if t_s < 1.5 * STEP_S { (FIRST_PARTS, 1) } else { (1, 0) };
                 for _ in 0..parts {
                     step(&mut cells, length, link_w_m2k);
                 }
@@ -90,8 +81,5 @@ fn step(cells: &mut SlabBatch<2>, length: usize, link_w_m2k: f64) {
 fn joined([a, b]: [(f64, f64); 2], link_w_m2k: f64) -> [f64; 2] {
     let determinant = a.0 * b.0 + link_w_m2k * (a.0 + b.0);
     let shared = link_w_m2k * (a.1 + b.1);
-    [
-        (a.1 * b.0 + shared) / determinant,
-        (b.1 * a.0 + shared) / determinant,
-    ]
+    [(a.1 * b.0 + shared) / determinant, (b.1 * a.0 + shared) / determinant]
 }

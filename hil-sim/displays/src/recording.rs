@@ -12,9 +12,7 @@ use crate::touch::SingleContact;
 /// The scene's plant does not accept a value.
 pub fn skin_on_object(touch: &SingleContact) -> Result<Vec<f64>, ConfigError> {
     let mut skin_c = Vec::new();
-    touch_object(&touch.plant, touch, |plant| {
-        skin_c.push(plant.skin_real_c())
-    })?;
+    touch_object(&touch.plant, touch, |plant| skin_c.push(plant.skin_real_c()))?;
     Ok(skin_c)
 }
 
@@ -39,11 +37,7 @@ pub(crate) fn touch_object(
 
 /// The recording as it was measured: by a sensor of a time constant, s (0 for none).
 pub(crate) fn through_sensor(touch: &SingleContact, skin_c: &[f64], lag_s: f64) -> Course {
-    let share = if lag_s > 0.0 {
-        1.0 - (-crate::touch::STEP_S / lag_s).exp()
-    } else {
-        1.0
-    };
+    let share = if lag_s > 0.0 { 1.0 - (-crate::touch::STEP_S / lag_s).exp() } else { 1.0 };
     let mut samples = skin_c.iter();
     let mut sensor_c = skin_c.first().copied().unwrap_or(touch.skin_c);
     touch.sampled(|_| {

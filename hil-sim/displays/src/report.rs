@@ -16,11 +16,7 @@ const NUMBER: usize = 16;
 pub fn table(report: &Report) -> String {
     let mut text = String::new();
     for tissue in Tissue::ALL {
-        let rows: Vec<_> = report
-            .rows
-            .iter()
-            .filter(|row| row.tissue == tissue)
-            .collect();
+        let rows: Vec<_> = report.rows.iter().filter(|row| row.tissue == tissue).collect();
         let materials = distinct(&rows, |row| row.material.as_str());
         if rows.is_empty() {
             continue;
@@ -44,9 +40,8 @@ pub fn table(report: &Report) -> String {
             for display in distinct(&rows, |row| row.display) {
                 let _ = write!(text, "{:NAME$}", display.name());
                 for material in &materials {
-                    let row = rows
-                        .iter()
-                        .find(|row| row.display == display && row.material == *material);
+                    let row =
+                        rows.iter().find(|row| row.display == display && row.material == *material);
                     let cell =
                         row.map_or(String::new(), |row| cell(row, value, tile == "this tile"));
                     let _ = write!(text, "{cell:>NUMBER$}");
@@ -57,12 +52,7 @@ pub fn table(report: &Report) -> String {
     }
     for row in &report.rows {
         for refused in row.faults.iter().chain(&row.refused_lines) {
-            let _ = writeln!(
-                text,
-                "{} on {}: {refused}",
-                row.display.name(),
-                row.material
-            );
+            let _ = writeln!(text, "{} on {}: {refused}", row.display.name(), row.material);
         }
     }
     text
@@ -71,11 +61,8 @@ pub fn table(report: &Report) -> String {
 type Value = fn(&Comparison) -> Option<f64>;
 
 fn cell(row: &Comparison, value: Value, on_this_tile: bool) -> String {
-    let better = if on_this_tile {
-        row.better_than_ours
-    } else {
-        row.better_than_ours_on_ideal_tile
-    };
+    let better =
+        if on_this_tile { row.better_than_ours } else { row.better_than_ours_on_ideal_tile };
     let mark = if better == Some(true) { "*" } else { "" };
     value(row).map_or("-".into(), |mk| format!("{mk:.1}{mark}"))
 }
@@ -170,11 +157,7 @@ fn largest(
     rows: &[&Comparison],
     most_mk: f64,
 ) -> anyhow::Result<()> {
-    let rows: Vec<_> = rows
-        .iter()
-        .copied()
-        .filter(|row| row.tissue == tissue)
-        .collect();
+    let rows: Vec<_> = rows.iter().copied().filter(|row| row.tissue == tissue).collect();
     let materials = distinct(&rows, |row| row.material.as_str());
     let displays = distinct(&rows, |row| row.display);
     let mut chart = ChartBuilder::on(area)
@@ -206,9 +189,7 @@ fn largest(
         for (k, display) in displays.iter().enumerate() {
             let at = i as f64 + (k as f64 - (displays.len() as f64 - 1.0) / 2.0) * 0.09;
             let color = color(*display);
-            let own = rows
-                .iter()
-                .find(|row| row.display == *display && row.material == *material);
+            let own = rows.iter().find(|row| row.display == *display && row.material == *material);
             let Some(row) = own else { continue };
             if let Some(mk) = row.ideal_max_mk() {
                 let ring = Circle::new((at, mk.max(LEAST_MK)), DOT, color.stroke_width(2));
@@ -221,11 +202,7 @@ fn largest(
         }
         let (width, _) = area.estimate_text_size(material, &FONT.into_text_style(area))?;
         let x = chart.backend_coord(&(i as f64, LEAST_MK)).0 - left - width as i32 / 2;
-        area.draw(&Text::new(
-            (*material).to_owned(),
-            (x, height as i32 - 32),
-            FONT,
-        ))?;
+        area.draw(&Text::new((*material).to_owned(), (x, height as i32 - 32), FONT))?;
     }
     Ok(())
 }

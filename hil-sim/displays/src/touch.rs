@@ -50,11 +50,7 @@ impl SingleContact {
             [landing, lift] if lift.force_n == 0.0 && lift.ramp_s == 0.0 => (landing, lift.t_s),
             _ => return Err(NoSingleContact),
         };
-        let &Force {
-            t_s,
-            force_n,
-            ramp_s,
-        } = landing;
+        let &Force { t_s, force_n, ramp_s } = landing;
         if force_n <= 0.0 || ramp_s != 0.0 || scene.object.appears_t_s > 0.0 {
             return Err(NoSingleContact);
         }
@@ -87,10 +83,7 @@ impl SingleContact {
     pub(crate) fn sampled(&self, mut celsius_at: impl FnMut(f64) -> f64) -> Course {
         let points = (0..=self.steps()).map(|step| {
             let t_s = f64::from(step) * STEP_S;
-            CoursePoint {
-                t_s,
-                celsius: celsius_at(t_s),
-            }
+            CoursePoint { t_s, celsius: celsius_at(t_s) }
         });
         course(points.collect())
     }

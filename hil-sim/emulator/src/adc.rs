@@ -70,14 +70,7 @@ pub(crate) struct Adc {
 
 impl Adc {
     pub fn new(unit: Unit, bus_divider: u64, pclk2_hz: u32) -> Self {
-        Self {
-            unit,
-            limits: [0xfff, 0],
-            bus_divider,
-            pclk2_hz,
-            due: u64::MAX,
-            ..Self::default()
-        }
+        Self { unit, limits: [0xfff, 0], bus_divider, pclk2_hz, due: u64::MAX, ..Self::default() }
     }
 
     pub fn set_clock(&mut self, bus_divider: u64, pclk2_hz: u32) {
@@ -106,11 +99,7 @@ impl Adc {
     }
 
     fn length(&self) -> u32 {
-        if self.cr1 >> 8 & 1 != 0 {
-            (self.sqr[0] >> 20 & 0xf) + 1
-        } else {
-            1
-        }
+        if self.cr1 >> 8 & 1 != 0 { (self.sqr[0] >> 20 & 0xf) + 1 } else { 1 }
     }
 
     /// Conversion time: sample time plus one ADC clock per bit (13.5).
@@ -255,11 +244,7 @@ impl Adc {
 
     /// Writes the common control register, of which each converter has the value.
     pub fn write_common_control(&mut self, value: u32) -> Answer<()> {
-        only(
-            value,
-            0x0003_0000 | TSVREFE | VBATE,
-            "ADC_CCR multi-ADC modes",
-        )?;
+        only(value, 0x0003_0000 | TSVREFE | VBATE, "ADC_CCR multi-ADC modes")?;
         self.ccr = value;
         self.bad_channel = self.check_channels().err();
         Ok(())
@@ -288,21 +273,13 @@ impl Adc {
         match offset {
             0x00 => self.sr &= value,
             0x04 => {
-                only(
-                    value,
-                    0x0700_0120,
-                    "ADC_CR1 beyond RES, SCAN, EOCIE and OVRIE",
-                )?;
+                only(value, 0x0700_0120, "ADC_CR1 beyond RES, SCAN, EOCIE and OVRIE")?;
                 self.cr1 = value;
             }
             0x08 => self.write_cr2(value, now)?,
             0x0c | 0x10 => {
                 // ten channels in SMPR2, nine above them in SMPR1
-                let allowed = if offset == 0x0c {
-                    0x07ff_ffff
-                } else {
-                    0x3fff_ffff
-                };
+                let allowed = if offset == 0x0c { 0x07ff_ffff } else { 0x3fff_ffff };
                 only(value, allowed, "ADC_SMPR reserved bits")?;
                 self.smpr[(offset as usize - 0x0c) / 4] = value;
             }
@@ -311,11 +288,7 @@ impl Adc {
                 self.limits[(offset as usize - 0x24) / 4] = value;
             }
             0x2c..=0x34 => {
-                let allowed = if offset == 0x2c {
-                    0x00ff_ffff
-                } else {
-                    0x3fff_ffff
-                };
+                let allowed = if offset == 0x2c { 0x00ff_ffff } else { 0x3fff_ffff };
                 only(value, allowed, "ADC_SQR reserved bits")?;
                 self.sqr[(offset as usize - 0x2c) / 4] = value;
             }
@@ -329,19 +302,13 @@ impl Adc {
     fn write_cr2(&mut self, value: u32, now: u64) -> Answer<()> {
         match self.unit {
             Unit::Adc1 => only(value, 0x7f00_0f03, "ADC_CR2 injected channels")?,
-            Unit::Adc2 => only(
-                value,
-                0x4000_0c03,
-                "ADC2_CR2 injected channels, triggers and DMA",
-            )?,
+            Unit::Adc2 => only(value, 0x4000_0c03, "ADC2_CR2 injected channels, triggers and DMA")?,
         }
         if value >> 28 & 3 > 1 {
             return Err(Refusal::NotModelled("ADC_CR2.EXTEN = falling edge"));
         }
         if value >> 28 & 3 == 1 && !matches!(value >> 24 & 0xf, 6 | 8) {
-            return Err(Refusal::NotModelled(
-                "ADC_CR2.EXTSEL other than TIM2_TRGO and TIM3_TRGO",
-            ));
+            return Err(Refusal::NotModelled("ADC_CR2.EXTSEL other than TIM2_TRGO and TIM3_TRGO"));
         }
         if value & ADON != 0 {
             let hz = self.pclk2_hz / (2 * ((self.ccr >> 16 & 3) + 1));
@@ -427,18 +394,12 @@ mod tests {
         adc.start(0).unwrap();
         assert_eq!((adc.channel(), adc.due), (7, 120));
         adc.finish(1);
-        assert_eq!(
-            (adc.read(0).unwrap() & EOC, adc.channel(), adc.due),
-            (0, 11, 240)
-        );
+        assert_eq!((adc.read(0).unwrap() & EOC, adc.channel(), adc.due), (0, 11, 240));
         adc.start(200).unwrap();
         assert_eq!(adc.due, 240, "a trigger during a sequence is lost");
         adc.finish(2);
         assert_eq!((adc.read(0).unwrap() & EOC, adc.due), (EOC, u64::MAX));
-        assert_eq!(
-            (adc.read(0x4c).unwrap(), adc.read(0).unwrap() & EOC),
-            (2, 0)
-        );
+        assert_eq!((adc.read(0x4c).unwrap(), adc.read(0).unwrap() & EOC), (2, 0));
     }
 
     #[test]

@@ -47,10 +47,7 @@ pub(super) fn check<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32) {
         14 => Reg::LR as i32,
         n => Reg::R0 as i32 + n as i32,
     };
-    if cpu
-        .reg_read(register)
-        .is_ok_and(|value| value as u32 & mask != 0)
-    {
+    if cpu.reg_read(register).is_ok_and(|value| value as u32 & mask != 0) {
         let state = cpu.get_data_mut();
         refund(state, address);
         state.raise(UNALIGNED);
@@ -86,11 +83,7 @@ mod tests {
             (0xf8d4, 0x0002, None),         // ldr.w r0, [r4, #2]
             (0x6820, 0, None),              // ldr r0, [r4]
         ] {
-            assert_eq!(
-                aligned_base(first, second),
-                base,
-                "{first:04x} {second:04x}"
-            );
+            assert_eq!(aligned_base(first, second), base, "{first:04x} {second:04x}");
         }
     }
 }

@@ -24,10 +24,7 @@ pub fn build(fingers: usize) -> anyhow::Result<PathBuf> {
             "cargo cannot be started to build the image; install Rust by rustup, or give an image by --elf",
         )?;
     if !built.status.success() {
-        bail!(
-            "the image could not be built: `cargo xtask firmware` ended with {}",
-            built.status
-        );
+        bail!("the image could not be built: `cargo xtask firmware` ended with {}", built.status);
     }
     let path = String::from_utf8(built.stdout).context("the path of the image is no text")?;
     Ok(PathBuf::from(path.trim()))

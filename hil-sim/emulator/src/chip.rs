@@ -175,10 +175,7 @@ impl<W: Wiring> Chip<W> {
     }
 
     pub fn output(&self, port: u8, bit: u8) -> Option<bool> {
-        self.ports
-            .get(usize::from(port))
-            .filter(|_| bit < 16)
-            .and_then(|p| p.output(bit))
+        self.ports.get(usize::from(port)).filter(|_| bit < 16).and_then(|p| p.output(bit))
     }
 
     /// Adds cycles that the CPU slept.
@@ -204,11 +201,7 @@ impl<W: Wiring> Chip<W> {
             .min(self.ppb.systick_due)
             .min(self.iwdg.due)
             .min(self.wwdg.due)
-            .min(if self.dma_request_possible {
-                now
-            } else {
-                u64::MAX
-            });
+            .min(if self.dma_request_possible { now } else { u64::MAX });
         self.refresh_next_of_streams();
     }
 
@@ -283,8 +276,7 @@ impl<W: Wiring> Chip<W> {
             self.serve_usart_dma(at, memory);
         }
         if self.usart.rx_due <= at {
-            self.usart
-                .receive(self.ports[0].mode(3) == Mode::Alternate(7));
+            self.usart.receive(self.ports[0].mode(3) == Mode::Alternate(7));
             self.serve_usart_dma(at, memory);
         }
     }
@@ -390,9 +382,7 @@ impl<W: Wiring> Chip<W> {
     /// Tells the timers whether ADC1 or another timer uses their trigger outputs.
     fn connect_triggers(&mut self, now: u64) {
         let of_adc = self.adcs[ADC1].trigger();
-        let starts_timers = [TIM3, TIM4]
-            .iter()
-            .any(|slave| self.tims[*slave].is_started_by_tim2());
+        let starts_timers = [TIM3, TIM4].iter().any(|slave| self.tims[*slave].is_started_by_tim2());
         self.tims[TIM2].use_trigger(of_adc == Some(Trigger::Tim2) || starts_timers, now);
         self.tims[TIM3].use_trigger(of_adc == Some(Trigger::Tim3), now);
     }
@@ -410,10 +400,7 @@ impl<W: Wiring> Chip<W> {
         let Some(pins) = self.ports.get(usize::from(port)).filter(|_| bit < 16) else {
             return LegState::Off;
         };
-        let constant = |high: bool| LegState::Duty {
-            high: high.into(),
-            period: 1,
-        };
+        let constant = |high: bool| LegState::Duty { high: high.into(), period: 1 };
         match pins.mode(bit) {
             Mode::Alternate(function) => {
                 let of_pin = |pin: &&(u8, u8, u8, usize, usize)| {

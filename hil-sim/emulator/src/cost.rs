@@ -81,17 +81,13 @@ pub(crate) struct CostTable {
 
 impl CostTable {
     pub fn new(flash_bytes: usize) -> Self {
-        Self {
-            blocks: vec![Block::default(); flash_bytes / 2],
-        }
+        Self { blocks: vec![Block::default(); flash_bytes / 2] }
     }
 
     /// The block last executed at an address in the flash.
     #[inline]
     pub fn known(&self, address: u32) -> Option<Block> {
-        self.blocks
-            .get((address.wrapping_sub(FLASH_BASE) / 2) as usize)
-            .copied()
+        self.blocks.get((address.wrapping_sub(FLASH_BASE) / 2) as usize).copied()
     }
 
     /// The block of `bytes` bytes at `offset` into the flash; `None` outside it.
@@ -107,10 +103,7 @@ impl CostTable {
 
 /// Decodes straight-line code at an address.
 pub(crate) fn decode(address: u32, code: &[u8]) -> Block {
-    let mut block = Block {
-        bytes: code.len() as u16,
-        ..Block::default()
-    };
+    let mut block = Block { bytes: code.len() as u16, ..Block::default() };
     let mut conditional = false;
     for (at, instruction, cycles) in timed(code) {
         block.cycles += cycles;
@@ -237,16 +230,8 @@ mod tests {
     #[test]
     fn loads_go_through_the_pipeline_behind_independent_loads() {
         assert_eq!(cycles(&[0x6808, 0x6811]), 3, "ldr r0, [r1]; ldr r1, [r2]");
-        assert_eq!(
-            cycles(&[0x5888, 0x6158]),
-            3,
-            "ldr r0, [r1, r2]; str r0, [r3, #20]"
-        );
-        assert_eq!(
-            cycles(&[0x5888, 0x5099]),
-            3,
-            "ldr r0, [r1, r2]; str r1, [r3, r2]"
-        );
+        assert_eq!(cycles(&[0x5888, 0x6158]), 3, "ldr r0, [r1, r2]; str r0, [r3, #20]");
+        assert_eq!(cycles(&[0x5888, 0x5099]), 3, "ldr r0, [r1, r2]; str r1, [r3, r2]");
         assert_eq!(
             cycles(&[0x5948, 0x6811, 0x685a]),
             4,
@@ -292,11 +277,7 @@ mod tests {
         assert_eq!(exclusive(&[LDRD]), Exclusive::Unchanged);
         assert_eq!(exclusive(&[LDREX]), Exclusive::Set);
         assert_eq!(exclusive(&[LDREX, STREX]), Exclusive::Clear);
-        assert_eq!(
-            exclusive(&[LDREX, [0xf3bf, 0x8f2f]]),
-            Exclusive::Clear,
-            "clrex"
-        );
+        assert_eq!(exclusive(&[LDREX, [0xf3bf, 0x8f2f]]), Exclusive::Clear, "clrex");
         let it_eq_nop = [0xbf08, 0xbf00];
         assert_eq!(exclusive(&[LDREX, it_eq_nop, STREX]), Exclusive::Set);
     }

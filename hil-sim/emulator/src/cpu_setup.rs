@@ -31,10 +31,7 @@ pub(super) fn create_cpu<W: Wiring + 'static>(
     let mut cpu = Unicorn::new_with_data(Arch::ARM, Mode::THUMB | Mode::MCLASS, state)?;
     cpu.ctl_set_cpu_model(ArmCpuModel::CORTEX_M4 as i32)?;
     let settings_are_writable = Flash::has_settings(flash);
-    let (from, to) = (
-        (SETTINGS.start - FLASH_BASE) as usize,
-        (SETTINGS.end - FLASH_BASE) as usize,
-    );
+    let (from, to) = ((SETTINGS.start - FLASH_BASE) as usize, (SETTINGS.end - FLASH_BASE) as usize);
     // BOOT0 is low: the flash also appears at 0 (RM0390 2.4)
     for base in [0, FLASH_BASE] {
         // Each part is a whole number of pages, and not empty.
@@ -52,25 +49,21 @@ pub(super) fn create_cpu<W: Wiring + 'static>(
             cpu.mmio_map(
                 u64::from(base) + from as u64,
                 (to - from) as u64,
-                Some(
-                    |cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize| {
-                        u64::from(state::on_flash_read(
-                            cpu,
-                            SETTINGS.start + offset as u32,
-                            bytes as u8,
-                        ))
-                    },
-                ),
-                Some(
-                    |cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize, value: u64| {
-                        state::on_flash_write(
-                            cpu,
-                            SETTINGS.start + offset as u32,
-                            bytes as u8,
-                            value as u32,
-                        );
-                    },
-                ),
+                Some(|cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize| {
+                    u64::from(state::on_flash_read(
+                        cpu,
+                        SETTINGS.start + offset as u32,
+                        bytes as u8,
+                    ))
+                }),
+                Some(|cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize, value: u64| {
+                    state::on_flash_write(
+                        cpu,
+                        SETTINGS.start + offset as u32,
+                        bytes as u8,
+                        value as u32,
+                    );
+                }),
             )?;
         }
     }
@@ -79,21 +72,15 @@ pub(super) fn create_cpu<W: Wiring + 'static>(
         cpu.mmio_map(
             base,
             size,
-            Some(
-                move |cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize| {
-                    u64::from(state::on_read(cpu, (base + offset) as u32, bytes as u8))
-                },
-            ),
-            Some(
-                move |cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize, value: u64| {
-                    state::on_write(cpu, (base + offset) as u32, bytes as u8, value as u32);
-                },
-            ),
+            Some(move |cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize| {
+                u64::from(state::on_read(cpu, (base + offset) as u32, bytes as u8))
+            }),
+            Some(move |cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize, value: u64| {
+                state::on_write(cpu, (base + offset) as u32, bytes as u8, value as u32);
+            }),
         )?;
     }
-    cpu.add_block_hook(1, 0, |cpu, address, bytes| {
-        state::on_block(cpu, address as u32, bytes)
-    })?;
+    cpu.add_block_hook(1, 0, |cpu, address, bytes| state::on_block(cpu, address as u32, bytes))?;
     cpu.add_intr_hook(|cpu, number| {
         cpu.get_data_mut().exit = Exit::Exception(number);
         if let Err(error) = cpu.emu_stop() {

@@ -75,13 +75,9 @@ impl<W: Wiring + 'static> Machine<W> {
     /// The CPU emulation failed.
     pub fn continue_behind_breakpoint(&mut self, r0: Option<u32>) -> Result<(), Stop> {
         let next = get(&self.cpu, Reg::PC) + BKPT_BYTES;
-        self.cpu
-            .reg_write(Reg::PC, u64::from(next | 1))
-            .map_err(emulator)?;
+        self.cpu.reg_write(Reg::PC, u64::from(next | 1)).map_err(emulator)?;
         if let Some(value) = r0 {
-            self.cpu
-                .reg_write(Reg::R0, value.into())
-                .map_err(emulator)?;
+            self.cpu.reg_write(Reg::R0, value.into()).map_err(emulator)?;
         }
         self.continue_by_debugger();
         Ok(())

@@ -17,10 +17,7 @@ const CT: u32 = 1 << 19;
 /// Position of each stream's flags in LISR and HISR (9.5.1).
 const FLAG_SHIFT: [u32; 4] = [0, 6, 16, 22];
 /// Interrupt number of each stream.
-const IRQ: [[usize; 8]; 2] = [
-    [11, 12, 13, 14, 15, 16, 17, 47],
-    [56, 57, 58, 59, 60, 68, 69, 70],
-];
+const IRQ: [[usize; 8]; 2] = [[11, 12, 13, 14, 15, 16, 17, 47], [56, 57, 58, 59, 60, 68, 69, 70]];
 
 /// A request line that a modelled peripheral has: controller, stream, channel (the request mapping of 9.3.4), and
 /// the data register that the stream's PAR must hold.
@@ -40,19 +37,11 @@ const fn route(
     register: u32,
     to_memory: bool,
 ) -> Route {
-    Route {
-        controller,
-        stream,
-        channel,
-        register,
-        to_memory,
-    }
+    Route { controller, stream, channel, register, to_memory }
 }
 
-pub(crate) const ADC1: [Route; 2] = [
-    route(2, 0, 0, 0x4001_204c, true),
-    route(2, 4, 0, 0x4001_204c, true),
-];
+pub(crate) const ADC1: [Route; 2] =
+    [route(2, 0, 0, 0x4001_204c, true), route(2, 4, 0, 0x4001_204c, true)];
 pub(crate) const USART2_TX: [Route; 1] = [route(1, 6, 4, 0x4000_4404, false)];
 pub(crate) const USART2_RX: [Route; 1] = [route(1, 5, 4, 0x4000_4404, true)];
 
@@ -87,13 +76,7 @@ pub(crate) struct Dma {
 impl Dma {
     /// `number` is 1 or 2.
     pub fn new(number: usize) -> Self {
-        Self {
-            number,
-            streams: [Stream {
-                fcr: 0x21,
-                ..Stream::default()
-            }; 8],
-        }
+        Self { number, streams: [Stream { fcr: 0x21, ..Stream::default() }; 8] }
     }
 
     /// Interrupt requests of one stream: `(interrupt, level)`.
@@ -117,11 +100,7 @@ impl Dma {
         }
         let s = &mut self.streams[route.stream];
         let bytes = 1u8 << (s.cr >> 11 & 3);
-        let index = if s.cr & MINC != 0 {
-            s.items - s.left
-        } else {
-            0
-        };
+        let index = if s.cr & MINC != 0 { s.items - s.left } else { 0 };
         let address = s.m[(s.cr >> 19 & 1) as usize].wrapping_add(index * u32::from(bytes));
         let moved = if route.to_memory {
             memory.store(address, bytes, value).map(|()| value)
@@ -161,11 +140,8 @@ impl Dma {
     }
 
     pub fn read(&self, offset: u32) -> Answer<u32> {
-        let flags = |first: usize| {
-            (0..4)
-                .map(|i| self.streams[first + i].flags << FLAG_SHIFT[i])
-                .sum()
-        };
+        let flags =
+            |first: usize| (0..4).map(|i| self.streams[first + i].flags << FLAG_SHIFT[i]).sum();
         match offset {
             0x00 => return Ok(flags(0)),
             0x04 => return Ok(flags(4)),
@@ -187,11 +163,7 @@ impl Dma {
     fn stream_register(offset: u32) -> Answer<(usize, u32)> {
         let from_first = offset.wrapping_sub(0x10);
         let stream = (from_first / 0x18) as usize;
-        if stream < 8 {
-            Ok((stream, from_first % 0x18))
-        } else {
-            Err(Refusal::Offset)
-        }
+        if stream < 8 { Ok((stream, from_first % 0x18)) } else { Err(Refusal::Offset) }
     }
 
     pub fn write(&mut self, offset: u32, value: u32) -> Answer<()> {
@@ -229,9 +201,7 @@ impl Dma {
                 s.fcr = value & 0x87 | 0x20;
             }
             _ => {
-                return Err(Refusal::NotModelled(
-                    "DMA SxNDTR or SxPAR of an enabled stream",
-                ));
+                return Err(Refusal::NotModelled("DMA SxNDTR or SxPAR of an enabled stream"));
             }
         }
         Ok(())
@@ -253,11 +223,7 @@ impl Stream {
 
     fn write_cr(&mut self, value: u32, number: usize, stream: usize) -> Answer<()> {
         only(value, 0x0fef_ffff, "DMA SxCR reserved bits")?;
-        only(
-            value & 1 << 5,
-            0,
-            "DMA SxCR.PFCTRL (peripheral flow controller)",
-        )?;
+        only(value & 1 << 5, 0, "DMA SxCR.PFCTRL (peripheral flow controller)")?;
         only(value & 1 << 9, 0, "DMA SxCR.PINC")?;
         only(value & 0x8000, 0, "DMA SxCR.PINCOS")?;
         if self.cr & EN != 0 {
@@ -266,11 +232,7 @@ impl Stream {
                 self.flags |= TCIF; // a stream that software stops reports the end (chapter 9, stream disable)
                 return Ok(());
             }
-            only(
-                (value ^ self.cr) & !0x1e,
-                0,
-                "DMA SxCR configuration of an enabled stream",
-            )?;
+            only((value ^ self.cr) & !0x1e, 0, "DMA SxCR configuration of an enabled stream")?;
             self.cr = value;
             return Ok(());
         }
@@ -288,24 +250,18 @@ impl Stream {
         let route = known
             .iter()
             .find(|r| (r.controller, r.stream, r.channel) == (number, stream, channel))
-            .ok_or(Refusal::NotModelled(
-                "DMA SxCR.CHSEL: a request of a peripheral that",
-            ))?;
+            .ok_or(Refusal::NotModelled("DMA SxCR.CHSEL: a request of a peripheral that"))?;
         if self.par != route.register {
             return Err(Refusal::NotModelled(
                 "DMA SxPAR: a register other than the requester's data register",
             ));
         }
         if value >> 6 & 3 != u32::from(!route.to_memory) {
-            return Err(Refusal::NotModelled(
-                "DMA SxCR.DIR against the requester's direction",
-            ));
+            return Err(Refusal::NotModelled("DMA SxCR.DIR against the requester's direction"));
         }
         let direct = self.fcr & 4 == 0;
         if !direct && value >> 11 & 3 != value >> 13 & 3 {
-            return Err(Refusal::NotModelled(
-                "DMA SxCR.MSIZE other than PSIZE (FIFO packing)",
-            ));
+            return Err(Refusal::NotModelled("DMA SxCR.MSIZE other than PSIZE (FIFO packing)"));
         }
         if value >> 11 & 3 == 3 {
             return Err(Refusal::NotModelled("DMA SxCR.PSIZE = reserved"));
@@ -335,10 +291,7 @@ mod tests {
         fn store(&mut self, address: u32, bytes: u8, value: u32) -> Result<(), NoMemory> {
             let at = address.checked_sub(0x2000_0000).ok_or(NoMemory)? as usize;
             let n = usize::from(bytes);
-            self.0
-                .get_mut(at..at + n)
-                .ok_or(NoMemory)?
-                .copy_from_slice(&value.to_le_bytes()[..n]);
+            self.0.get_mut(at..at + n).ok_or(NoMemory)?.copy_from_slice(&value.to_le_bytes()[..n]);
             Ok(())
         }
     }
@@ -350,8 +303,7 @@ mod tests {
         dma.write(0x1c, 0x2000_0000).unwrap();
         dma.write(0x20, 0x2000_0008).unwrap();
         dma.write(0x14, items).unwrap();
-        dma.write(0x10, 1 << 13 | 1 << 11 | MINC | 0x18 | EN | extra)
-            .unwrap();
+        dma.write(0x10, 1 << 13 | 1 << 11 | MINC | 0x18 | EN | extra).unwrap();
         dma
     }
 
@@ -370,11 +322,7 @@ mod tests {
         }
         assert_eq!(dma.read(0).unwrap(), TCIF);
         assert_eq!(ram.0[..8], [5, 0, 2, 0, 3, 0, 4, 0]);
-        assert_eq!(
-            dma.read(0x14).unwrap(),
-            3,
-            "NDTR reloaded, one item of the new round done"
-        );
+        assert_eq!(dma.read(0x14).unwrap(), 3, "NDTR reloaded, one item of the new round done");
     }
 
     #[test]
@@ -385,24 +333,14 @@ mod tests {
         }
         assert_eq!(ram.0[..10], [1, 0, 2, 0, 0, 0, 0, 0, 3, 0]);
         assert_eq!(dma.read(0x10).unwrap() & CT, CT);
-        dma.write(0x1c, 0x2000_0004)
-            .expect("the idle buffer may move");
-        assert!(
-            dma.write(0x20, 0x2000_0004).is_err(),
-            "the one in use may not"
-        );
+        dma.write(0x1c, 0x2000_0004).expect("the idle buffer may move");
+        assert!(dma.write(0x20, 0x2000_0004).is_err(), "the one in use may not");
     }
 
     #[test]
     fn a_normal_stream_ends_and_an_address_without_memory_is_an_error() {
         let (mut dma, mut ram) = (adc_stream(0, 1), Buffer([0; 16]));
-        assert_eq!(
-            dma.serve(&ADC1[0], 9, &mut ram),
-            Served::Item {
-                value: 9,
-                last: true
-            }
-        );
+        assert_eq!(dma.serve(&ADC1[0], 9, &mut ram), Served::Item { value: 9, last: true });
         assert_eq!(dma.serve(&ADC1[0], 9, &mut ram), Served::No);
         let mut dma = adc_stream(0, 1);
         dma.write(0x10, 0).unwrap();
@@ -410,10 +348,7 @@ mod tests {
         dma.write(0x1c, 0x1000_0000).unwrap();
         dma.write(0x10, 1 << 13 | 1 << 11 | 0x1c | EN).unwrap();
         assert_eq!(dma.serve(&ADC1[0], 9, &mut ram), Served::No);
-        assert_eq!(
-            (dma.read(0).unwrap(), dma.read(0x10).unwrap() & EN),
-            (TEIF, 0)
-        );
+        assert_eq!((dma.read(0).unwrap(), dma.read(0x10).unwrap() & EN), (TEIF, 0));
         assert_eq!(dma.request_line(0), (56, true));
     }
 
@@ -451,11 +386,7 @@ mod tests {
             dma.write(0x08, cleared).unwrap();
             let misused = cleared != HTIF;
             let answer = dma.write(0x10, cr);
-            assert_eq!(
-                matches!(answer, Err(Refusal::Misuse(_))),
-                misused,
-                "{cleared:#x}"
-            );
+            assert_eq!(matches!(answer, Err(Refusal::Misuse(_))), misused, "{cleared:#x}");
         }
     }
 
@@ -463,9 +394,6 @@ mod tests {
     fn requests_of_unmodelled_peripherals_are_refused() {
         let mut dma = Dma::new(2);
         dma.write(0x14, 1).unwrap();
-        assert!(
-            matches!(dma.write(0x10, 3 << 25 | EN), Err(Refusal::NotModelled(_))),
-            "SPI1_RX"
-        );
+        assert!(matches!(dma.write(0x10, 3 << 25 | EN), Err(Refusal::NotModelled(_))), "SPI1_RX");
     }
 }

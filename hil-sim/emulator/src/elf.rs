@@ -103,10 +103,7 @@ impl Firmware {
             let start = address.wrapping_sub(FLASH_BASE) as usize;
             flash
                 .get_mut(start..start.saturating_add(contents.len()))
-                .ok_or(ImageError::Segment {
-                    address,
-                    end: u64::from(address) + u64::from(size),
-                })?
+                .ok_or(ImageError::Segment { address, end: u64::from(address) + u64::from(size) })?
                 .copy_from_slice(contents);
             loaded = true;
         }
@@ -145,12 +142,7 @@ impl Firmware {
         }
         functions.sort_by_key(|f| f.start);
         symbols.sort();
-        Ok(Self {
-            flash,
-            functions,
-            symbols,
-            initial_sp,
-        })
+        Ok(Self { flash, functions, symbols, initial_sp })
     }
 
     /// The whole flash; 0xff outside the image's contents.
@@ -165,21 +157,14 @@ impl Firmware {
 
     /// Value of a linker or object symbol by its name in the file.
     pub fn symbol(&self, name: &str) -> Option<u32> {
-        let at = self
-            .symbols
-            .binary_search_by(|(n, _)| n.as_str().cmp(name))
-            .ok()?;
+        let at = self.symbols.binary_search_by(|(n, _)| n.as_str().cmp(name)).ok()?;
         self.symbols.get(at).map(|(_, address)| *address)
     }
 
     /// Name of the function with the instruction at `pc`; `?` if no symbol covers it.
     pub fn function_at(&self, pc: u32) -> &str {
         let after = self.functions.partition_point(|f| f.start <= pc);
-        self.functions[..after]
-            .iter()
-            .rev()
-            .find(|f| pc < f.end)
-            .map_or("?", |f| f.name.as_str())
+        self.functions[..after].iter().rev().find(|f| pc < f.end).map_or("?", |f| f.name.as_str())
     }
 }
 
@@ -190,11 +175,7 @@ fn check_header(bytes: &[u8]) -> Result<(), ImageError> {
     }
     let little = elf::DataEncoding(bytes[5]) == elf::ELFDATA2LSB;
     let machine = [bytes[18], bytes[19]];
-    let found = if little {
-        u16::from_le_bytes(machine)
-    } else {
-        u16::from_be_bytes(machine)
-    };
+    let found = if little { u16::from_le_bytes(machine) } else { u16::from_be_bytes(machine) };
     if elf::Machine(found) != elf::EM_ARM {
         let name = match elf::Machine(found) {
             elf::EM_386 => "x86",
@@ -209,12 +190,6 @@ fn check_header(bytes: &[u8]) -> Result<(), ImageError> {
     }
     let header: &elf::FileHeader32<Endianness> =
         elf::FileHeader32::parse(bytes).map_err(|e| ImageError::NotElf(e.to_string()))?;
-    header
-        .endian()
-        .map_err(|e| ImageError::NotElf(e.to_string()))?;
-    if !little {
-        Err(ImageError::NotElf("big-endian ARM".into()))
-    } else {
-        Ok(())
-    }
+    header.endian().map_err(|e| ImageError::NotElf(e.to_string()))?;
+    if !little { Err(ImageError::NotElf("big-endian ARM".into())) } else { Ok(()) }
 }

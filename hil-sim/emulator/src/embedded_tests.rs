@@ -175,9 +175,7 @@ impl EmbeddedTest {
             let next = self.answer(machine, &mut command_line, print)?;
             let halt_ends = machine.ps_at(machine.now()) + HALT_PS;
             if let Some(halted) = machine.run_until_halted(halt_ends).map_err(stopped)? {
-                return Err(format!(
-                    "{halted:?} while a semihosting call halted the core"
-                ));
+                return Err(format!("{halted:?} while a semihosting call halted the core"));
             }
             match next {
                 Next::Continue(r0) => machine.continue_behind_breakpoint(r0).map_err(stopped)?,
@@ -210,9 +208,7 @@ impl EmbeddedTest {
         };
         Ok(match operation {
             GET_CMDLINE => {
-                let line = command_line
-                    .take()
-                    .ok_or("it asked for its command line twice")?;
+                let line = command_line.take().ok_or("it asked for its command line twice")?;
                 let block = words(2)?;
                 let mut line = line.into_bytes();
                 line.push(0);
@@ -244,9 +240,7 @@ impl EmbeddedTest {
                 Next::Continue(Some(CONSOLE))
             }
             OPEN => {
-                return Err(bad(
-                    "only the console can be opened for output, by the words at",
-                ));
+                return Err(bad("only the console can be opened for output, by the words at"));
             }
             WRITE => {
                 let block = words(3)?;

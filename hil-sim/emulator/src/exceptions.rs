@@ -36,8 +36,7 @@ const FRAME: u32 = 0x20;
 const FLOAT_FRAME: u32 = 0x68;
 
 fn set<W: Wiring>(cpu: &mut Cpu<'_, W>, register: Reg, value: u32) -> Result<(), FrameError> {
-    cpu.reg_write(register, u64::from(value))
-        .map_err(|_| FrameError::Emulator)
+    cpu.reg_write(register, u64::from(value)).map_err(|_| FrameError::Emulator)
 }
 
 /// Writes IPSR and the flags. The emulation adopts the new mode at the second write.
@@ -120,9 +119,7 @@ fn start_handler<W: Wiring>(
     state.exceptions += 1;
     state.refill = 0;
     state.event_register = true;
-    state
-        .profile
-        .enter(exception, now.saturating_sub(pended_at), instructions, now);
+    state.profile.enter(exception, now.saturating_sub(pended_at), instructions, now);
     let vector = vector(cpu, vector_at)?;
     set(cpu, Reg::PC, vector | 1)?;
     if vector & 1 == 0 {
@@ -156,9 +153,7 @@ fn vector<W: Wiring>(cpu: &Cpu<'_, W>, address: u32) -> Result<u32, FrameError> 
     let mut word = [0; 4];
     match flash.get(offset..offset + 4) {
         Some(bytes) if address < RAM_BASE => word.copy_from_slice(bytes),
-        _ => cpu
-            .mem_read(u64::from(address), &mut word)
-            .map_err(|_| FrameError::Stack(address))?,
+        _ => cpu.mem_read(u64::from(address), &mut word).map_err(|_| FrameError::Stack(address))?,
     }
     Ok(u32::from_le_bytes(word))
 }
@@ -169,10 +164,7 @@ pub(crate) fn leave<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32) -> Result<
     let running = (xpsr & 0x1ff) as usize;
     let state = cpu.get_data_mut();
     let (now, instructions) = (state.cycles, state.instructions);
-    let valid = matches!(
-        exc_return | NO_FLOAT,
-        0xffff_fff1 | 0xffff_fff9 | 0xffff_fffd
-    );
+    let valid = matches!(exc_return | NO_FLOAT, 0xffff_fff1 | 0xffff_fff9 | 0xffff_fffd);
     let nvic = &mut state.chip().nvic;
     let to_thread = exc_return & 8 != 0;
     let valid = valid && nvic.is_active(running) && !(to_thread && nvic.active_count() > 1);
@@ -227,8 +219,7 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
     let float = exc_return & NO_FLOAT == 0;
     let size = if float { FLOAT_FRAME } else { FRAME };
     let mut bytes = [0; FLOAT_FRAME as usize];
-    cpu.mem_read(u64::from(sp), &mut bytes[..size as usize])
-        .map_err(|_| FrameError::Stack(sp))?;
+    cpu.mem_read(u64::from(sp), &mut bytes[..size as usize]).map_err(|_| FrameError::Stack(sp))?;
     let (words, _) = bytes.as_chunks();
     let word = |at: usize| u32::from_le_bytes(words[at]);
     let stacked = word(7);
@@ -243,17 +234,12 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
     if float {
         for (i, register) in float_registers().enumerate() {
             let pair = u64::from(word(8 + 2 * i)) | u64::from(word(9 + 2 * i)) << 32;
-            cpu.reg_write(register, pair)
-                .map_err(|_| FrameError::Emulator)?;
+            cpu.reg_write(register, pair).map_err(|_| FrameError::Emulator)?;
         }
         set(cpu, Reg::FPSCR, word(24))?;
     }
     clear_exclusive_monitor(cpu)?;
-    set(
-        cpu,
-        Reg::SP,
-        sp.wrapping_add(size) | (stacked >> 9 & 1) << 2,
-    )?;
+    set(cpu, Reg::SP, sp.wrapping_add(size) | (stacked >> 9 & 1) << 2)?;
     let control = get(cpu, Reg::CONTROL);
     set(cpu, Reg::CONTROL, control & !4 | u32::from(float) << 2)?;
     set_xpsr(cpu, stacked & !(1 << 9) | 1 << 24)?;

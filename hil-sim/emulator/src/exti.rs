@@ -2,15 +2,8 @@
 use super::stop::{Answer, Refusal, only};
 
 /// Interrupt number of each group of lines, and the lines.
-const GROUPS: [(usize, u32); 7] = [
-    (6, 1),
-    (7, 2),
-    (8, 4),
-    (9, 8),
-    (10, 0x10),
-    (23, 0x3e0),
-    (40, 0xfc00),
-];
+const GROUPS: [(usize, u32); 7] =
+    [(6, 1), (7, 2), (8, 4), (9, 8), (10, 0x10), (23, 0x3e0), (40, 0xfc00)];
 
 /// Numbers of the bits that are set in a mask of the lines.
 pub(crate) fn lines(mut mask: u32) -> impl Iterator<Item = u8> {
@@ -64,9 +57,7 @@ impl Exti {
     /// Interrupt requests as `(interrupt, level)`.
     pub fn requests(&self) -> impl Iterator<Item = (usize, bool)> {
         let raised = self.pr & self.imr;
-        GROUPS
-            .iter()
-            .map(move |(irq, lines)| (*irq, raised & lines != 0))
+        GROUPS.iter().map(move |(irq, lines)| (*irq, raised & lines != 0))
     }
 
     pub fn read(&self, offset: u32) -> Answer<u32> {
@@ -136,16 +127,10 @@ mod tests {
         exti.write(0x00, 1 << 5).unwrap();
         exti.write(0x0c, 1 << 5).unwrap();
         exti.set_level(5, true);
-        assert!(
-            exti.requests().all(|(_, level)| !level),
-            "a rising edge is not selected"
-        );
+        assert!(exti.requests().all(|(_, level)| !level), "a rising edge is not selected");
         exti.set_level(5, false);
         assert_eq!(
-            exti.requests()
-                .filter(|r| r.1)
-                .map(|r| r.0)
-                .collect::<Vec<_>>(),
+            exti.requests().filter(|r| r.1).map(|r| r.0).collect::<Vec<_>>(),
             [23],
             "EXTI9_5"
         );

@@ -20,12 +20,7 @@ pub(super) struct Fault {
 
 impl Fault {
     pub(super) const fn new(exception: usize, status: u32, cause: &'static str) -> Self {
-        Self {
-            exception,
-            status,
-            address: None,
-            cause,
-        }
+        Self { exception, status, address: None, cause }
     }
 }
 
@@ -33,16 +28,10 @@ const fn usage(status: u32, cause: &'static str) -> Fault {
     Fault::new(exception::USAGE_FAULT, status, cause)
 }
 
-pub(super) const NO_MEMORY: Fault = Fault::new(
-    exception::BUS_FAULT,
-    1 << 8,
-    "instruction fetch where no memory is",
-);
-pub(super) const EXECUTE_NEVER: Fault = Fault::new(
-    exception::MEM_MANAGE,
-    1,
-    "instruction fetch from a region of devices",
-);
+pub(super) const NO_MEMORY: Fault =
+    Fault::new(exception::BUS_FAULT, 1 << 8, "instruction fetch where no memory is");
+pub(super) const EXECUTE_NEVER: Fault =
+    Fault::new(exception::MEM_MANAGE, 1, "instruction fetch from a region of devices");
 pub(super) const RESERVED_ADDRESS: Fault = Fault::new(
     exception::BUS_FAULT,
     1 << 10, // imprecise
@@ -141,11 +130,7 @@ impl<W: Wiring + 'static> Machine<W> {
         }
         let cause = match error {
             uc_error::FETCH_UNMAPPED | uc_error::FETCH_PROT => {
-                let fault = if never_executes(pc) {
-                    EXECUTE_NEVER
-                } else {
-                    NO_MEMORY
-                };
+                let fault = if never_executes(pc) { EXECUTE_NEVER } else { NO_MEMORY };
                 return self.fault(fault, pc);
             }
             uc_error::READ_UNMAPPED | uc_error::READ_PROT => "load where no memory is",
@@ -179,20 +164,13 @@ impl<W: Wiring + 'static> Machine<W> {
         }
         let own = chip.ppb.fault_enabled(fault.exception)
             && chip.nvic.priority_of(fault.exception) < level;
-        let taken = if own {
-            fault.exception
-        } else {
-            exception::HARD_FAULT
-        };
+        let taken = if own { fault.exception } else { exception::HARD_FAULT };
         if taken != fault.exception {
             chip.ppb.hfsr |= 1 << 30;
         }
         if chip.nvic.priority_of(taken) >= level {
-            let stop = Stop::Lockup {
-                cause: fault.cause.into(),
-                priority: level,
-                place: self.place(pc),
-            };
+            let stop =
+                Stop::Lockup { cause: fault.cause.into(), priority: level, place: self.place(pc) };
             self.lock_up(level, stop)?;
             return Ok(None);
         }

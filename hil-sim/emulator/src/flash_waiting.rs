@@ -232,11 +232,7 @@ mod tests {
         assert_eq!((901..908).map(|line| load(None, line)).sum::<u64>(), 7 * 5);
         assert_eq!(load(None, 900), 0, "eight lines");
         assert_eq!(load(None, 908) + load(None, 901), 10, "901 was the oldest");
-        assert_eq!(
-            load(Some(FIVE_AND_ALL | DCRST), 900),
-            0,
-            "not while it is on"
-        );
+        assert_eq!(load(Some(FIVE_AND_ALL | DCRST), 900), 0, "not while it is on");
         assert_eq!(load(Some(FIVE_AND_ALL & !DCEN | DCRST), 900), 5);
         assert_eq!(load(Some(FIVE_AND_ALL), 900), 5);
     }

@@ -35,12 +35,7 @@ impl Port {
             1 => (0x0000_0280, 0x0000_00c0, 0x0000_0100),
             _ => (0, 0, 0),
         };
-        Self {
-            moder,
-            ospeedr,
-            pupdr,
-            ..Self::default()
-        }
+        Self { moder, ospeedr, pupdr, ..Self::default() }
     }
 
     pub fn mode(&self, bit: u8) -> Mode {
@@ -67,9 +62,8 @@ impl Port {
 
     /// Masks of the bits driven as general-purpose outputs, and of their levels.
     pub fn outputs(&self) -> (u32, u32) {
-        let is_output = (0..16).fold(0, |mask, bit| {
-            mask | u32::from(self.moder >> (2 * bit) & 3 == 1) << bit
-        });
+        let is_output =
+            (0..16).fold(0, |mask, bit| mask | u32::from(self.moder >> (2 * bit) & 3 == 1) << bit);
         let driven = is_output & !(self.odr & self.otyper);
         (driven, self.odr & driven)
     }
@@ -89,10 +83,7 @@ impl Port {
             0x04 => self.otyper,
             0x08 => self.ospeedr,
             0x0c => self.pupdr,
-            INPUT_DATA => (0..16)
-                .filter(|b| self.level(*b, external(*b)))
-                .map(|b| 1 << b)
-                .sum(),
+            INPUT_DATA => (0..16).filter(|b| self.level(*b, external(*b))).map(|b| 1 << b).sum(),
             0x14 => self.odr,
             0x18 => 0,
             0x20 | 0x24 => self.afr[(offset as usize - 0x20) / 4],
@@ -142,11 +133,7 @@ mod tests {
         port.write(0x04, 1).unwrap();
         port.write(0x14, 1).unwrap();
         assert_eq!(port.output(0), None);
-        assert_eq!(
-            port.read(0x10, |_| Some(false)).unwrap() & 1,
-            0,
-            "the outside pulls it low"
-        );
+        assert_eq!(port.read(0x10, |_| Some(false)).unwrap() & 1, 0, "the outside pulls it low");
     }
 
     #[test]
@@ -167,10 +154,6 @@ mod tests {
         assert_eq!(port.read(0x10, |_| None).unwrap(), 0);
         port.write(0x0c, 0b01 << 10).unwrap();
         assert_eq!(port.read(0x10, |_| None).unwrap(), 1 << 5);
-        assert_eq!(
-            port.read(0x10, |_| Some(false)).unwrap(),
-            0,
-            "a driver is stronger"
-        );
+        assert_eq!(port.read(0x10, |_| Some(false)).unwrap(), 0, "a driver is stronger");
     }
 }

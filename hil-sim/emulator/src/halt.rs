@@ -68,10 +68,8 @@ impl<W: Wiring + 'static> Machine<W> {
         let end = with_chip(&mut self.cpu, |chip, service| {
             let mut now = start;
             loop {
-                let woken = chip
-                    .nvic
-                    .best()
-                    .is_some_and(|(_, priority)| priority < halt.threshold());
+                let woken =
+                    chip.nvic.best().is_some_and(|(_, priority)| priority < halt.threshold());
                 if woken || chip.reset.is_some() || now >= limit {
                     if matches!(halt, Halt::Asleep { .. }) {
                         chip.count_sleep(now - start);

@@ -61,13 +61,11 @@ pub enum InjectError {
 
 /// A mask of one bit of `bits`.
 fn one_bit(place: impl fmt::Display, bit: u8, bits: u32) -> Result<u32, InjectError> {
-    1u32.checked_shl(bit.into())
-        .filter(|mask| bits & mask != 0)
-        .ok_or_else(|| InjectError::NoBit {
-            place: place.to_string(),
-            bit,
-            bits,
-        })
+    1u32.checked_shl(bit.into()).filter(|mask| bits & mask != 0).ok_or_else(|| InjectError::NoBit {
+        place: place.to_string(),
+        bit,
+        bits,
+    })
 }
 
 /// The flipped value, unless it stops the clock of a device other than the window watchdog.
@@ -92,15 +90,11 @@ impl<W: Wiring + 'static> Machine<W> {
             .ok_or(InjectError::NotRam(address))? as usize;
         let mask = one_bit(format_args!("the byte at {address:#010x}"), bit, 0xff)? as u8;
         let mut byte = [0];
-        self.cpu
-            .mem_read(address.into(), &mut byte)
-            .map_err(emulator)?;
+        self.cpu.mem_read(address.into(), &mut byte).map_err(emulator)?;
         if byte[0] == self.initial_ram[index] {
             self.initial_ram[index] ^= mask; // otherwise the flip would count as use of the stack
         }
-        self.cpu
-            .mem_write(address.into(), &[byte[0] ^ mask])
-            .map_err(emulator)?;
+        self.cpu.mem_write(address.into(), &[byte[0] ^ mask]).map_err(emulator)?;
         Ok(())
     }
 
@@ -119,8 +113,7 @@ impl<W: Wiring + 'static> Machine<W> {
             CoreRegister::Fpscr => Reg::FPSCR as i32,
             CoreRegister::Pc => {
                 let pc = get(cpu, Reg::PC) ^ mask;
-                cpu.reg_write(Reg::PC, u64::from(pc | 1))
-                    .map_err(emulator)?;
+                cpu.reg_write(Reg::PC, u64::from(pc | 1)).map_err(emulator)?;
                 return Ok(());
             }
             CoreRegister::Psr => {
@@ -136,8 +129,7 @@ impl<W: Wiring + 'static> Machine<W> {
             }
         };
         let old = cpu.reg_read(emulated).map_err(emulator)?;
-        cpu.reg_write(emulated, old ^ u64::from(mask))
-            .map_err(emulator)?;
+        cpu.reg_write(emulated, old ^ u64::from(mask)).map_err(emulator)?;
         Ok(())
     }
 
@@ -149,8 +141,7 @@ impl<W: Wiring + 'static> Machine<W> {
     pub fn exhaust_stack(&mut self) -> Result<(), InjectError> {
         let end = self.stack_end().ok_or(InjectError::NoStackEnd)?;
         let cpu = &mut self.cpu;
-        cpu.reg_write(Reg::SP, u64::from(end.next_multiple_of(8)))
-            .map_err(emulator)?;
+        cpu.reg_write(Reg::SP, u64::from(end.next_multiple_of(8))).map_err(emulator)?;
         Ok(())
     }
 
@@ -162,11 +153,7 @@ impl<W: Wiring + 'static> Machine<W> {
     /// [`InjectError::Refused`]: the register or the value is not modelled, or its clock is off; or the flip would stop the
     /// clock of a device other than the window watchdog.
     pub fn flip_register_bit(&mut self, address: u32, bit: u8) -> Result<(), InjectError> {
-        let mask = one_bit(
-            format_args!("the register at {address:#010x}"),
-            bit,
-            u32::MAX,
-        )?;
+        let mask = one_bit(format_args!("the register at {address:#010x}"), bit, u32::MAX)?;
         let now = self.now();
         let chip = self.chip_mut();
         // Their LOCK protects from writes, not from radiation.
@@ -178,19 +165,11 @@ impl<W: Wiring + 'static> Machine<W> {
             0xe000_e100..0xe000_e300 => {
                 let set = address & !0x80;
                 let is_set = chip.read(set, now, 0).map(|bits| bits & mask != 0);
-                (
-                    set,
-                    if is_set == Ok(true) { set | 0x80 } else { set },
-                    Ok(mask),
-                )
+                (set, if is_set == Ok(true) { set | 0x80 } else { set }, Ok(mask))
             }
             _ => {
                 let old = chip.read(address, now, 0);
-                (
-                    address,
-                    address,
-                    old.and_then(|old| stops_no_clock(address, old, mask)),
-                )
+                (address, address, old.and_then(|old| stops_no_clock(address, old, mask)))
             }
         };
         let value = self.or_refused(value, load_at, Access::Read(4), 0)?;

@@ -72,12 +72,8 @@ impl Instruction {
         };
         let first = half(0)?;
         let wide = first >> 11 >= 0b11101;
-        let plain = Self {
-            bytes: if wide { 4 } else { 2 },
-            code: first,
-            cycles: 1,
-            ..Self::default()
-        };
+        let plain =
+            Self { bytes: if wide { 4 } else { 2 }, code: first, cycles: 1, ..Self::default() };
         Some(match wide {
             false => plain.narrow(first),
             true if first & 0xec00 == 0xec00 => plain.float(first, half(2)?),
@@ -90,10 +86,7 @@ impl Instruction {
     }
 
     fn branch(self) -> Self {
-        Self {
-            refill: REFILL,
-            ..self
-        }
+        Self { refill: REFILL, ..self }
     }
 
     fn single(self, load: bool, by_register: bool, register: u32, address: u16) -> Self {
@@ -113,42 +106,23 @@ impl Instruction {
 
     /// Data processing.
     fn writing(self, register: u32) -> Self {
-        Self {
-            result: bit(register),
-            ..self
-        }
+        Self { result: bit(register), ..self }
     }
 
     /// Several words from or to the address in a register.
     fn multiple(self, base: u32, words: u16) -> Self {
-        Self {
-            cycles: 1 + words,
-            address: bit(base),
-            ..self
-        }
+        Self { cycles: 1 + words, address: bit(base), ..self }
     }
 
     /// A load relative to the program counter, which is four bytes ahead.
     fn of_constant(self, distance: u32, ahead: bool) -> Self {
-        let distance = if ahead {
-            distance as i32
-        } else {
-            -(distance as i32)
-        };
-        Self {
-            constant: Some(4 + distance),
-            ..self
-        }
+        let distance = if ahead { distance as i32 } else { -(distance as i32) };
+        Self { constant: Some(4 + distance), ..self }
     }
 
     /// Load of the program counter, alone or among others.
     fn load_of_pc(self, base: u32, cycles: u16) -> Self {
-        Self {
-            cycles,
-            address: bit(base),
-            refill: REFILL_AFTER_LOAD,
-            ..self
-        }
+        Self { cycles, address: bit(base), refill: REFILL_AFTER_LOAD, ..self }
     }
 
     fn narrow(self, op: u32) -> Self {
@@ -230,11 +204,7 @@ impl Instruction {
         if table {
             self.load_of_pc(first, 3)
         } else if word || part {
-            let result = if first & 0x10 != 0 {
-                second >> 12
-            } else {
-                second
-            };
+            let result = if first & 0x10 != 0 { second >> 12 } else { second };
             self.single(true, false, result, bit(first))
         } else {
             self.multiple(first, 2)
@@ -246,10 +216,7 @@ impl Instruction {
         let d = (second >> 11 & 0x1e | first >> 6 & 1) as u8;
         let n = 1 << (first << 1 & 0x1e | second >> 7 & 1);
         let m = 1 << (second << 1 & 0x1e | second >> 5 & 1);
-        let as_move = |reads: u32| Self {
-            float: Float::Move(reads),
-            ..self
-        };
+        let as_move = |reads: u32| Self { float: Float::Move(reads), ..self };
         if first & 0x0fe0 == 0x0c40 {
             return as_move(m | m << 1).taking(2); // VMOV of two registers
         }
@@ -281,11 +248,7 @@ impl Instruction {
         if second & 0x10 != 0 {
             return as_move(n);
         }
-        let arithmetic = |cycles: u16, float: Float| Self {
-            cycles,
-            float,
-            ..self
-        };
+        let arithmetic = |cycles: u16, float: Float| Self { cycles, float, ..self };
         match first >> 4 & 0xb {
             0x8 => arithmetic(1, Float::Division(d, n | m)),
             0xb if second & 0xc0 == 0xc0 && first & 0xf == 1 => {

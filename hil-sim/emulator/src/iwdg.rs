@@ -23,12 +23,7 @@ pub(crate) struct Iwdg {
 
 impl Iwdg {
     pub fn new(lsi_hz: u32) -> Self {
-        Self {
-            lsi_hz,
-            reload: 0xfff,
-            due: u64::MAX,
-            ..Self::default()
-        }
+        Self { lsi_hz, reload: 0xfff, due: u64::MAX, ..Self::default() }
     }
 
     /// Time-out in LSI cycles: (RL + 1) * 4 * 2^PR.

@@ -66,8 +66,7 @@ impl<W: Wiring + 'static> Machine<W> {
         let state = State::new(chip, Arc::clone(&flash), timing);
         let mut cpu = create_cpu(state, &flash).map_err(emulator)?;
         let initial_ram = vec![PAINT; RAM_SIZE as usize];
-        cpu.mem_write(RAM_BASE.into(), &initial_ram)
-            .map_err(emulator)?;
+        cpu.mem_write(RAM_BASE.into(), &initial_ram).map_err(emulator)?;
         if strict {
             let hook = |cpu: &mut Cpu<'_, W>, address: u64, _: u32| {
                 alignment::check(cpu, address as u32);
@@ -84,11 +83,7 @@ impl<W: Wiring + 'static> Machine<W> {
             stopped: None,
         };
         exceptions::reset(&mut machine.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))?;
-        machine.resets.push(Reset {
-            at: 0,
-            at_ps: 0,
-            cause: ResetCause::PowerOn,
-        });
+        machine.resets.push(Reset { at: 0, at_ps: 0, cause: ResetCause::PowerOn });
         Ok(machine)
     }
 
@@ -202,11 +197,7 @@ impl<W: Wiring + 'static> Machine<W> {
 
     /// Address and estimated cycles of each instruction of a block in the flash; the first has what the core waited before it.
     pub fn instructions(&self, block: super::ExecutedBlock) -> Vec<(u32, u16)> {
-        let super::ExecutedBlock {
-            address,
-            bytes,
-            waited,
-        } = block;
+        let super::ExecutedBlock { address, bytes, waited } = block;
         let start = (address & 0x07ff_ffff) as usize;
         let code = self.firmware.flash().get(start..start + usize::from(bytes));
         super::cost::instructions(code.unwrap_or_default())
@@ -244,14 +235,8 @@ impl<W: Wiring + 'static> Machine<W> {
         let top = self.firmware.initial_sp();
         let size = top.checked_sub(bottom)? as usize;
         let stack = self.cpu.mem_read_as_vec(u64::from(bottom), size).ok()?;
-        let fresh = self
-            .initial_ram
-            .get(bottom.checked_sub(RAM_BASE)? as usize..)?;
-        let untouched = stack
-            .iter()
-            .zip(fresh)
-            .take_while(|(now, then)| now == then)
-            .count();
+        let fresh = self.initial_ram.get(bottom.checked_sub(RAM_BASE)? as usize..)?;
+        let untouched = stack.iter().zip(fresh).take_while(|(now, then)| now == then).count();
         Some((size - untouched) as u32)
     }
 

@@ -46,10 +46,7 @@ pub(crate) fn register(address: u32) -> String {
         return format!("{address:#010x}");
     };
     let offset = (address - peripheral.base) & !3;
-    let group = peripheral
-        .registers
-        .as_ref()
-        .map(|group| &MAP.registers[group]);
+    let group = peripheral.registers.as_ref().map(|group| &MAP.registers[group]);
     match group.and_then(|group| group.iter().find(|(_, at)| **at == offset)) {
         Some((register, _)) => format!("{name}_{register}"),
         None => format!("{name}+{offset:#x}"),
@@ -73,10 +70,7 @@ mod tests {
 
     #[test]
     fn every_group_of_registers_exists_and_belongs_to_a_peripheral() {
-        let groups = MAP
-            .peripherals
-            .iter()
-            .filter_map(|row| row.registers.as_ref());
+        let groups = MAP.peripherals.iter().filter_map(|row| row.registers.as_ref());
         let named: HashSet<_> = groups.collect();
         assert_eq!(named, MAP.registers.keys().collect());
     }
@@ -86,10 +80,7 @@ mod tests {
         for (group, registers) in &MAP.registers {
             let offsets: HashSet<_> = registers.values().collect();
             assert_eq!(offsets.len(), registers.len(), "{group}");
-            assert!(
-                registers.values().all(|offset| offset.is_multiple_of(4)),
-                "{group}"
-            );
+            assert!(registers.values().all(|offset| offset.is_multiple_of(4)), "{group}");
         }
     }
 }

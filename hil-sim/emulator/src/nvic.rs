@@ -136,11 +136,7 @@ pub(crate) fn name(exception: usize) -> &'static str {
         12 => "DebugMonitor",
         14 => "PendSV",
         15 => "SysTick",
-        n => n
-            .checked_sub(16)
-            .and_then(|irq| INTERRUPT_NAMES.get(irq))
-            .copied()
-            .unwrap_or("?"),
+        n => n.checked_sub(16).and_then(|irq| INTERRUPT_NAMES.get(irq)).copied().unwrap_or("?"),
     }
 }
 
@@ -197,10 +193,7 @@ impl Nvic {
             1 => -3,
             exception::NMI => NMI_PRIORITY,
             exception::HARD_FAULT => -1,
-            n => self
-                .priority
-                .get(n)
-                .map_or(THREAD_PRIORITY, |p| i32::from(*p)),
+            n => self.priority.get(n).map_or(THREAD_PRIORITY, |p| i32::from(*p)),
         }
     }
 
@@ -213,8 +206,7 @@ impl Nvic {
     /// Whether a pending exception is more urgent than the active ones; the mask registers may still block it.
     #[inline]
     pub fn may_preempt(&self) -> bool {
-        self.best
-            .is_some_and(|(_, priority)| priority < self.active_priority)
+        self.best.is_some_and(|(_, priority)| priority < self.active_priority)
     }
 
     /// Most urgent priority among the active exceptions.
@@ -314,9 +306,7 @@ impl Nvic {
     /// Whether `exception`, which is being entered, gives way to a more urgent one.
     pub fn late_arrival(&self, exception: usize) -> Option<usize> {
         let level = self.without_subpriority(self.priority_of(exception));
-        self.best
-            .filter(|(_, priority)| *priority < level)
-            .map(|(n, _)| n)
+        self.best.filter(|(_, priority)| *priority < level).map(|(n, _)| n)
     }
 
     /// Number of active exceptions.
@@ -350,11 +340,7 @@ impl Nvic {
 
     /// ICSR as written.
     pub fn set_icsr(&mut self, value: u32, now: u64) {
-        for (bit, n) in [
-            (31, exception::NMI),
-            (28, exception::PENDSV),
-            (26, exception::SYSTICK),
-        ] {
+        for (bit, n) in [(31, exception::NMI), (28, exception::PENDSV), (26, exception::SYSTICK)] {
             if value >> bit & 1 != 0 {
                 self.pend(n, now);
             }
@@ -383,9 +369,7 @@ impl Nvic {
 
     /// Four priority bytes from exception `n` on.
     pub fn priority_word(&self, n: usize) -> u32 {
-        (0..4)
-            .map(|i| u32::from(self.priority.get(n + i).copied().unwrap_or(0)) << (8 * i))
-            .sum()
+        (0..4).map(|i| u32::from(self.priority.get(n + i).copied().unwrap_or(0)) << (8 * i)).sum()
     }
 
     /// Registers at 0xE000E100..0xE000E4FF.
@@ -415,11 +399,7 @@ impl Nvic {
             return Err(Refusal::Offset);
         }
         let word = offset >> 2 & 7;
-        only(
-            value,
-            if word == 3 { 1 } else { u32::MAX },
-            "an interrupt above 96",
-        )?;
+        only(value, if word == 3 { 1 } else { u32::MAX }, "an interrupt above 96")?;
         let set = u128::from(value) << (16 + 32 * word);
         match offset & 0x380 {
             0x100 => self.enabled |= set,

@@ -43,11 +43,7 @@ pub(crate) struct Ppb {
 
 impl Ppb {
     pub fn new() -> Self {
-        Self {
-            systick_due: u64::MAX,
-            fpccr: 0xc000_0000,
-            ..Self::default()
-        }
+        Self { systick_due: u64::MAX, fpccr: 0xc000_0000, ..Self::default() }
     }
 
     /// Whether a configurable fault has its own handler enabled.
@@ -119,11 +115,7 @@ impl Ppb {
 
     /// Cycles awake if CYCCNT counts, else 0.
     fn counted_cycles(&self, now: u64) -> u32 {
-        if self.counts_cycles() {
-            (now - self.slept) as u32
-        } else {
-            0
-        }
+        if self.counts_cycles() { (now - self.slept) as u32 } else { 0 }
     }
 
     fn counts_cycles(&self) -> bool {
@@ -233,22 +225,14 @@ impl Ppb {
                 if value >> 16 != 0x05fa {
                     return Ok(false); // without the key a write is ignored
                 }
-                only(
-                    value & 0xffff,
-                    0x0704,
-                    "AIRCR.VECTCLRACTIVE, AIRCR.VECTRESET",
-                )?;
+                only(value & 0xffff, 0x0704, "AIRCR.VECTCLRACTIVE, AIRCR.VECTRESET")?;
                 nvic.set_group((value >> 8) as u8);
                 return Ok(value & 4 != 0);
             }
             0xe000_ed10 => only(value, 0, "SCR (deep sleep, sleep on exit, SEVONPEND)")?,
             0xe000_ed14 => only(value, 0x200, "CCR traps")?,
             0xe000_ed24 => {
-                only(
-                    value & !Self::active_bits(nvic),
-                    0x7_0000,
-                    "SHCSR pending or active bits",
-                )?;
+                only(value & !Self::active_bits(nvic), 0x7_0000, "SHCSR pending or active bits")?;
                 self.shcsr = value & 0x7_0000;
             }
             0xe000_ed28 => self.cfsr &= !value,
@@ -273,9 +257,7 @@ impl Ppb {
             }
             0xe000_ef34 => {
                 if value & 0xc000_0000 == 0x4000_0000 || value & 0x8000_0000 == 0 {
-                    return Err(Refusal::NotModelled(
-                        "FPCCR.ASPEN = 0 (no automatic FP state)",
-                    ));
+                    return Err(Refusal::NotModelled("FPCCR.ASPEN = 0 (no automatic FP state)"));
                 }
                 self.fpccr = value & 0xc000_0000;
             }
@@ -291,10 +273,7 @@ impl Ppb {
 
     /// After a system reset: the cycles asleep go on, and only a power-on resets DBGMCU (33.16.3) and what a debugger has set.
     pub fn after_reset(&self, power_on: bool) -> Self {
-        let fresh = Self {
-            slept: self.slept,
-            ..Self::new()
-        };
+        let fresh = Self { slept: self.slept, ..Self::new() };
         if power_on {
             return fresh;
         }
@@ -405,22 +384,9 @@ mod tests {
     #[test]
     fn unmodelled_control_bits_are_refused() {
         let (mut ppb, mut nvic) = (Ppb::new(), Nvic::new());
-        assert!(
-            ppb.write(&mut nvic, 0xe000_ed10, 4, 4, 0).is_err(),
-            "SLEEPDEEP"
-        );
-        assert!(
-            ppb.write(&mut nvic, 0xe000_ed94, 4, 1, 0).is_err(),
-            "MPU_CTRL"
-        );
-        assert_eq!(
-            ppb.write(&mut nvic, 0xe000_ed0c, 4, 0x05fa_0004, 0),
-            Ok(true)
-        );
-        assert_eq!(
-            ppb.write(&mut nvic, 0xe000_ed0c, 4, 0x0000_0004, 0),
-            Ok(false),
-            "no key"
-        );
+        assert!(ppb.write(&mut nvic, 0xe000_ed10, 4, 4, 0).is_err(), "SLEEPDEEP");
+        assert!(ppb.write(&mut nvic, 0xe000_ed94, 4, 1, 0).is_err(), "MPU_CTRL");
+        assert_eq!(ppb.write(&mut nvic, 0xe000_ed0c, 4, 0x05fa_0004, 0), Ok(true));
+        assert_eq!(ppb.write(&mut nvic, 0xe000_ed0c, 4, 0x0000_0004, 0), Ok(false), "no key");
     }
 }

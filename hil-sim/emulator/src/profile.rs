@@ -102,11 +102,7 @@ impl Profile {
 
     pub fn enter(&mut self, exception: usize, latency: u64, instructions: u64, cycles: u64) {
         self.charge(instructions, cycles);
-        self.open.push(Activation {
-            exception,
-            instructions: 0,
-            cycles: 0,
-        });
+        self.open.push(Activation { exception, instructions: 0, cycles: 0 });
         self.update_watching();
         let total = &mut self.totals[exception];
         total.latency_max = total.latency_max.max(latency);

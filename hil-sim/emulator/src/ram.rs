@@ -27,14 +27,7 @@ pub(crate) struct Ram<'a, 'u, D> {
 
 impl<'a, 'u, D> Ram<'a, 'u, D> {
     pub fn new(cpu: &'a mut Unicorn<'u, D>) -> Self {
-        Self {
-            cpu,
-            line_at: None,
-            line: [0; LINE],
-            run_at: 0,
-            run_bytes: 0,
-            run: [0; 4 * LINE],
-        }
+        Self { cpu, line_at: None, line: [0; LINE], run_at: 0, run_bytes: 0, run: [0; 4 * LINE] }
     }
 
     /// Writes the buffered stores.
@@ -50,30 +43,19 @@ impl<'a, 'u, D> Ram<'a, 'u, D> {
 
 impl<D> Memory for Ram<'_, '_, D> {
     fn load(&mut self, address: u32, bytes: u8) -> Result<u32, NoMemory> {
-        let memories = [
-            RAM_BASE..RAM_BASE + RAM_SIZE,
-            FLASH_BASE..FLASH_BASE + FLASH_SIZE,
-        ];
+        let memories = [RAM_BASE..RAM_BASE + RAM_SIZE, FLASH_BASE..FLASH_BASE + FLASH_SIZE];
         if !memories.iter().any(|m| m.contains(&address)) {
             return Err(NoMemory);
         }
         let at = address & !(LINE as u32 - 1);
         if self.line_at != Some(at) {
             self.flush();
-            self.cpu
-                .mem_read(u64::from(at), &mut self.line)
-                .map_err(|_| NoMemory)?;
+            self.cpu.mem_read(u64::from(at), &mut self.line).map_err(|_| NoMemory)?;
             self.line_at = Some(at);
         }
         let from = (address - at) as usize;
-        let item = self
-            .line
-            .get(from..from + usize::from(bytes))
-            .ok_or(NoMemory)?;
-        Ok(item
-            .iter()
-            .rev()
-            .fold(0, |word, byte| word << 8 | u32::from(*byte)))
+        let item = self.line.get(from..from + usize::from(bytes)).ok_or(NoMemory)?;
+        Ok(item.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte)))
     }
 
     fn store(&mut self, address: u32, bytes: u8, value: u32) -> Result<(), NoMemory> {

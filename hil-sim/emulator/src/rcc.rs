@@ -56,13 +56,8 @@ pub(crate) enum Enr {
     Apb2 = 4,
 }
 
-const ENR_NAMES: [&str; 5] = [
-    "RCC_AHB1ENR",
-    "RCC_AHB2ENR",
-    "RCC_AHB3ENR",
-    "RCC_APB1ENR",
-    "RCC_APB2ENR",
-];
+const ENR_NAMES: [&str; 5] =
+    ["RCC_AHB1ENR", "RCC_AHB2ENR", "RCC_AHB3ENR", "RCC_APB1ENR", "RCC_APB2ENR"];
 
 /// Bits of the reset, enable and low-power enable registers that the chip has, in the order of [`ENR_NAMES`] (6.3.5 to 6.3.19).
 const RESET_BITS: [u32; 5] = [0x2060_10ff, 0x81, 0x3, 0x3fff_c9ff, 0x00c7_7933];
@@ -240,11 +235,7 @@ impl Rcc {
                 if value & 1 != 0 && self.csr & 1 == 0 {
                     self.ready_at[LSI] = self.after(now, LSI_START_US);
                 }
-                let flags = if value >> 24 & 1 != 0 {
-                    0
-                } else {
-                    self.flags()
-                };
+                let flags = if value >> 24 & 1 != 0 { 0 } else { self.flags() };
                 self.csr = flags | value & 1;
             }
             0x8c => {
@@ -268,8 +259,7 @@ mod tests {
         rcc.write_acr(0x705).unwrap();
         rcc.write(0x00, 0x83 | 1 << 16 | 1 << 18, 0).unwrap();
         rcc.write(0x04, 0x2040_0000 | 8 | 360 << 6, 200).unwrap();
-        rcc.write(0x00, 0x83 | 1 << 16 | 1 << 18 | 1 << 24, 200)
-            .unwrap();
+        rcc.write(0x00, 0x83 | 1 << 16 | 1 << 18 | 1 << 24, 200).unwrap();
         rcc.write_pwr(0, 0x1_c000, 200).unwrap();
         rcc.write_pwr(0, 0x3_c000, 2000).unwrap();
         rcc
@@ -279,16 +269,8 @@ mod tests {
     fn ready_bits_follow_enables_after_the_start_up_time() {
         let rcc = ready_at_180_mhz();
         assert_eq!(rcc.read(0, 201).unwrap() >> 24 & 3, 1, "on, not locked");
-        assert_eq!(
-            rcc.read(0, 200 + 1600).unwrap() >> 24 & 3,
-            3,
-            "100 us at 16 MHz later"
-        );
-        assert_eq!(
-            rcc.read_pwr(4, 2000).unwrap() >> 16 & 3,
-            1,
-            "over-drive ready, not switched"
-        );
+        assert_eq!(rcc.read(0, 200 + 1600).unwrap() >> 24 & 3, 3, "100 us at 16 MHz later");
+        assert_eq!(rcc.read_pwr(4, 2000).unwrap() >> 16 & 3, 1, "over-drive ready, not switched");
         assert_eq!(rcc.read_pwr(4, 3000).unwrap() >> 16 & 3, 3);
     }
 
@@ -300,43 +282,27 @@ mod tests {
         assert_eq!((c.sysclk_hz, c.hclk_hz), (180_000_000, 180_000_000));
         assert_eq!((c.pclk1_hz, c.pclk2_hz), (45_000_000, 90_000_000));
         assert_eq!((c.timclk1_hz, c.timclk2_hz), (90_000_000, 180_000_000));
-        assert_eq!(
-            rcc.read(0x08, 3000).unwrap() & 0xf,
-            0b1010,
-            "SWS follows SW"
-        );
+        assert_eq!(rcc.read(0x08, 3000).unwrap() & 0xf, 0b1010, "SWS follows SW");
     }
 
     #[test]
     fn too_few_wait_states_are_refused() {
         let mut rcc = ready_at_180_mhz();
         rcc.write_acr(4).unwrap();
-        let refusal = Refusal::FlashLatency {
-            hclk_hz: 180_000_000,
-            latency: 4,
-            needed: 5,
-        };
+        let refusal = Refusal::FlashLatency { hclk_hz: 180_000_000, latency: 4, needed: 5 };
         assert_eq!(rcc.write(0x08, 2 | 5 << 10 | 4 << 13, 3000), Err(refusal));
     }
 
     #[test]
     fn buses_and_regulator_have_limits() {
         let mut rcc = ready_at_180_mhz();
-        let too_fast = Refusal::ClockRange {
-            clock: "PCLK1",
-            hz: 90_000_000,
-            min_hz: 1,
-            max_hz: 45_000_000,
-        };
+        let too_fast =
+            Refusal::ClockRange { clock: "PCLK1", hz: 90_000_000, min_hz: 1, max_hz: 45_000_000 };
         assert_eq!(rcc.write(0x08, 2 | 4 << 10 | 4 << 13, 3000), Err(too_fast));
         rcc.write_pwr(0, 0xc000, 3000).unwrap();
         assert!(matches!(
             rcc.write(0x08, 2 | 5 << 10 | 4 << 13, 3000),
-            Err(Refusal::ClockRange {
-                hz: 180_000_000,
-                max_hz: 168_000_000,
-                ..
-            })
+            Err(Refusal::ClockRange { hz: 180_000_000, max_hz: 168_000_000, .. })
         ));
     }
 

@@ -70,13 +70,7 @@ impl<W: Wiring + 'static> Machine<W> {
         let state = self.cpu.get_data_mut();
         if let Some((address, refusal)) = state.chip().misuse.take() {
             let (access, pc) = (Access::Write(4), state.block_pc);
-            let refused = Refused {
-                refusal,
-                address,
-                access,
-                value: 0,
-                pc,
-            };
+            let refused = Refused { refusal, address, access, value: 0, pc };
             return Err(self.refusal(refused));
         }
         let state = self.cpu.get_data_mut();
@@ -174,20 +168,11 @@ impl<W: Wiring + 'static> Machine<W> {
 
     pub(super) fn place(&self, pc: u32) -> Place {
         let in_flash = if pc < RAM_BASE { FLASH_BASE | pc } else { pc };
-        Place {
-            function: self.firmware.function_at(in_flash).to_owned(),
-            pc: in_flash,
-        }
+        Place { function: self.firmware.function_at(in_flash).to_owned(), pc: in_flash }
     }
 
     pub(super) fn refusal(&self, refused: Refused) -> Stop {
-        let Refused {
-            refusal,
-            address,
-            access,
-            value,
-            pc,
-        } = refused;
+        let Refused { refusal, address, access, value, pc } = refused;
         let place = self.place(pc);
         let register = match refusal {
             Refusal::NotModelled(detail) => format!("{} ({detail})", names::register(address)),
@@ -202,41 +187,14 @@ impl<W: Wiring + 'static> Machine<W> {
                 access,
                 place,
             },
-            Refusal::FlashLatency {
-                hclk_hz,
-                latency,
-                needed,
-            } => Stop::FlashLatency {
-                hclk_hz,
-                latency,
-                needed,
-                place,
-            },
-            Refusal::Misuse(rule) => Stop::Misuse {
-                register,
-                address,
-                rule,
-                place,
-            },
-            Refusal::ClockRange {
-                clock,
-                hz,
-                min_hz,
-                max_hz,
-            } => Stop::ClockRange {
-                clock,
-                hz,
-                min_hz,
-                max_hz,
-                place,
-            },
-            _ => Stop::NotModelled {
-                register,
-                address,
-                access,
-                value,
-                place,
-            },
+            Refusal::FlashLatency { hclk_hz, latency, needed } => {
+                Stop::FlashLatency { hclk_hz, latency, needed, place }
+            }
+            Refusal::Misuse(rule) => Stop::Misuse { register, address, rule, place },
+            Refusal::ClockRange { clock, hz, min_hz, max_hz } => {
+                Stop::ClockRange { clock, hz, min_hz, max_hz, place }
+            }
+            _ => Stop::NotModelled { register, address, access, value, place },
         }
     }
 }

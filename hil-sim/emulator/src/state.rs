@@ -119,16 +119,12 @@ impl<W: Wiring> State<W> {
     #[inline]
     pub fn chip(&mut self) -> &mut Chip<W> {
         self.undisturbed_until = 0;
-        self.chip
-            .as_mut()
-            .expect("the chip is in its place outside of service()")
+        self.chip.as_mut().expect("the chip is in its place outside of service()")
     }
 
     #[inline]
     pub fn chip_ref(&self) -> &Chip<W> {
-        self.chip
-            .as_ref()
-            .expect("the chip is in its place outside of service()")
+        self.chip.as_ref().expect("the chip is in its place outside of service()")
     }
 
     /// Fast path of most blocks: counts a block of known cost if no event is due before it.
@@ -150,11 +146,8 @@ impl<W: Wiring> State<W> {
     /// Sets until when blocks need no look at the chip; called when the present block does not pause the run.
     fn set_undisturbed(&mut self) {
         let chip = self.chip_ref();
-        self.undisturbed_until = if chip.nvic.may_preempt() {
-            0
-        } else {
-            chip.next.min(self.limit)
-        };
+        self.undisturbed_until =
+            if chip.nvic.may_preempt() { 0 } else { chip.next.min(self.limit) };
     }
 
     /// Counts a block that is about to run, and the refill if a branch leads to it.
@@ -179,11 +172,7 @@ impl<W: Wiring> State<W> {
         self.instructions += u64::from(block.instructions);
         if self.profile.watching {
             let waited = (self.cycles - u64::from(block.cycles) - before) as u16;
-            self.profile.record(ExecutedBlock {
-                address,
-                bytes: block.bytes,
-                waited,
-            });
+            self.profile.record(ExecutedBlock { address, bytes: block.bytes, waited });
         }
     }
 
@@ -194,10 +183,7 @@ impl<W: Wiring> State<W> {
 
     /// The program has not the privilege for an access to the private peripheral bus.
     fn deny(&mut self, address: u32) {
-        self.raise(Fault {
-            address: Some(address),
-            ..PRIVATE_BUS
-        });
+        self.raise(Fault { address: Some(address), ..PRIVATE_BUS });
     }
 
     /// The run pauses at the first block from this cycle on.
@@ -221,13 +207,7 @@ impl<W: Wiring> State<W> {
         if refusal == Refusal::BusError {
             self.raise(RESERVED_ADDRESS);
         } else if self.refused.is_none() {
-            self.refused = Some(Refused {
-                refusal,
-                address,
-                access,
-                value,
-                pc: self.block_pc,
-            });
+            self.refused = Some(Refused { refusal, address, access, value, pc: self.block_pc });
         }
     }
 }
@@ -261,11 +241,7 @@ pub(crate) fn get<D>(cpu: &Unicorn<'_, D>, register: Reg) -> u32 {
 
 /// PRIMASK, BASEPRI, FAULTMASK.
 pub(crate) fn masks<D>(cpu: &Unicorn<'_, D>) -> (u32, u32, u32) {
-    (
-        get(cpu, Reg::PRIMASK),
-        get(cpu, Reg::BASEPRI),
-        get(cpu, Reg::FAULTMASK),
-    )
+    (get(cpu, Reg::PRIMASK), get(cpu, Reg::BASEPRI), get(cpu, Reg::FAULTMASK))
 }
 
 /// The exception to be taken now, if any.
@@ -313,17 +289,12 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
     if pause {
         state.exit = Exit::Requested;
     } else {
-        let offset = if address >= FLASH_BASE {
-            address - FLASH_BASE
-        } else {
-            address
-        } as usize;
+        let offset = if address >= FLASH_BASE { address - FLASH_BASE } else { address } as usize;
         let block = match state.cost.flash_block(&state.flash, offset, bytes) {
             Some(block) => block,
             None => {
-                let code = cpu
-                    .mem_read_as_vec(u64::from(address), bytes as usize)
-                    .unwrap_or_default();
+                let code =
+                    cpu.mem_read_as_vec(u64::from(address), bytes as usize).unwrap_or_default();
                 cost::decode(address, &code)
             }
         };
@@ -375,17 +346,11 @@ pub(crate) fn refund<W: Wiring>(state: &mut State<W>, pc: u32) {
     // the STREX that was counted on may not have run
     state.exclusive_set |= state.block.exclusive == Exclusive::Clear;
     let start = (state.block_pc & 0x07ff_ffff) as usize;
-    let code = state
-        .flash
-        .get(start..start + ran as usize)
-        .unwrap_or_default();
+    let code = state.flash.get(start..start + ran as usize).unwrap_or_default();
     let part = cost::decode(state.block_pc, code);
     state.cycles = state.block_at + u64::from(part.cycles);
     state.instructions -= u64::from(state.block.instructions - part.instructions);
-    state.block = Block {
-        last: Last::Other,
-        ..part
-    };
+    state.block = Block { last: Last::Other, ..part };
 }
 
 /// Whether the program may not access the address: one of the private peripheral bus, from thread mode without privilege
@@ -396,11 +361,7 @@ fn is_denied<D>(cpu: &Unicorn<'_, D>, address: u32) -> bool {
 
 /// Load from a device register.
 pub(crate) fn on_read<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8) -> u32 {
-    let ipsr = if address & !3 == 0xe000_ed04 {
-        get(cpu, Reg::XPSR) & 0x1ff
-    } else {
-        0
-    };
+    let ipsr = if address & !3 == 0xe000_ed04 { get(cpu, Reg::XPSR) & 0x1ff } else { 0 };
     let denied = is_denied(cpu, address);
     let state = cpu.get_data_mut();
     if denied {
@@ -410,11 +371,9 @@ pub(crate) fn on_read<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8) 
     let now = state.block_at;
     let (register, shift, mask) = match bit_band(address) {
         Some((register, bit)) => (register, bit, 1),
-        None => (
-            address & !3,
-            8 * (address & 3),
-            u32::MAX >> (32 - 8 * u32::from(bytes.clamp(1, 4))),
-        ),
+        None => {
+            (address & !3, 8 * (address & 3), u32::MAX >> (32 - 8 * u32::from(bytes.clamp(1, 4))))
+        }
     };
     match state.chip().read(register, now, ipsr) {
         Ok(value) => value >> shift & mask,
@@ -474,8 +433,6 @@ pub(crate) fn on_flash_write<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, byte
 
 /// Register and bit behind an address of the peripheral bit-band alias.
 fn bit_band(address: u32) -> Option<(u32, u32)> {
-    let offset = address
-        .checked_sub(0x4200_0000)
-        .filter(|o| *o < 0x0200_0000)?;
+    let offset = address.checked_sub(0x4200_0000).filter(|o| *o < 0x0200_0000)?;
     Some((0x4000_0000 + (offset >> 5 & !3), offset >> 2 & 31))
 }

@@ -140,18 +140,9 @@ pub(crate) enum Refusal {
     /// No device at this address: a bus error inside the emulated CPU.
     BusError,
     /// See [`Stop::FlashLatency`].
-    FlashLatency {
-        hclk_hz: u32,
-        latency: u32,
-        needed: u32,
-    },
+    FlashLatency { hclk_hz: u32, latency: u32, needed: u32 },
     /// See [`Stop::ClockRange`].
-    ClockRange {
-        clock: &'static str,
-        hz: u32,
-        min_hz: u32,
-        max_hz: u32,
-    },
+    ClockRange { clock: &'static str, hz: u32, min_hz: u32, max_hz: u32 },
 }
 
 /// Result of a register access.
@@ -159,9 +150,5 @@ pub(crate) type Answer<T> = Result<T, Refusal>;
 
 /// Refuses `value` if it has bits outside `allowed`; `what` names the register and the bits that are not modelled.
 pub(crate) fn only(value: u32, allowed: u32, what: &'static str) -> Answer<()> {
-    if value & !allowed == 0 {
-        Ok(())
-    } else {
-        Err(Refusal::NotModelled(what))
-    }
+    if value & !allowed == 0 { Ok(()) } else { Err(Refusal::NotModelled(what)) }
 }

@@ -16,11 +16,7 @@ pub(crate) struct Kind {
 
 impl Kind {
     const fn new(counter_max: u32, channels: usize, advanced: bool) -> Self {
-        Self {
-            counter_max,
-            channels,
-            advanced,
-        }
+        Self { counter_max, channels, advanced }
     }
 }
 
@@ -117,10 +113,8 @@ impl Tim {
 
     /// Back to the reset values; the clock stays.
     pub fn reset(&mut self) {
-        *self = Self {
-            trigger_is_used: self.trigger_is_used,
-            ..Self::new(self.kind, self.divider)
-        };
+        *self =
+            Self { trigger_is_used: self.trigger_is_used, ..Self::new(self.kind, self.divider) };
     }
 
     /// Sets whether a peripheral uses the trigger output.
@@ -196,11 +190,7 @@ impl Tim {
     fn set_count(&mut self, count: u32, now: u64) {
         self.stopped_at = count;
         self.zero_at = now.wrapping_sub(u64::from(count) * self.tick());
-        self.period_end = if count > self.arr_now {
-            self.kind.counter_max
-        } else {
-            self.arr_now
-        };
+        self.period_end = if count > self.arr_now { self.kind.counter_max } else { self.arr_now };
         self.synced_to = now;
     }
 
@@ -290,17 +280,13 @@ impl Tim {
             || self.bdtr & (AOE | MOE) == AOE
             || self.is_preloading();
         if wants_update {
-            self.due = self
-                .overflow()
-                .wrapping_add(self.period() * u64::from(self.repeats_left));
+            self.due = self.overflow().wrapping_add(self.period() * u64::from(self.repeats_left));
         }
         for channel in 0..self.kind.channels {
             let flag = 2 << channel;
             let matches = self.ccr_now[channel] <= self.arr_now && !self.is_capturing(channel);
             if self.dier & flag != 0 && self.sr & flag == 0 && matches {
-                let at = self
-                    .zero_at
-                    .wrapping_add(u64::from(self.ccr_now[channel]) * self.tick());
+                let at = self.zero_at.wrapping_add(u64::from(self.ccr_now[channel]) * self.tick());
                 let next = self.overflow() + (at - self.zero_at);
                 self.due = self.due.min(if at > self.synced_to { at } else { next });
             }
@@ -378,22 +364,14 @@ impl Tim {
     /// Interrupt requests: break, update, trigger, compare.
     pub fn requests(&self) -> [bool; 4] {
         let raised = self.sr & self.dier;
-        [
-            raised & BIF != 0,
-            raised & UIF != 0,
-            raised & 0x40 != 0,
-            raised & 0x1e != 0,
-        ]
+        [raised & BIF != 0, raised & UIF != 0, raised & 0x40 != 0, raised & 0x1e != 0]
     }
 
     /// Output of a channel, 0 is CH1 (16.4.9).
     pub fn output(&self, channel: usize) -> Output {
         let inverted = self.ccer >> (4 * channel + 1) & 1 != 0;
         let constant_if = |driven: bool, high: bool| match driven {
-            true => Output::High {
-                high: u32::from(high),
-                period: 1,
-            },
+            true => Output::High { high: u32::from(high), period: 1 },
             false => Output::Released,
         };
         if self.is_capturing(channel) {
@@ -417,10 +395,7 @@ impl Tim {
             5 => period,
             _ => 0, // forced inactive; frozen at the reset level
         };
-        Output::High {
-            high: if inverted { period - high } else { high },
-            period,
-        }
+        Output::High { high: if inverted { period - high } else { high }, period }
     }
 
     /// Level of a driven channel at the count of `now`; PWM mode 2 is high from the match on (16.3.10).
@@ -434,11 +409,7 @@ impl Tim {
         let inverted = self.ccer >> (4 * channel + 1) & 1 != 0;
         let mode_2 = self.ccmr[channel / 2] >> (8 * (channel % 2) + 4) & 7 == 7;
         let count = self.count(now);
-        if inverted != mode_2 {
-            count >= period - high
-        } else {
-            count < high
-        }
+        if inverted != mode_2 { count >= period - high } else { count < high }
     }
 }
 

@@ -13,21 +13,13 @@ pub(crate) struct Timebase {
 
 impl Timebase {
     pub const fn new(hclk_hz: u32) -> Self {
-        Self {
-            cycle: 0,
-            ps: 0,
-            hclk_hz,
-        }
+        Self { cycle: 0, ps: 0, hclk_hz }
     }
 
     /// Sets the clock from cycle `now` on.
     pub fn set_clock(&mut self, hclk_hz: u32, now: u64) {
         if hclk_hz != self.hclk_hz {
-            *self = Self {
-                cycle: now,
-                ps: self.ps_at(now),
-                hclk_hz,
-            };
+            *self = Self { cycle: now, ps: self.ps_at(now), hclk_hz };
         }
     }
 
@@ -62,10 +54,7 @@ mod tests {
         let time = Timebase::new(180_000_000);
         for cycle in [1, 2, 7, 1_234_567, 90_000 * 123_456 + 1] {
             assert_eq!(time.cycle_at(time.ps_at(cycle)), cycle);
-            assert_eq!(
-                time.cycle_at(time.ps_at(cycle) + 500_000_000),
-                cycle + 90_000
-            );
+            assert_eq!(time.cycle_at(time.ps_at(cycle) + 500_000_000), cycle + 90_000);
         }
     }
 }

@@ -69,11 +69,7 @@ impl Usart {
         let fresh = Self::new(self.bus_divider, self.hclk_hz, self.host_baud);
         let incoming = std::mem::take(&mut self.incoming);
         *self = Self {
-            rx_due: if incoming.is_empty() {
-                u64::MAX
-            } else {
-                self.rx_due
-            },
+            rx_due: if incoming.is_empty() { u64::MAX } else { self.rx_due },
             arrival: self.arrival,
             incoming,
             ..fresh
@@ -92,20 +88,13 @@ impl Usart {
     /// three bits (25.4.4).
     fn bit_cycles(&self) -> u64 {
         let brr = u64::from(self.brr);
-        self.bus_divider
-            * if self.cr1 >> 15 != 0 {
-                (brr >> 4 << 3) + (brr & 7)
-            } else {
-                brr
-            }
+        self.bus_divider * if self.cr1 >> 15 != 0 { (brr >> 4 << 3) + (brr & 7) } else { brr }
     }
 
     /// Baud rate of the transmitter, rounded to 1 Bd; 0 while BRR is 0.
     pub fn baud(&self) -> u32 {
         let bit = self.bit_cycles();
-        (u64::from(self.hclk_hz) + bit / 2)
-            .checked_div(bit)
-            .map_or(0, |b| b as u32)
+        (u64::from(self.hclk_hz) + bit / 2).checked_div(bit).map_or(0, |b| b as u32)
     }
 
     fn host_frame(&self) -> u128 {
@@ -288,11 +277,7 @@ impl Usart {
                 self.brr = value;
             }
             0x0c => {
-                only(
-                    value,
-                    0xa1fc,
-                    "USART_CR1 beyond 8N1 (M, PCE, WAKE, RWU, SBK)",
-                )?;
+                only(value, 0xa1fc, "USART_CR1 beyond 8N1 (M, PCE, WAKE, RWU, SBK)")?;
                 only(value & 0x0100, 0, "USART_CR1.PEIE")?;
                 let starts = value & (UE | TE) == UE | TE && self.cr1 & (UE | TE) != UE | TE;
                 self.cr1 = value;
@@ -310,11 +295,7 @@ impl Usart {
                 self.cr2 = value;
             }
             0x14 => {
-                only(
-                    value,
-                    0x08c1 | HDSEL,
-                    "USART_CR3 beyond DMAT, DMAR, HDSEL, EIE and ONEBIT",
-                )?;
+                only(value, 0x08c1 | HDSEL, "USART_CR3 beyond DMAT, DMAR, HDSEL, EIE and ONEBIT")?;
                 self.cr3 = value;
             }
             0x18 => only(value, 0, "USART_GTPR")?,
@@ -332,9 +313,7 @@ mod tests {
     fn usart(brr: u32, over8: bool, extra: u32) -> Usart {
         let mut usart = Usart::new(4, 180_000_000, 1_000_000);
         usart.write(0x08, brr, 0).unwrap();
-        usart
-            .write(0x0c, UE | TE | RE | u32::from(over8) << 15 | extra, 0)
-            .unwrap();
+        usart.write(0x0c, UE | TE | RE | u32::from(over8) << 15 | extra, 0).unwrap();
         assert_eq!(usart.transmitted(), None);
         usart
     }
@@ -355,18 +334,10 @@ mod tests {
     fn transmission_keeps_one_byte_waiting() {
         let mut usart = usart(45, false, 0);
         usart.write(0x04, 0x41, 10_000).unwrap();
-        assert_eq!(
-            (usart.sr & (TXE | TC), usart.tx_due),
-            (TXE, 11_800),
-            "ten bits of 180 cycles"
-        );
+        assert_eq!((usart.sr & (TXE | TC), usart.tx_due), (TXE, 11_800), "ten bits of 180 cycles");
         usart.write(0x04, 0x42, 10_100).unwrap();
         assert_eq!(usart.sr & (TXE | TC), 0);
-        assert_eq!(
-            (usart.transmitted(), usart.tx_due),
-            (Some(0x41), 13_600),
-            "back to back"
-        );
+        assert_eq!((usart.transmitted(), usart.tx_due), (Some(0x41), 13_600), "back to back");
         assert_eq!(usart.transmitted(), Some(0x42));
         assert_eq!(usart.sr & (TXE | TC), TXE | TC);
     }
@@ -381,11 +352,7 @@ mod tests {
         usart.receive(true);
         assert_eq!(usart.read(0).unwrap() & (RXNE | ORE), RXNE | ORE);
         assert_eq!(usart.read(4).unwrap(), u32::from(b'a'));
-        assert_eq!(
-            usart.read(0).unwrap() & (RXNE | ORE),
-            0,
-            "SR then DR clears both"
-        );
+        assert_eq!(usart.read(0).unwrap() & (RXNE | ORE), 0, "SR then DR clears both");
         assert!(!usart.request());
     }
 

@@ -31,12 +31,7 @@ pub(crate) struct Wwdg {
 
 impl Wwdg {
     pub fn new() -> Self {
-        Self {
-            count: TOP,
-            cfr: TOP,
-            due: u64::MAX,
-            ..Self::default()
-        }
+        Self { count: TOP, cfr: TOP, due: u64::MAX, ..Self::default() }
     }
 
     /// Back to the reset values; the clock stays.
@@ -77,8 +72,7 @@ impl Wwdg {
 
     /// CPU cycles from one count to the next.
     fn step(&self) -> Option<u64> {
-        self.divider
-            .map(|divider| divider * (PRESCALER << (self.cfr >> 7 & 3)))
+        self.divider.map(|divider| divider * (PRESCALER << (self.cfr >> 7 & 3)))
     }
 
     /// Brings the counter up to `now`. `true`: it has passed 0x40, and the watchdog resets the chip.
@@ -174,10 +168,7 @@ mod tests {
         for (wdgtb, min_us, max_us) in table {
             for (t, wanted_us) in [(0x40, min_us), (0x7f, max_us)] {
                 let us = enabled(t, wdgtb, 4).due as f64 / 120.0;
-                assert!(
-                    (us / wanted_us - 1.0).abs() < 2e-4,
-                    "WDGTB {wdgtb}, T {t:#x}: {us} us"
-                );
+                assert!((us / wanted_us - 1.0).abs() < 2e-4, "WDGTB {wdgtb}, T {t:#x}: {us} us");
             }
         }
     }
@@ -196,27 +187,15 @@ mod tests {
     fn a_refresh_reloads_the_counter_but_not_the_prescaler() {
         let mut wwdg = enabled(0x50, 0, 1);
         wwdg.write(CR, 0x50, 5 * 4096 + 4000).unwrap();
-        assert_eq!(
-            wwdg.due,
-            (5 + 17) * 4096,
-            "96 cycles into the first period are lost"
-        );
+        assert_eq!(wwdg.due, (5 + 17) * 4096, "96 cycles into the first period are lost");
     }
 
     #[test]
     fn a_refresh_above_the_window_resets_and_one_inside_does_not() {
         let mut wwdg = enabled(0x7f, 0, 1);
         wwdg.write(CFR, 0x60, 0).unwrap();
-        assert_eq!(
-            wwdg.write(CR, 0x7f, 0x1f * 4096),
-            Ok(false),
-            "the counter is at 0x60"
-        );
-        assert_eq!(
-            wwdg.write(CR, 0x7f, (0x1f + 0x1e) * 4096),
-            Ok(true),
-            "at 0x61"
-        );
+        assert_eq!(wwdg.write(CR, 0x7f, 0x1f * 4096), Ok(false), "the counter is at 0x60");
+        assert_eq!(wwdg.write(CR, 0x7f, (0x1f + 0x1e) * 4096), Ok(true), "at 0x61");
     }
 
     #[test]

@@ -30,13 +30,8 @@ pub struct ComparatorParams {
 
 impl ComparatorParams {
     /// Values of the circuit in `hardware/`.
-    pub const NOMINAL: Self = Self {
-        cold_c: 10.0,
-        hot_c: 45.0,
-        cold_test_c: 5.0,
-        hot_test_c: 48.0,
-        release_s: 4.2e-3,
-    };
+    pub const NOMINAL: Self =
+        Self { cold_c: 10.0, hot_c: 45.0, cold_test_c: 5.0, hot_test_c: 48.0, release_s: 4.2e-3 };
 }
 
 /// What the microcontroller connects the comparator's input to.

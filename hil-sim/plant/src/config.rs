@@ -70,10 +70,7 @@ pub struct HostParams {
 
 impl HostParams {
     /// A calibrated resistance thermometer.
-    pub const NOMINAL: Self = Self {
-        reference_offset_k: 0.0,
-        reference_noise_k: 0.3e-3,
-    };
+    pub const NOMINAL: Self = Self { reference_offset_k: 0.0, reference_noise_k: 0.3e-3 };
 }
 
 impl Params {
@@ -134,11 +131,7 @@ impl ConfigError {
     }
 
     fn value(what: &'static str, value: f64, allowed: impl Into<String>) -> Self {
-        Self::Value {
-            what,
-            value,
-            allowed: allowed.into(),
-        }
+        Self::Value { what, value, allowed: allowed.into() }
     }
 }
 
@@ -149,19 +142,13 @@ impl PlantConfig {
     /// The first value that is not finite or outside of its range.
     pub fn check(&self) -> Result<(), ConfigError> {
         let (coldest, warmest) = TEMPERATURE_C;
-        for (what, value) in [
-            ("skin temperature in deg C", self.skin_c),
-            ("room temperature in deg C", self.room_c),
-        ] {
+        for (what, value) in
+            [("skin temperature in deg C", self.skin_c), ("room temperature in deg C", self.room_c)]
+        {
             within(what, value, coldest, warmest)?;
         }
         within("start time in s", self.start_s, -LONGEST_S, 0.0)?;
-        within(
-            "time at which the object appears in s",
-            self.appears_s,
-            -LONGEST_S,
-            LONGEST_S,
-        )?;
+        within("time at which the object appears in s", self.appears_s, -LONGEST_S, LONGEST_S)?;
         positive("duration in s", self.duration_s)?;
         within("duration in s", self.duration_s, 0.0, LONGEST_S)?;
         check_object(&self.object)?;
@@ -181,14 +168,8 @@ fn check_object(object: &ObjectConfig) -> Result<(), ConfigError> {
         positive(what, value)?;
     }
     for layer in &object.layers {
-        positive(
-            "conductivity of an object's layer in W/(m K)",
-            layer.medium.conductivity_w_mk,
-        )?;
-        positive(
-            "heat capacity of an object's layer in J/(m3 K)",
-            layer.medium.capacity_j_m3k,
-        )?;
+        positive("conductivity of an object's layer in W/(m K)", layer.medium.conductivity_w_mk)?;
+        positive("heat capacity of an object's layer in J/(m3 K)", layer.medium.capacity_j_m3k)?;
         within(
             "thickness of an object's layer in m",
             layer.thickness_m,
@@ -201,41 +182,17 @@ fn check_object(object: &ObjectConfig) -> Result<(), ConfigError> {
         "number of the object's layers",
         "thickness of an object's layer above another in m",
     )?;
-    within(
-        "object temperature in deg C",
-        object.start_c,
-        coldest,
-        warmest,
-    )?;
-    if let BackBoundary::Film {
-        film_w_m2k,
-        temperature_c,
-    } = object.back
-    {
-        within(
-            "film behind the object in W/(m2 K)",
-            film_w_m2k,
-            0.0,
-            f64::INFINITY,
-        )?;
-        within(
-            "temperature behind the object in deg C",
-            temperature_c,
-            coldest,
-            warmest,
-        )?;
+    within("object temperature in deg C", object.start_c, coldest, warmest)?;
+    if let BackBoundary::Film { film_w_m2k, temperature_c } = object.back {
+        within("film behind the object in W/(m2 K)", film_w_m2k, 0.0, f64::INFINITY)?;
+        within("temperature behind the object in deg C", temperature_c, coldest, warmest)?;
     }
     Ok(())
 }
 
 /// Checks parameters that depend on each other.
 fn check_consistency(params: &Params) -> Result<(), ConfigError> {
-    let Params {
-        finger,
-        tile,
-        bridge,
-        ..
-    } = params;
+    let Params { finger, tile, bridge, .. } = params;
     if tile.patch_m2 >= tile.plate_m2() {
         let allowed = format!("below the plate's area, {}", tile.plate_m2());
         return Err(ConfigError::value("tile.patch_m2", tile.patch_m2, allowed));
@@ -249,11 +206,7 @@ fn check_consistency(params: &Params) -> Result<(), ConfigError> {
     let half_period_s = 0.5 / bridge.pwm_hz;
     if bridge.dead_time_s > half_period_s {
         let allowed = format!("up to half a period, {half_period_s:e}");
-        return Err(ConfigError::value(
-            "bridge.dead_time_s",
-            bridge.dead_time_s,
-            allowed,
-        ));
+        return Err(ConfigError::value("bridge.dead_time_s", bridge.dead_time_s, allowed));
     }
     let last = check_order(
         &finger.layers,
@@ -286,11 +239,7 @@ fn check_order<'a>(
         return Err(ConfigError::value(number, 0.0, "1 or more"));
     };
     if above.iter().any(|layer| layer.thickness_m.is_infinite()) {
-        return Err(ConfigError::value(
-            above_another,
-            f64::INFINITY,
-            "a finite number",
-        ));
+        return Err(ConfigError::value(above_another, f64::INFINITY, "a finite number"));
     }
     Ok(last)
 }
@@ -317,11 +266,7 @@ fn within(what: &'static str, value: f64, least: f64, most: f64) -> Result<(), C
     if (least..=most).contains(&value) {
         return Ok(());
     }
-    Err(ConfigError::value(
-        what,
-        value,
-        format!("{least} to {most}"),
-    ))
+    Err(ConfigError::value(what, value, format!("{least} to {most}")))
 }
 
 fn positive(what: &'static str, value: f64) -> Result<(), ConfigError> {

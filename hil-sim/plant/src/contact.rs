@@ -37,10 +37,7 @@ impl ContactLaw {
         // `Real::powf` in place of `f64::powf`, because it has the same result on every host.
         let spots_w_m2k =
             conductance_at_hardness::<f64>(skin, other) * Real::powf(relative, self.exponent);
-        Some(SkinContact {
-            area_m2,
-            resistance_m2k_w: 1.0 / (spots_w_m2k + self.gap_w_m2k),
-        })
+        Some(SkinContact { area_m2, resistance_m2k_w: 1.0 / (spots_w_m2k + self.gap_w_m2k) })
     }
 }
 

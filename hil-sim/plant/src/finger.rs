@@ -32,10 +32,7 @@ pub struct Vessels {
 
 impl Vessels {
     /// The forces of section 6.4.3.
-    pub const THESIS: Self = Self {
-        open_n: 0.3,
-        shut_n: 1.0,
-    };
+    pub const THESIS: Self = Self { open_n: 0.3, shut_n: 1.0 };
 
     /// Fraction of the full flow at a force, N.
     pub fn flow(&self, force_n: f64) -> f64 {
@@ -98,10 +95,9 @@ impl FingerParams {
 
     /// Boundary condition behind the tissue; the core temperature is set later by the steady state.
     pub fn back(&self) -> BackBoundary {
-        self.core_w_m2k
-            .map_or(BackBoundary::Insulated, |film_w_m2k| BackBoundary::Film {
-                film_w_m2k,
-                temperature_c: 0.0,
-            })
+        self.core_w_m2k.map_or(BackBoundary::Insulated, |film_w_m2k| BackBoundary::Film {
+            film_w_m2k,
+            temperature_c: 0.0,
+        })
     }
 }

@@ -105,12 +105,9 @@ impl Plant {
         let finger = mesh(&params.finger.layers, params.finger.back());
         let object = mesh(&config.object.layers, config.object.back);
         let air_w_m2k = params.finger.air_w_m2k;
-        let steady = steady_state(
-            &finger,
-            config.skin_c,
-            air_w_m2k * (config.skin_c - config.room_c),
-        )
-        .ok_or_else(|| ConfigError::cold_finger(air_w_m2k))?;
+        let steady =
+            steady_state(&finger, config.skin_c, air_w_m2k * (config.skin_c - config.room_c))
+                .ok_or_else(|| ConfigError::cold_finger(air_w_m2k))?;
         config::check_core(steady.core_c)?;
         let mut heat = ThermalModel::new(
             (&finger, config.skin_c),
@@ -293,10 +290,7 @@ impl Plant {
         self.bridge_current = match load_ohm {
             None => self.heat.tile().current(),
             Some(resistance_ohm) => {
-                let load = Load {
-                    seebeck_v: 0.0,
-                    resistance_ohm,
-                };
+                let load = Load { seebeck_v: 0.0, resistance_ohm };
                 self.bridge.current(STEP_S, &legs, &load)
             }
         };
@@ -318,10 +312,7 @@ impl Plant {
             supply_counts: self.supply.sensed_counts(),
         };
         self.sensors.step(STEP_S, &state);
-        self.comparator.step(
-            STEP_S,
-            self.sensors.pin_ratio(Channel::DisplayCheck as usize),
-        );
+        self.comparator.step(STEP_S, self.sensors.pin_ratio(Channel::DisplayCheck as usize));
     }
 
     /// Updates the contacts for the force and the time of the coming step.
@@ -338,11 +329,7 @@ impl Plant {
             self.steps_since_change = 0;
         }
         self.contact_state = contact_state;
-        let Surfaces {
-            skin,
-            display,
-            object,
-        } = &self.surfaces;
+        let Surfaces { skin, display, object } = &self.surfaces;
         let at_force = |other| {
             let contact = self.contact_law.at_force(self.force_n, skin, other)?;
             Some(SkinContact {

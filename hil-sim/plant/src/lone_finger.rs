@@ -91,10 +91,7 @@ impl LoneFinger {
                 let [a, b] = equations.map(|equation| equation.pivot + g);
                 let [rhs_a, rhs_b] = equations.map(|equation| equation.rhs);
                 let determinant = a * b - g * g;
-                [
-                    (b * rhs_a + g * rhs_b) / determinant,
-                    (a * rhs_b + g * rhs_a) / determinant,
-                ]
+                [(b * rhs_a + g * rhs_b) / determinant, (a * rhs_b + g * rhs_a) / determinant]
             };
             let increments = solve(both.first_stage(length, [-out_w_m2, out_w_m2]));
             let increments = solve(both.second_stage(length, increments));
@@ -137,11 +134,7 @@ impl ContactCourse {
 /// Calls `part` with the start, s, of each part of each step, the index of its length, and whether it ends the step.
 fn each_part(steps: u32, mut part: impl FnMut(f64, usize, bool)) {
     for step in 0..steps {
-        let (parts, length) = if step == 0 {
-            (FIRST_PARTS, PART)
-        } else {
-            (1, WHOLE)
-        };
+        let (parts, length) = if step == 0 { (FIRST_PARTS, PART) } else { (1, WHOLE) };
         for number in 0..parts {
             let from_s = f64::from(step) * STEP_S + f64::from(number) * LENGTHS_S[PART];
             part(from_s, length, number + 1 == parts);

@@ -33,9 +33,6 @@ impl ObjectConfig {
 
     /// A layer of a material, `thickness_m` metres thick.
     pub fn layer(material: &Material, thickness_m: f64) -> Layer {
-        Layer {
-            thickness_m,
-            medium: Medium::without_blood(material),
-        }
+        Layer { thickness_m, medium: Medium::without_blood(material) }
     }
 }

@@ -27,13 +27,7 @@ impl ReferenceSolution {
     /// A homogeneous finger of uniform temperature, deg C, in contact from now on, with the mesh and the steps of every
     /// simulation; half-spaces are deep enough for `duration_s`.
     pub fn new(skin_c: f64, object: &ObjectConfig, touch: SkinContact, duration_s: f64) -> Self {
-        Self::on_mesh(
-            skin_c,
-            object,
-            touch,
-            duration_s,
-            (&Grading::STANDARD, STEP_S),
-        )
+        Self::on_mesh(skin_c, object, touch, duration_s, (&Grading::STANDARD, STEP_S))
     }
 
     /// The same with another mesh or step length, s.
@@ -74,8 +68,7 @@ impl ReferenceSolution {
             self.age = self.age.saturating_add(1);
         }
         if let Some(index) = self.remaining.pop() {
-            self.heat
-                .step(index, &mut self.idle_bridge, &BridgeOutputs::default());
+            self.heat.step(index, &mut self.idle_bridge, &BridgeOutputs::default());
             self.time_s += substeps::length_s(self.step_s, index);
         }
     }

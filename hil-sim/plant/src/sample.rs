@@ -52,12 +52,7 @@ impl SampleTouch {
         config.check()?;
         let params = &config.params.finger;
         let mesh = |layers: &[_], back| {
-            Slab::new(
-                layers,
-                back,
-                config.duration_s - config.start_s,
-                &Grading::STANDARD,
-            )
+            Slab::new(layers, back, config.duration_s - config.start_s, &Grading::STANDARD)
         };
         let finger = mesh(&params.layers, params.back());
         let sample = mesh(&config.object.layers, config.object.back);
@@ -114,20 +109,19 @@ impl SampleTouch {
             return;
         }
         self.updated_for_n = self.force_n;
-        let contact = self
-            .contact_law
-            .at_force(self.force_n, &self.skin, &self.sample)
-            .map(|contact| SkinContact {
-                resistance_m2k_w: self.resistance_factor * contact.resistance_m2k_w,
-                ..contact
+        let contact =
+            self.contact_law.at_force(self.force_n, &self.skin, &self.sample).map(|contact| {
+                SkinContact {
+                    resistance_m2k_w: self.resistance_factor * contact.resistance_m2k_w,
+                    ..contact
+                }
             });
         if contact::is_abrupt(self.contact, contact) {
             self.steps_since_change = 0;
         }
         let [finger, sample] = self.surface_m2k_w;
-        self.contact_w_m2k = contact.map_or(0.0, |touch| {
-            1.0 / (finger + touch.resistance_m2k_w + sample)
-        });
+        self.contact_w_m2k =
+            contact.map_or(0.0, |touch| 1.0 / (finger + touch.resistance_m2k_w + sample));
         self.contact = contact;
         if let Some(vessels) = &self.vessels {
             self.slabs.set_flow(FINGER, vessels.flow(self.force_n));
@@ -150,11 +144,8 @@ impl SampleTouch {
             into[slab] - air_w_m2k[slab] * (self.slabs.surface_c(slab) - self.room_c)
         });
         let equations = self.slabs.first_stage(index, inflow);
-        let equations = self
-            .slabs
-            .second_stage(index, self.increments(equations, air_w_m2k));
-        self.slabs
-            .finish_step(index, self.increments(equations, air_w_m2k));
+        let equations = self.slabs.second_stage(index, self.increments(equations, air_w_m2k));
+        self.slabs.finish_step(index, self.increments(equations, air_w_m2k));
     }
 
     /// Increments of both surface cells, which the contact couples.
@@ -168,10 +159,7 @@ impl SampleTouch {
         // Cramer's rule; all terms are positive, so nothing cancels.
         let determinant = a * b + u * (a + b);
         let shared = u * (finger.rhs + sample.rhs);
-        [
-            (finger.rhs * b + shared) / determinant,
-            (sample.rhs * a + shared) / determinant,
-        ]
+        [(finger.rhs * b + shared) / determinant, (sample.rhs * a + shared) / determinant]
     }
 
     /// Simulated time since the start, s.

@@ -22,13 +22,10 @@ pub fn of_step(age: u32) -> impl Iterator<Item = usize> {
         // Keeps the ratio of sub-step to elapsed time until whole steps are short enough.
         _ => (None, 1, (PARTS + 1).saturating_sub(age.ilog2())),
     };
-    first
-        .map(|k| k as usize)
-        .into_iter()
-        .chain((0..spans).flat_map(move |span| {
-            let halved = if age == 0 { HALVINGS - span } else { 0 };
-            (0..1u32 << parts).map(move |_| (halved + parts) as usize)
-        }))
+    first.map(|k| k as usize).into_iter().chain((0..spans).flat_map(move |span| {
+        let halved = if age == 0 { HALVINGS - span } else { 0 };
+        (0..1u32 << parts).map(move |_| (halved + parts) as usize)
+    }))
 }
 
 #[cfg(test)]

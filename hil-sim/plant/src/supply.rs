@@ -138,11 +138,7 @@ impl Supply {
 
     /// Voltage that the sense divider shows, V; none if its wire is open.
     pub const fn sensed_v(&self) -> f64 {
-        if self.defects.sense_open {
-            0.0
-        } else {
-            self.node_v
-        }
+        if self.defects.sense_open { 0.0 } else { self.node_v }
     }
 
     /// Voltage at the converter's pin, counts at a nominal reference.

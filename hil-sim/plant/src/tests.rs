@@ -36,11 +36,7 @@ fn plant(material: &str) -> Plant {
 }
 
 fn legs(a: f64, b: f64) -> BridgeOutputs {
-    BridgeOutputs {
-        a: Leg::Duty(a),
-        b: Leg::Duty(b),
-        enabled: true,
-    }
+    BridgeOutputs { a: Leg::Duty(a), b: Leg::Duty(b), enabled: true }
 }
 
 fn run(plant: &mut Plant, duration_s: f64, legs: &BridgeOutputs) {
@@ -54,18 +50,11 @@ fn leg_a_above_leg_b_cools_and_leg_b_above_leg_a_heats() {
     for (a, b, sign) in [(1.0, 0.6, -1.0), (0.6, 1.0, 1.0)] {
         let mut plant = plant("copper");
         run(&mut plant, 1.0, &legs(a, b));
-        assert!(
-            sign * (plant.display_c() - 24.0) > 3.0,
-            "{}",
-            plant.display_c()
-        );
+        assert!(sign * (plant.display_c() - 24.0) > 3.0, "{}", plant.display_c());
         assert!(sign * plant.current_a() < -3.0, "{}", plant.current_a());
         let codes = Channel::ALL.map(|channel| f64::from(plant.convert(channel)));
         let mirror_a = codes[Channel::Current as usize] / 400.0;
-        assert!(
-            (mirror_a - plant.current_a().abs()).abs() < 0.02,
-            "{mirror_a}"
-        );
+        assert!((mirror_a - plant.current_a().abs()).abs() < 0.02, "{mirror_a}");
     }
 }
 
@@ -107,10 +96,7 @@ fn a_board_without_the_filters_of_the_current_measurement_sees_the_ripple_at_its
     };
     for (phase, error_a) in [(0.0, -1.645), (0.25, 0.0), (0.5, 1.645)] {
         let unfiltered_a = reading_a(0.0, phase, 0.0);
-        assert!(
-            (unfiltered_a - error_a).abs() < 0.02,
-            "{phase}: {unfiltered_a} A"
-        );
+        assert!((unfiltered_a - error_a).abs() < 0.02, "{phase}: {unfiltered_a} A");
         let spread_a = reading_a(0.0, phase, 0.0614);
         assert!(spread_a.abs() < 0.06, "{phase}: {spread_a} A");
         let filtered_a = reading_a(0.43e-3, phase, 0.0);
@@ -121,44 +107,25 @@ fn a_board_without_the_filters_of_the_current_measurement_sees_the_ripple_at_its
 #[test]
 fn disabled_bridge_drives_no_current() {
     let mut plant = plant("copper");
-    run(
-        &mut plant,
-        0.5,
-        &BridgeOutputs {
-            enabled: false,
-            ..legs(1.0, 0.0)
-        },
-    );
+    run(&mut plant, 0.5, &BridgeOutputs { enabled: false, ..legs(1.0, 0.0) });
     assert_eq!(plant.current_a(), 0.0);
     assert!((plant.display_c() - 24.0).abs() < 1e-9);
 }
 
 #[test]
 fn object_that_has_not_appeared_takes_no_heat() {
-    let mut plant = Plant::new(&PlantConfig {
-        appears_s: 0.2,
-        ..config("copper")
-    })
-    .expect("good");
+    let mut plant = Plant::new(&PlantConfig { appears_s: 0.2, ..config("copper") }).expect("good");
     plant.set_force(1.0);
     run(&mut plant, 0.2, &BridgeOutputs::default());
     assert_eq!(plant.skin_real_c(), 34.0);
-    assert!(
-        plant.skin_c() < 33.5,
-        "the display is there: {}",
-        plant.skin_c()
-    );
+    assert!(plant.skin_c() < 33.5, "the display is there: {}", plant.skin_c());
     run(&mut plant, 0.1, &BridgeOutputs::default());
     assert!(plant.skin_real_c() < 32.5, "{}", plant.skin_real_c());
 }
 
 #[test]
 fn time_counts_from_the_start() {
-    let mut plant = Plant::new(&PlantConfig {
-        start_s: -1.0,
-        ..config("abs")
-    })
-    .expect("good");
+    let mut plant = Plant::new(&PlantConfig { start_s: -1.0, ..config("abs") }).expect("good");
     run(&mut plant, 1.5, &BridgeOutputs::default());
     assert!((plant.time_s() - 0.5).abs() < 1e-12);
 }
@@ -171,10 +138,7 @@ fn runs_repeat_bit_for_bit() {
         for k in 0..2000 {
             plant.set_force(if (500..1500).contains(&k) { 1.5 } else { 0.0 });
             plant.step(&legs(0.5, 0.2));
-            seen.push((
-                Channel::ALL.map(|c| plant.convert(c)),
-                plant.skin_c().to_bits(),
-            ));
+            seen.push((Channel::ALL.map(|c| plant.convert(c)), plant.skin_c().to_bits()));
         }
         seen
     };
@@ -183,15 +147,9 @@ fn runs_repeat_bit_for_bit() {
 
 #[test]
 fn bad_configuration_is_named() {
-    let cold = PlantConfig {
-        skin_c: -300.0,
-        ..config("abs")
-    };
+    let cold = PlantConfig { skin_c: -300.0, ..config("abs") };
     let message = Plant::new(&cold).expect_err("too cold").to_string();
-    assert_eq!(
-        message,
-        "skin temperature in deg C is -300; allowed is -40 to 100"
-    );
+    assert_eq!(message, "skin temperature in deg C is -300; allowed is -40 to 100");
     let mut hollow = config("abs");
     hollow.object.layers[0].medium.capacity_j_m3k = 0.0;
     let message = Plant::new(&hollow).expect_err("no mass").to_string();
@@ -199,10 +157,7 @@ fn bad_configuration_is_named() {
         message,
         "heat capacity of an object's layer in J/(m3 K) is 0; allowed is a finite number above 0"
     );
-    let endless = PlantConfig {
-        duration_s: f64::NAN,
-        ..config("abs")
-    };
+    let endless = PlantConfig { duration_s: f64::NAN, ..config("abs") };
     assert!(Plant::new(&endless).is_err());
 }
 
@@ -212,18 +167,11 @@ fn object_keeps_its_start_temperature_until_it_appears() {
     let after = |settle_s: f64, duration_s: f64| {
         let mut config = config("abs");
         config.object.layers[0].thickness_m = 0.01;
-        config.object.back = BackBoundary::Film {
-            film_w_m2k: f64::INFINITY,
-            temperature_c: 40.0,
-        };
+        config.object.back = BackBoundary::Film { film_w_m2k: f64::INFINITY, temperature_c: 40.0 };
         (config.start_s, config.duration_s) = (-settle_s, duration_s);
         let mut plant = Plant::new(&config).expect("good");
         run(&mut plant, settle_s, &BridgeOutputs::default());
-        assert!(
-            (plant.object_c() - 24.0).abs() < 2.0,
-            "{}",
-            plant.object_c()
-        );
+        assert!((plant.object_c() - 24.0).abs() < 2.0, "{}", plant.object_c());
         plant.set_force(2.0);
         run(&mut plant, 12.0, &BridgeOutputs::default());
         plant.skin_real_c()
@@ -231,10 +179,7 @@ fn object_keeps_its_start_temperature_until_it_appears() {
     let expected_c = after(8.0, 600.0);
     for (settle_s, duration_s) in [(8.0, 12.0), (60.0, 12.0)] {
         let off_mk = 1e3 * (after(settle_s, duration_s) - expected_c).abs();
-        assert!(
-            off_mk < 1.0,
-            "{settle_s} s of settling, {duration_s} s simulated: {off_mk} mK"
-        );
+        assert!(off_mk < 1.0, "{settle_s} s of settling, {duration_s} s simulated: {off_mk} mK");
     }
 }
 
@@ -274,8 +219,5 @@ fn impossible_core_temperature_is_refused() {
     config.params.finger.air_w_m2k = 10.0;
     config.params.finger.layers[0].thickness_m = 1e-3;
     let message = Plant::new(&config).expect_err("1000 K").to_string();
-    assert!(
-        message.contains("core") && message.contains("allowed is 0 to 45"),
-        "{message}"
-    );
+    assert!(message.contains("core") && message.contains("allowed is 0 to 45"), "{message}");
 }

@@ -120,9 +120,8 @@ impl ThermalModel {
     ) {
         let [finger, _, object] = self.surface_m2k_w;
         let plate_k_w = self.tile.patch_half_k_w();
-        self.on_display_w_m2k = on_display.map_or(0.0, |t| {
-            1.0 / (finger + t.resistance_m2k_w + plate_k_w * t.area_m2)
-        });
+        self.on_display_w_m2k =
+            on_display.map_or(0.0, |t| 1.0 / (finger + t.resistance_m2k_w + plate_k_w * t.area_m2));
         self.on_object_w_m2k =
             on_object.map_or(0.0, |t| 1.0 / (finger + t.resistance_m2k_w + object));
         let area_m2 = on_display.map_or(0.0, |t| t.area_m2);
@@ -130,26 +129,17 @@ impl ThermalModel {
             self.area_m2 = area_m2;
             self.tile.cover(area_m2);
         }
-        let covered = [
-            on_display.is_some(),
-            on_object.is_some(),
-            on_object.is_some() || !object_present,
-        ];
-        self.air_w_m2k = std::array::from_fn(|l| {
-            if covered[l] {
-                0.0
-            } else {
-                self.lifted_w_m2k[l]
-            }
-        });
+        let covered =
+            [on_display.is_some(), on_object.is_some(), on_object.is_some() || !object_present];
+        self.air_w_m2k =
+            std::array::from_fn(|l| if covered[l] { 0.0 } else { self.lifted_w_m2k[l] });
     }
 
     /// Advances by the sub-step of the given index under constant bridge outputs.
     pub fn step(&mut self, index: usize, bridge: &mut Bridge, legs: &BridgeOutputs) {
         let step_s = substeps::length_s(self.step_s, index);
         self.tile.prepare(step_s);
-        self.tile
-            .drive(bridge.current(step_s, legs, &self.tile.load()));
+        self.tile.drive(bridge.current(step_s, legs, &self.tile.load()));
 
         let out = self.outward_flux_w_m2();
         let inflow_w = self.area_m2 * self.flux_w_m2(Finger::OnDisplay);

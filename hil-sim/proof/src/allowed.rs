@@ -48,19 +48,13 @@ pub struct Allowed {
 impl Allowed {
     /// A list of which none has been used.
     pub fn new(entries: &'static [Entry]) -> Self {
-        Self {
-            entries,
-            used: BTreeSet::new(),
-        }
+        Self { entries, used: BTreeSet::new() }
     }
 
     /// The reason why a function is allowed for a handler, if it is.
     pub fn why(&mut self, tree: &str, name: &str) -> Option<&'static str> {
-        for (index, entry) in self
-            .entries
-            .iter()
-            .enumerate()
-            .filter(|(_, entry)| entry.covers(name))
+        for (index, entry) in
+            self.entries.iter().enumerate().filter(|(_, entry)| entry.covers(name))
         {
             if let Some(tree) = entry.trees.iter().find(|known| **known == tree) {
                 self.used.insert((index, tree));

@@ -42,9 +42,7 @@ fn codegen_units(debug_strings: &[u8]) -> usize {
         let Ok(name) = str::from_utf8(name) else {
             continue;
         };
-        let unit = name
-            .split_once("/@/")
-            .and_then(|(_, unit)| unit.split_once("-cgu."));
+        let unit = name.split_once("/@/").and_then(|(_, unit)| unit.split_once("-cgu."));
         if let Some((crate_name, number)) = unit
             && (crate_name.starts_with("thermal_") || crate_name.starts_with("contact_model"))
         {
@@ -52,12 +50,7 @@ fn codegen_units(debug_strings: &[u8]) -> usize {
         }
     }
     let crates: BTreeSet<&str> = units.iter().map(|(crate_name, _)| *crate_name).collect();
-    let count = |of: &&str| {
-        units
-            .iter()
-            .filter(|(crate_name, _)| crate_name == of)
-            .count()
-    };
+    let count = |of: &&str| units.iter().filter(|(crate_name, _)| crate_name == of).count();
     crates.iter().map(count).max().unwrap_or(0)
 }
 

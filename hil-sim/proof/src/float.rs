@@ -13,9 +13,7 @@ fn is_software(name: &str) -> bool {
             .any(|kind| rest.starts_with(kind))
     });
     helper
-        || ["libm::", "compiler_builtins::float::"]
-            .iter()
-            .any(|library| name.starts_with(library))
+        || ["libm::", "compiler_builtins::float::"].iter().any(|library| name.starts_with(library))
 }
 
 /// Checks that no instruction and no function of the control path is floating-point arithmetic, and no function of the learner.
@@ -23,10 +21,7 @@ fn is_software(name: &str) -> bool {
 /// # Errors
 /// A handler is missing.
 pub fn check(proof: &Proof) -> Result<Section> {
-    let mut section = Section {
-        title: "floating point".into(),
-        ..Section::default()
-    };
+    let mut section = Section { title: "floating point".into(), ..Section::default() };
     for tree in CONTROL.into_iter().chain([LEARN]) {
         let (mut instructions, mut functions) = (0, 0);
         for function in &proof.graph.reached(proof.root(tree)?) {
@@ -35,25 +30,17 @@ pub fn check(proof: &Proof) -> Result<Section> {
                 functions += 1;
                 section.violations.push(format!("{tree} calls {name}"));
             }
-            for at in proof
-                .graph
-                .flow(*function)
-                .into_iter()
-                .flat_map(|flow| &flow.float)
-            {
+            for at in proof.graph.flow(*function).into_iter().flat_map(|flow| &flow.float) {
                 instructions += 1;
                 if tree == LEARN {
                     continue;
                 }
-                section.violations.push(format!(
-                    "{tree} calculates at {at:#010x}: {}",
-                    proof.names.chain(*at)
-                ));
+                section
+                    .violations
+                    .push(format!("{tree} calculates at {at:#010x}: {}", proof.names.chain(*at)));
             }
         }
-        section.lines.push(format!(
-            "{tree}: {instructions} instructions, {functions} functions"
-        ));
+        section.lines.push(format!("{tree}: {instructions} instructions, {functions} functions"));
     }
     Ok(section)
 }

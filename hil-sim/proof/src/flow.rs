@@ -82,9 +82,7 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     fn trouble(&mut self, at: u32, what: &str) {
-        self.flow
-            .troubles
-            .insert(format!("{} at {at:#010x}: {what}", self.function.name));
+        self.flow.troubles.insert(format!("{} at {at:#010x}: {what}", self.function.name));
     }
 
     /// Adds an edge from one instruction of this function to another.

@@ -73,12 +73,7 @@ impl Graph {
         let mut reached = BTreeSet::from([root]);
         let mut waiting = vec![root];
         while let Some(at) = waiting.pop() {
-            for call in self
-                .flows
-                .get(&at)
-                .into_iter()
-                .flat_map(|flow| flow.calls.values())
-            {
+            for call in self.flows.get(&at).into_iter().flat_map(|flow| flow.calls.values()) {
                 for to in self.targets(call) {
                     if self.returns(to) && reached.insert(to) {
                         waiting.push(to);

@@ -132,15 +132,9 @@ impl Image {
     /// Collects words that may be addresses of functions: each aligned word of the data and of the constants in the code,
     /// and each word that a pair of instructions builds. The vector table is excluded.
     fn read_addresses(&mut self) {
-        let table = self
-            .symbol("__EXCEPTIONS")
-            .map_or(0, |address| address & !0x3ff);
+        let table = self.symbol("__EXCEPTIONS").map_or(0, |address| address & !0x3ff);
         let mut words = Vec::new();
-        for contents in self
-            .contents
-            .iter()
-            .filter(|contents| contents.address != table)
-        {
+        for contents in self.contents.iter().filter(|contents| contents.address != table) {
             for (place, word) in contents.bytes.chunks_exact(4).enumerate() {
                 let address = contents.address + 4 * place as u32;
                 if !contents.code || self.is_constant(address) {
@@ -188,14 +182,10 @@ impl Image {
         while start < at {
             starts.push(start);
             // Constants are skipped by halfwords.
-            start += self
-                .instruction(start)
-                .map_or(2, |instruction| instruction.length);
+            start += self.instruction(start).map_or(2, |instruction| instruction.length);
         }
         let first = starts.len().saturating_sub(instructions);
-        starts
-            .get(first)
-            .map_or(Vec::new(), |from| self.built(*from, at))
+        starts.get(first).map_or(Vec::new(), |from| self.built(*from, at))
     }
 
     /// Whether an address holds a constant between instructions.
@@ -214,8 +204,7 @@ impl Image {
 
     /// The halfword at an address.
     pub fn half(&self, address: u32) -> Option<u16> {
-        self.at(address, 2)
-            .map(|bytes| u16::from_le_bytes([bytes[0], bytes[1]]))
+        self.at(address, 2).map(|bytes| u16::from_le_bytes([bytes[0], bytes[1]]))
     }
 
     /// The byte at an address.
@@ -282,18 +271,9 @@ impl Image {
     /// # Errors
     /// There is no vector table, or one of its entries is no function.
     pub fn vectors(&self) -> Result<Vec<(String, u32)>> {
-        let start = self
-            .symbol("__EXCEPTIONS")
-            .context("no symbol __EXCEPTIONS")?
-            & !0x3ff;
-        let default = self
-            .symbol("DefaultHandler")
-            .context("no symbol DefaultHandler")?
-            & !1;
-        let section = self
-            .contents
-            .iter()
-            .find(|contents| contents.address == start);
+        let start = self.symbol("__EXCEPTIONS").context("no symbol __EXCEPTIONS")? & !0x3ff;
+        let default = self.symbol("DefaultHandler").context("no symbol DefaultHandler")? & !1;
+        let section = self.contents.iter().find(|contents| contents.address == start);
         let words = section
             .with_context(|| format!("no vector table at {start:#010x}"))?
             .bytes
@@ -308,9 +288,7 @@ impl Image {
             let function = self
                 .function(target)
                 .with_context(|| format!("vector {number}: {word:#010x} is no function"))?;
-            let name = PROCESSOR
-                .get(number)
-                .map_or(function.name.as_str(), |name| name);
+            let name = PROCESSOR.get(number).map_or(function.name.as_str(), |name| name);
             vectors.push((name.to_owned(), target));
         }
         Ok(vectors)

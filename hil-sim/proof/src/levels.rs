@@ -56,11 +56,7 @@ impl Levels {
             .map(|(level, handlers)| Self::level(proof, &mut stacks, level, handlers))
             .collect::<Result<_>>()?;
         recursive.append(&mut stacks.recursive);
-        Ok(Self {
-            each,
-            start,
-            recursive,
-        })
+        Ok(Self { each, start, recursive })
     }
 
     fn level(
@@ -101,16 +97,10 @@ fn sum<'a>(levels: impl Iterator<Item = &'a Level> + Clone) -> u32 {
 /// # Errors
 /// The image lacks a symbol of the stack.
 pub fn size(proof: &Proof) -> Result<u32> {
-    let symbol = |name| {
-        proof
-            .image
-            .symbol(name)
-            .with_context(|| format!("the image has no symbol {name}"))
-    };
+    let symbol =
+        |name| proof.image.symbol(name).with_context(|| format!("the image has no symbol {name}"));
     let (start, end) = (symbol("_stack_start")?, symbol("_stack_end")?);
-    start
-        .checked_sub(end)
-        .context("_stack_end lies above _stack_start")
+    start.checked_sub(end).context("_stack_end lies above _stack_start")
 }
 
 /// Checks that the stack is larger than its upper bound, and that no recursion invalidates the bound.
@@ -118,23 +108,10 @@ pub fn size(proof: &Proof) -> Result<u32> {
 /// # Errors
 /// A handler or a symbol of the stack is missing.
 pub fn check(proof: &Proof) -> Result<Section> {
-    let mut section = Section {
-        title: "stack".into(),
-        ..Section::default()
-    };
-    let known: Vec<&str> = LEVELS
-        .iter()
-        .flat_map(|(_, handlers)| *handlers)
-        .copied()
-        .collect();
-    for (name, _) in proof
-        .vectors
-        .iter()
-        .filter(|(name, _)| !known.contains(&name.as_str()))
-    {
-        section
-            .violations
-            .push(format!("{name} has no place among the priorities"));
+    let mut section = Section { title: "stack".into(), ..Section::default() };
+    let known: Vec<&str> = LEVELS.iter().flat_map(|(_, handlers)| *handlers).copied().collect();
+    for (name, _) in proof.vectors.iter().filter(|(name, _)| !known.contains(&name.as_str())) {
+        section.violations.push(format!("{name} has no place among the priorities"));
     }
     let levels = Levels::new(proof)?;
     for (level, silent, report) in std::iter::once(&levels.start).chain(&levels.each) {
@@ -145,30 +122,25 @@ pub fn check(proof: &Proof) -> Result<Section> {
         ));
     }
     for start in &levels.recursive {
-        section.violations.push(format!(
-            "{} at {start:#010x} calls itself",
-            proof.image.name(*start)
-        ));
+        section
+            .violations
+            .push(format!("{} at {start:#010x} calls itself", proof.image.name(*start)));
     }
     let (bound, size) = (levels.bound(), size(proof)?);
     section.lines.push(format!(
         "with {EXCEPTION} for each exception and one report: {bound} of {size} bytes"
     ));
     if bound > size {
-        section.violations.push(format!(
-            "the stack of {size} bytes is smaller than the bound of {bound}"
-        ));
+        section
+            .violations
+            .push(format!("the stack of {size} bytes is smaller than the bound of {bound}"));
     }
     Ok(section)
 }
 
 /// Bytes, and the functions that use most of them.
 fn shown(proof: &Proof, deepest: &Deepest) -> String {
-    let mut large: Vec<_> = deepest
-        .path
-        .iter()
-        .filter(|(_, bytes)| *bytes >= 200)
-        .collect();
+    let mut large: Vec<_> = deepest.path.iter().filter(|(_, bytes)| *bytes >= 200).collect();
     large.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
     let names: Vec<String> = large
         .iter()

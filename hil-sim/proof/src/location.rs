@@ -18,18 +18,15 @@ impl Location {
     /// The location that the call at an address passes; if it passes none, the one that the called function passes.
     pub fn of_call(image: &Image, graph: &Graph, at: u32) -> Option<Self> {
         let passed = image.loaded_before(at, ARGUMENTS).into_iter();
-        passed
-            .filter_map(|address| Self::read(image, address))
-            .next_back()
-            .or_else(|| {
-                let function = image.functions().find(|f| (f.start..f.end).contains(&at))?;
-                let call = graph.flow(function.start)?.calls.get(&at)?;
-                let Target::Function(called) = call.target else {
-                    return None;
-                };
-                let (inner, _) = graph.flow(called)?.calls.first_key_value()?;
-                Self::of_call(image, graph, *inner)
-            })
+        passed.filter_map(|address| Self::read(image, address)).next_back().or_else(|| {
+            let function = image.functions().find(|f| (f.start..f.end).contains(&at))?;
+            let call = graph.flow(function.start)?.calls.get(&at)?;
+            let Target::Function(called) = call.target else {
+                return None;
+            };
+            let (inner, _) = graph.flow(called)?.calls.first_key_value()?;
+            Self::of_call(image, graph, *inner)
+        })
     }
 
     /// Reads address and length of the path, line and column.

@@ -56,11 +56,7 @@ fn run(cli: &Cli) -> Result<()> {
     for section in &sections {
         println!("{section}");
     }
-    match sections
-        .iter()
-        .map(|section| section.violations.len())
-        .sum()
-    {
+    match sections.iter().map(|section| section.violations.len()).sum() {
         0 => Ok(()),
         count => bail!("{count} violations in {}", elf.display()),
     }

@@ -38,36 +38,21 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
         other => bail!("an image for {other} fingers; known are 1 and {FINGERS}"),
     };
     let (bound, available) = (levels::bound(proof)?, MILLISECOND / fingers as u64);
-    let mut section = Section {
-        title: "emulated".into(),
-        ..Section::default()
-    };
+    let mut section = Section { title: "emulated".into(), ..Section::default() };
     let of = |what: fn(&Cost) -> u64| {
         let largest = all.iter().max_by_key(|measured| what(&measured.cost));
-        largest
-            .map(|measured| (what(&measured.cost), measured.what.as_str()))
-            .context("no scene")
+        largest.map(|measured| (what(&measured.cost), measured.what.as_str())).context("no scene")
     };
     let instructions = of(|cost| cost.instructions_max)?;
     let cycles = of(|cost| cost.cycles_max)?;
     let stack = of(|cost| cost.stack_bytes.unwrap_or(0).into())?;
     ensure!(stack.0 > 0, "the image does not say where its stack ends");
-    section.lines.push(format!(
-        "{} scenes; {available} cycles are there for a tick",
-        all.len()
-    ));
-    let Section {
-        lines,
-        violations,
-        differences,
-        ..
-    } = &mut section;
+    section.lines.push(format!("{} scenes; {available} cycles are there for a tick", all.len()));
+    let Section { lines, violations, differences, .. } = &mut section;
     let hand = if fingers == 1 { "one" } else { "five" };
-    for (what, (value, scene)) in [
-        ("instructions", instructions),
-        ("cycles", cycles),
-        ("stack", stack),
-    ] {
+    for (what, (value, scene)) in
+        [("instructions", instructions), ("cycles", cycles), ("stack", stack)]
+    {
         let figure = figure(&format!("proof.{what}_{hand}"));
         lines.push(format!("{value} {} ({scene}), {figure}", figure.unit));
         if let Verdict::Differs(why) = figure.judge(value as f64) {
@@ -76,9 +61,7 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
     }
     if stack.0 > u64::from(bound) {
         let (seen, scene) = stack;
-        violations.push(format!(
-            "{seen} bytes of stack in {scene}, proven are {bound}"
-        ));
+        violations.push(format!("{seen} bytes of stack in {scene}, proven are {bound}"));
     }
     if cycles.0 > available {
         violations.push(format!("{} cycles in {}: late", cycles.0, cycles.1));
@@ -109,10 +92,7 @@ fn alone(firmware: &Firmware) -> Result<Vec<Measured>> {
 
 fn of_outcome(what: &str, outcome: &Outcome) -> Result<Measured> {
     let cost = outcome.cost.with_context(|| format!("{what}: no tick"))?;
-    Ok(Measured {
-        what: what.into(),
-        cost,
-    })
+    Ok(Measured { what: what.into(), cost })
 }
 
 /// Cost of commissioning: calibration of the sensors and identification of the tile.
@@ -122,10 +102,7 @@ fn commissioned(firmware: &Firmware) -> Result<Measured> {
     let plants = CommissioningSetup::new(&scene.params, scene.room_c, scene.seed);
     let mut image = OneFingerBoard::new(firmware, plants.in_use()?)?;
     commission(&plants, &mut image, &mut |_| ())?;
-    Ok(Measured {
-        what: what.into(),
-        cost: image.cost().context("commissioning: no tick")?,
-    })
+    Ok(Measured { what: what.into(), cost: image.cost().context("commissioning: no tick")? })
 }
 
 /// Five fingers at once, some of them with faults.
@@ -135,9 +112,8 @@ fn together(firmware: &Firmware) -> Result<Measured> {
         .into_iter()
         .filter(|(what, _)| ["bridge-shorted", "host-flood"].contains(&what.as_str()));
     let (names, scenes): (Vec<String>, Vec<Scene>) = touched.chain(faulty).unzip();
-    let scenes: [Scene; FINGERS] = scenes
-        .try_into()
-        .map_err(|other: Vec<_>| anyhow::anyhow!("{} scenes", other.len()))?;
+    let scenes: [Scene; FINGERS] =
+        scenes.try_into().map_err(|other: Vec<_>| anyhow::anyhow!("{} scenes", other.len()))?;
     let mut worlds = Vec::new();
     for scene in &scenes {
         worlds.push(World::of_five_fingers(scene)?);
@@ -145,8 +121,5 @@ fn together(firmware: &Firmware) -> Result<Measured> {
     let worlds = worlds.try_into().map_err(|_| anyhow::anyhow!("worlds"))?;
     let mut hand = FiveFingerBoard::new(firmware, worlds)?;
     five_fingers::run(&scenes, &mut hand, |_| ())?;
-    Ok(Measured {
-        what: names.join(", "),
-        cost: hand.cost().context("no tick")?,
-    })
+    Ok(Measured { what: names.join(", "), cost: hand.cost().context("no tick")? })
 }

@@ -19,10 +19,7 @@ pub struct Frame {
 impl Frame {
     /// A function without a name.
     pub fn unknown(at: u32) -> Self {
-        Self {
-            function: format!("{at:#010x}"),
-            place: UNKNOWN.into(),
-        }
+        Self { function: format!("{at:#010x}"), place: UNKNOWN.into() }
     }
 
     /// Whether the line is known.
@@ -41,9 +38,7 @@ impl Frame {
 
     /// Whether it belongs to this project.
     pub fn is_ours(&self) -> bool {
-        ["thermal_", "contact_model::"]
-            .iter()
-            .any(|ours| self.function.starts_with(ours))
+        ["thermal_", "contact_model::"].iter().any(|ours| self.function.starts_with(ours))
     }
 }
 
@@ -65,10 +60,7 @@ impl Names {
         let mut frames = Vec::new();
         if let Ok(mut found) = self.0.find_frames(u64::from(address)) {
             while let Ok(Some(frame)) = found.next() {
-                let name = frame
-                    .function
-                    .as_ref()
-                    .and_then(|name| name.raw_name().ok());
+                let name = frame.function.as_ref().and_then(|name| name.raw_name().ok());
                 let Some(name) = name else { continue };
                 let place = frame.location.as_ref().and_then(|place| {
                     let file = Path::new(place.file?).file_name()?.to_str()?;
@@ -107,13 +99,11 @@ impl Names {
 /// A function's path without generic parameters: `<a::B<C> as d::E<F>>::g::<H>` is `a::B::g`, `<[B] as d::E>::g` is
 /// `d::E::g`.
 pub fn plain(name: &str) -> String {
-    let (mut text, rest) = match name
-        .strip_prefix('<')
-        .and_then(|rest| rest.split_at_checked(closing(rest)?))
-    {
-        Some((inside, rest)) => (plain(implementor(inside)), &rest[1..]),
-        None => (String::new(), name),
-    };
+    let (mut text, rest) =
+        match name.strip_prefix('<').and_then(|rest| rest.split_at_checked(closing(rest)?)) {
+            Some((inside, rest)) => (plain(implementor(inside)), &rest[1..]),
+            None => (String::new(), name),
+        };
     let mut rest = rest;
     while let Some(open) = rest.find('<') {
         let (before, inside) = (&rest[..open], &rest[open + 1..]);
@@ -179,15 +169,9 @@ mod tests {
             ("a::B::<C>::f::<G>", "a::B::f"),
             ("<a::B<C> as d::E<F>>::g", "a::B::g"),
             ("<a::B>::g::{{closure}}", "a::B::g::{{closure}}"),
-            (
-                "core::slice::<impl [T]>::split_at",
-                "core::slice::[T]::split_at",
-            ),
+            ("core::slice::<impl [T]>::split_at", "core::slice::[T]::split_at"),
             ("core::ops::f<fn() -> u8>::call", "core::ops::f::call"),
-            (
-                "<[a::B] as core::ops::Index<C>>::index",
-                "core::ops::Index::index",
-            ),
+            ("<[a::B] as core::ops::Index<C>>::index", "core::ops::Index::index"),
             ("<u32 as a::Wide>::wide", "a::Wide::wide"),
         ] {
             assert_eq!(plain(name), expected, "{name}");

@@ -30,10 +30,7 @@ pub struct Site {
 impl Site {
     fn new(image: &Image, graph: &Graph, names: &Names, at: u32, called: u32) -> Self {
         let frames = names.frames(at);
-        let owner = frames
-            .iter()
-            .find(|frame| !frame.is_core())
-            .or(frames.last());
+        let owner = frames.iter().find(|frame| !frame.is_core()).or(frames.last());
         let owner = owner.cloned().unwrap_or_else(|| Frame::unknown(at));
         // Without a line, the compiler has merged several panics; only their argument contains the location.
         let merged =
@@ -50,14 +47,8 @@ impl Site {
 
 impl Site {
     fn violation(&self, tree: &str) -> String {
-        let Self {
-            at, called, chain, ..
-        } = self;
-        let whose = if self.ours {
-            "our own code"
-        } else {
-            "a library"
-        };
+        let Self { at, called, chain, .. } = self;
+        let whose = if self.ours { "our own code" } else { "a library" };
         format!("{tree} can panic in {whose} at {at:#010x}, {called}: {chain}")
     }
 }
@@ -66,11 +57,7 @@ impl Site {
 pub fn sites(image: &Image, graph: &Graph, names: &Names, root: u32) -> Vec<Site> {
     let mut sites = Vec::new();
     for function in &graph.reached(root) {
-        for (at, call) in graph
-            .flow(*function)
-            .into_iter()
-            .flat_map(|flow| &flow.calls)
-        {
+        for (at, call) in graph.flow(*function).into_iter().flat_map(|flow| &flow.calls) {
             if let Target::Function(called) = call.target
                 && !graph.returns(called)
             {
@@ -88,10 +75,7 @@ pub fn sites(image: &Image, graph: &Graph, names: &Names, root: u32) -> Vec<Site
 /// # Errors
 /// A handler is missing.
 pub fn check(proof: &Proof) -> Result<Section> {
-    let mut section = Section {
-        title: "panics".into(),
-        ..Section::default()
-    };
+    let mut section = Section { title: "panics".into(), ..Section::default() };
     let mut allowed = Allowed::new(&PANICS);
     for tree in CONTROL.into_iter().chain([LEARN, HOST]) {
         let root = proof.root(tree)?;
@@ -107,30 +91,17 @@ pub fn check(proof: &Proof) -> Result<Section> {
         for site in &sites {
             *owners.entry(&site.owner).or_default() += 1;
             if allowed.why(tree, &site.owner).is_none() {
-                let list = if site.ours {
-                    &mut section.violations
-                } else {
-                    &mut section.differences
-                };
+                let list =
+                    if site.ours { &mut section.violations } else { &mut section.differences };
                 list.push(site.violation(tree));
             }
         }
-        section.lines.extend(
-            owners
-                .iter()
-                .map(|(owner, count)| format!("  {count} in {owner}")),
-        );
+        section.lines.extend(owners.iter().map(|(owner, count)| format!("  {count} in {owner}")));
         for function in &reached {
-            let undefined = proof
-                .graph
-                .flow(*function)
-                .into_iter()
-                .flat_map(|flow| &flow.undefined);
+            let undefined =
+                proof.graph.flow(*function).into_iter().flat_map(|flow| &flow.undefined);
             let violation = |at: &u32| {
-                format!(
-                    "{tree} can run into an undefined instruction: {}",
-                    proof.names.chain(*at)
-                )
+                format!("{tree} can run into an undefined instruction: {}", proof.names.chain(*at))
             };
             section.violations.extend(undefined.map(violation));
         }

@@ -96,16 +96,10 @@ impl Proof {
 
     /// Code that could not be analysed.
     fn decoded(&self) -> Section {
-        let flows = || {
-            self.image
-                .functions()
-                .filter_map(|function| self.graph.flow(function.start))
-        };
+        let flows =
+            || self.image.functions().filter_map(|function| self.graph.flow(function.start));
         let count = |of: &dyn Fn(u32) -> bool| {
-            self.image
-                .functions()
-                .filter(|function| of(function.start))
-                .count()
+            self.image.functions().filter(|function| of(function.start)).count()
         };
         Section {
             title: "code".into(),
@@ -119,9 +113,7 @@ impl Proof {
                     .filter(|call| call.is_indirect())
                     .count(),
             )],
-            violations: flows()
-                .flat_map(|flow| flow.troubles.iter().cloned())
-                .collect(),
+            violations: flows().flat_map(|flow| flow.troubles.iter().cloned()).collect(),
             differences: Vec::new(),
         }
     }

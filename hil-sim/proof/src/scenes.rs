@@ -16,15 +16,8 @@ const FAULT_S: f64 = 0.5;
 /// # Errors
 /// A scene is refused.
 pub fn touched() -> Result<Vec<(String, Scene)>> {
-    let forces = [
-        (0.2, 2.0),
-        (0.5, 0.1),
-        (0.8, 10.0),
-        (1.2, 0.0),
-        (1.4, 0.5),
-        (1.8, 0.0),
-        (1.9, 1.0),
-    ];
+    let forces =
+        [(0.2, 2.0), (0.5, 0.1), (0.8, 10.0), (1.2, 0.0), (1.4, 0.5), (1.8, 0.0), (1.9, 1.0)];
     let lines = [
         (0.4, "law pi"),
         (0.45, "state"),
@@ -63,17 +56,9 @@ pub fn faulty() -> Result<Vec<(String, Scene)>> {
             writeln!(text, "[device]\nflux_sensor = true")?;
         }
         writeln!(text, "[[force]]\nt_s = 0.2\nforce_n = 2.0")?;
-        writeln!(
-            text,
-            "[[fault]]\nkind = \"{}\"\nt_s = {FAULT_S}",
-            kind.name()
-        )?;
+        writeln!(text, "[[fault]]\nkind = \"{}\"\nt_s = {FAULT_S}", kind.name())?;
         if let Some(value) = kind.value() {
-            writeln!(
-                text,
-                "value = {:?}",
-                value.min + (value.max - value.min) * 0.75
-            )?;
+            writeln!(text, "value = {:?}", value.min + (value.max - value.min) * 0.75)?;
         }
         if kind.needs_second_sensor() {
             writeln!(text, "with = \"sink\"")?;
@@ -107,10 +92,7 @@ pub fn courses() -> Result<Vec<(String, Scene)>> {
         }
         parsed(what, &text)
     };
-    [("course", 48, 20), ("course-of-two-points", 2, 1000)]
-        .into_iter()
-        .map(scene)
-        .collect()
+    [("course", 48, 20), ("course-of-two-points", 2, 1000)].into_iter().map(scene).collect()
 }
 
 fn head(material: &str, duration_s: f64) -> String {

@@ -25,15 +25,9 @@ impl Budget {
     /// it: the panic, its message, an error, a field, a number, the output buffer. One in reserve.
     const NESTED: u8 = 12;
     /// No panic is reported; the analysis ends at the function that every panic calls last.
-    pub const SILENT: Self = Self {
-        nested: Self::NESTED,
-        panics: 0,
-    };
+    pub const SILENT: Self = Self { nested: Self::NESTED, panics: 0 };
     /// One panic is reported.
-    pub const REPORT: Self = Self {
-        nested: Self::NESTED,
-        panics: 1,
-    };
+    pub const REPORT: Self = Self { nested: Self::NESTED, panics: 1 };
 }
 
 /// Possible targets of an indirect call.
@@ -69,10 +63,7 @@ pub struct Stacks<'a> {
 impl<'a> Stacks<'a> {
     /// An analysis without results.
     pub fn new(proof: &'a Proof) -> Self {
-        let through_register = Call {
-            target: Target::Register,
-            stack: 0,
-        };
+        let through_register = Call { target: Target::Register, stack: 0 };
         let all: Vec<u32> = proof.graph.targets(&through_register).collect();
         let is_text = |start: &u32| {
             let name = proof.image.name(*start);
@@ -91,10 +82,7 @@ impl<'a> Stacks<'a> {
 
     /// The same without the calls of functions whose name ends with `name`.
     pub fn without_calls_of(proof: &'a Proof, name: &'static str) -> Self {
-        Self {
-            shallow: Some(name),
-            ..Self::new(proof)
-        }
+        Self { shallow: Some(name), ..Self::new(proof) }
     }
 
     /// The deepest path of calls from a function.
@@ -102,20 +90,14 @@ impl<'a> Stacks<'a> {
         let proof = self.proof;
         let flow = proof.graph.flow(function);
         let own = flow.map_or(0, |flow| flow.stack);
-        let mut deepest = Deepest {
-            bytes: own,
-            path: vec![(function, own)],
-        };
+        let mut deepest = Deepest { bytes: own, path: vec![(function, own)] };
         if proof.image.name(function).ends_with(PANIC) {
             match budget.panics.checked_sub(1) {
                 Some(rest) => budget.panics = rest,
                 None => return deepest,
             }
         }
-        if self
-            .shallow
-            .is_some_and(|name| proof.image.name(function).ends_with(name))
-        {
+        if self.shallow.is_some_and(|name| proof.image.name(function).ends_with(name)) {
             return deepest;
         }
         let key = (function, budget);
@@ -143,14 +125,8 @@ impl<'a> Stacks<'a> {
     fn called(&mut self, at: u32, call: &Call, mut budget: Budget) -> Option<Deepest> {
         let Target::Function(target) = call.target else {
             budget.nested = budget.nested.checked_sub(1)?;
-            let targets = self
-                .targets
-                .get(&self.reach(at))
-                .cloned()
-                .unwrap_or_default();
-            let paths = targets
-                .into_iter()
-                .map(|target| self.deepest(target, budget));
+            let targets = self.targets.get(&self.reach(at)).cloned().unwrap_or_default();
+            let paths = targets.into_iter().map(|target| self.deepest(target, budget));
             return paths.max_by_key(|path| path.bytes);
         };
         Some(self.deepest(target, budget))

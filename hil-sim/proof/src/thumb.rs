@@ -62,11 +62,8 @@ const PC: u32 = 15;
 pub fn decode(address: u32, first: u16, second: u16) -> Instruction {
     let (first, second) = (u32::from(first), u32::from(second));
     let wide = first >> 11 >= 0b11101;
-    let effect = if wide {
-        wide_effect(address, first, second)
-    } else {
-        narrow_effect(address, first)
-    };
+    let effect =
+        if wide { wide_effect(address, first, second) } else { narrow_effect(address, first) };
     Instruction {
         length: if wide { 4 } else { 2 },
         effect,
@@ -129,10 +126,7 @@ fn if_then(low: u32) -> Effect {
             same |= 1 << place;
         }
     }
-    Effect::IfThen {
-        same,
-        count: count as u8,
-    }
+    Effect::IfThen { same, count: count as u8 }
 }
 
 fn wide_effect(address: u32, first: u32, second: u32) -> Effect {
@@ -207,9 +201,7 @@ fn plain(first: u32, second: u32) -> i32 {
 fn double_or_table(first: u32, second: u32) -> Effect {
     let (before, up, write) = (first & 0x100 != 0, first & 0x80 != 0, first & 0x20 != 0);
     if first & 0xff0 == 0x8d0 && second & 0xffe0 == 0xf000 {
-        return Effect::Table {
-            entry: 1 + (second >> 4 & 1),
-        };
+        return Effect::Table { entry: 1 + (second >> 4 & 1) };
     }
     let offset = 4 * (second & 0xff) as i32;
     match first & 0xf {

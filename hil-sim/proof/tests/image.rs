@@ -27,10 +27,8 @@ fn assert_clean(sections: &[Section]) {
     for section in sections {
         println!("{section}");
     }
-    let violations: Vec<&String> = sections
-        .iter()
-        .flat_map(|section| &section.violations)
-        .collect();
+    let violations: Vec<&String> =
+        sections.iter().flat_map(|section| &section.violations).collect();
     assert!(violations.is_empty(), "{violations:#?}");
 }
 
@@ -63,9 +61,7 @@ fn the_checks_find_what_the_image_is_known_to_have() {
     let proof = proof(one());
     let reached = |tree: &str| proof.graph.reached(proof.root(tree).expect("a handler"));
     let calls = |tree: &str, part: &str| {
-        reached(tree)
-            .iter()
-            .any(|start| proof.image.name(*start).contains(part))
+        reached(tree).iter().any(|start| proof.image.name(*start).contains(part))
     };
     // The host's task calculates in `f64`, formats text and fits calibrations; the tick calls the identification.
     let known = [
@@ -81,10 +77,7 @@ fn the_checks_find_what_the_image_is_known_to_have() {
         .filter(|(tree, part)| !calls(tree, part))
         .map(|(tree, part)| format!("{tree} calls no {part}"))
         .collect();
-    assert!(
-        inlined.is_empty() || !recorded_with(&proof.compiler, &inlined),
-        "{inlined:?}"
-    );
+    assert!(inlined.is_empty() || !recorded_with(&proof.compiler, &inlined), "{inlined:?}");
     // The learner calculates in `f32`.
     let float: usize = (reached(LEARN).iter())
         .filter_map(|start| proof.graph.flow(*start))
@@ -94,28 +87,17 @@ fn the_checks_find_what_the_image_is_known_to_have() {
     // Panics are recognised as functions that never return; the functions named as panics are among them.
     let panicking =
         |name: &str| name.starts_with("core::panicking::") || name.ends_with("unwrap_failed");
-    for function in proof
-        .image
-        .functions()
-        .filter(|function| panicking(&function.name))
-    {
+    for function in proof.image.functions().filter(|function| panicking(&function.name)) {
         assert!(!proof.graph.returns(function.start), "{}", function.name);
     }
     // Each handler returns and uses stack.
     for tree in CONTROL.into_iter().chain([LEARN]) {
         let root = proof.root(tree).expect("a handler");
         assert!(proof.graph.returns(root), "{tree}");
-        assert!(
-            proof.graph.flow(root).expect("followed").stack >= 8,
-            "{tree}"
-        );
+        assert!(proof.graph.flow(root).expect("followed").stack >= 8, "{tree}");
     }
     // The start-up may panic, as it is no part of the control path.
-    let main = proof
-        .image
-        .functions()
-        .find(|function| function.name == "main")
-        .expect("main");
+    let main = proof.image.functions().find(|function| function.name == "main").expect("main");
     let sites = panics::sites(&proof.image, &proof.graph, &proof.names, main.start);
     assert!(sites.iter().any(|site| site.ours), "{sites:#?}");
 }

@@ -21,18 +21,12 @@ impl fmt::Display for Failure {
 impl Failure {
     /// Something that the user gave is wrong.
     pub fn input(error: impl Into<anyhow::Error>) -> Self {
-        Self {
-            error: error.into(),
-            status: 2,
-        }
+        Self { error: error.into(), status: 2 }
     }
 
     /// Everything given is right, but it did not work.
     pub fn run(error: impl Into<anyhow::Error>) -> Self {
-        Self {
-            error: error.into(),
-            status: 1,
-        }
+        Self { error: error.into(), status: 1 }
     }
 
     /// The exit code of a command with this name that ended so. Prints why it failed, if it did, on standard error.

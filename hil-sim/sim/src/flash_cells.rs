@@ -19,21 +19,13 @@ pub struct FlashCells {
 }
 
 /// The bit that an interrupted erasure leaves, in the three ways that it can be interrupted.
-const ERASURES: [fn(old: bool, drawn: bool) -> bool; 3] = [
-    |old, drawn| old && drawn,
-    |_, drawn| drawn,
-    |old, drawn| old || drawn,
-];
+const ERASURES: [fn(old: bool, drawn: bool) -> bool; 3] =
+    [|old, drawn| old && drawn, |_, drawn| drawn, |old, drawn| old || drawn];
 
 impl FlashCells {
     /// Powered cells with these contents.
     pub fn new(bytes: Vec<u8>) -> Self {
-        Self {
-            bytes,
-            operations: 0,
-            cut: None,
-            powered: true,
-        }
+        Self { bytes, operations: 0, cut: None, powered: true }
     }
 
     /// Contents of the cells.
@@ -43,9 +35,8 @@ impl FlashCells {
 
     /// Overwrites the contents from an offset on; returns false if there are not that many cells.
     pub fn load(&mut self, offset: usize, contents: &[u8]) -> bool {
-        let place = offset
-            .checked_add(contents.len())
-            .and_then(|end| self.bytes.get_mut(offset..end));
+        let place =
+            offset.checked_add(contents.len()).and_then(|end| self.bytes.get_mut(offset..end));
         place.map(|place| place.copy_from_slice(contents)).is_some()
     }
 
@@ -76,9 +67,9 @@ impl FlashCells {
         let cells = self.bytes.iter_mut().skip(offset);
         match completion {
             Some(Completion::Full) => cells.zip(value).for_each(|(cell, value)| *cell &= value),
-            Some(Completion::Partial(mut draw, _)) => cells
-                .zip(value)
-                .for_each(|(cell, value)| *cell &= value | draw.byte()),
+            Some(Completion::Partial(mut draw, _)) => {
+                cells.zip(value).for_each(|(cell, value)| *cell &= value | draw.byte())
+            }
             None => {}
         }
     }
@@ -131,9 +122,7 @@ struct RandomBits {
 
 impl RandomBits {
     fn byte(&mut self) -> u8 {
-        (0..8).fold(0, |byte, bit| {
-            byte | u8::from(self.random.random_bool(self.share)) << bit
-        })
+        (0..8).fold(0, |byte, bit| byte | u8::from(self.random.random_bool(self.share)) << bit)
     }
 }
 
@@ -166,10 +155,7 @@ mod tests {
             cells.erase(0..64);
             assert_eq!(cells.bytes()[..4], [0x55; 4]);
             assert_eq!(cells.bytes()[8..], [0xff; 56], "without power");
-            assert!(
-                cells.bytes()[4..8].iter().all(|byte| byte & 0x55 == 0x55),
-                "these bits stay"
-            );
+            assert!(cells.bytes()[4..8].iter().all(|byte| byte & 0x55 == 0x55), "these bits stay");
             programmed.push(cells.bytes()[4..8].to_vec());
             cells.power_up();
             cells.cut_power_at(1, seed);

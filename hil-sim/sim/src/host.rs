@@ -65,12 +65,7 @@ impl PlayingHost {
                 .map(|command| format!("{command}\n").into_bytes())
                 .chain([b"play now\n".to_vec()])
         });
-        Self {
-            times,
-            lines: lines.collect(),
-            next: 0,
-            free_half_ms: 0,
-        }
+        Self { times, lines: lines.collect(), next: 0, free_half_ms: 0 }
     }
 
     /// The line sent at a half millisecond since the start of the device, if any.
@@ -103,10 +98,7 @@ fn material_and_temperature(scene: &Scene) -> [String; 2] {
         name => format!("material {name}"),
     };
     let start_c = object.start_c;
-    [
-        material,
-        start_c.map_or("object room".into(), |c| format!("object {c}")),
-    ]
+    [material, start_c.map_or("object room".into(), |c| format!("object {c}"))]
 }
 
 /// The upload of an object that is no half-space; nothing for one that is.
@@ -152,34 +144,19 @@ impl Host {
         } else {
             arm_ms + SKIN_SETTLING_MS
         };
-        let start = if scene.course.is_some() {
-            "play landing"
-        } else {
-            "start"
-        };
+        let start = if scene.course.is_some() { "play landing" } else { "start" };
         queue.push((start_ms, start.into()));
         queue.push((zero_ms - STREAM_MS, format!("stream {stream_ms}")));
-        queue.extend(
-            scene
-                .host
-                .iter()
-                .map(|host| (at(host.t_s), host.line.clone())),
-        );
-        let lines = queue
-            .into_iter()
-            .map(|(ms, line)| (ms, [line.as_bytes(), b"\n"].concat()));
+        queue.extend(scene.host.iter().map(|host| (at(host.t_s), host.line.clone())));
+        let lines = queue.into_iter().map(|(ms, line)| (ms, [line.as_bytes(), b"\n"].concat()));
         let times = |kind| -> Vec<Range<u64>> {
             let faults = scene.faults.iter().filter(|fault| fault.fault.kind == kind);
-            faults
-                .map(|fault| at(fault.t_s)..at(fault.until_s))
-                .collect()
+            faults.map(|fault| at(fault.t_s)..at(fault.until_s)).collect()
         };
         let garbage = times(FaultKind::HostGarbage).into_iter();
         let garbage = garbage.map(|times| (times.start, GARBAGE.to_vec()));
         // Lines come before heartbeats of the same time, so that they are not delayed.
-        let heartbeats = (zero_ms - STREAM_MS..at(scene.duration_s))
-            .step_by(HEARTBEAT_MS)
-            .skip(1);
+        let heartbeats = (zero_ms - STREAM_MS..at(scene.duration_s)).step_by(HEARTBEAT_MS).skip(1);
         let heartbeats = heartbeats.map(|ms| (ms, BLANK.to_vec()));
         let (floods, silences) = (times(FaultKind::HostFlood), times(FaultKind::HostSilent));
         let playing = PlayingHost::new(times(FaultKind::HostPlays));
@@ -188,14 +165,7 @@ impl Host {
             .collect();
         queue.sort_by_key(|(ms, _)| *ms);
         space_out(&mut queue);
-        Self {
-            set_up_ms,
-            queue,
-            next: 0,
-            floods,
-            silences,
-            playing,
-        }
+        Self { set_up_ms, queue, next: 0, floods, silences, playing }
     }
 
     /// Time since the start of the device, ms, from which another host may set up its finger: after this one's set-up.

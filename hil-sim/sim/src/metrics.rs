@@ -223,24 +223,19 @@ pub fn display_errors(scene: &Scene, outcome: &Outcome) -> Vec<Option<(f64, f64)
     let contacts = contact_times(scene, outcome);
     let exact_c = if scene.has_closed_form() {
         let rows = rows.iter().zip(&contacts);
-        rows.map(|(row, since_s)| Some(scene.exact_setpoint_c((*since_s)?, row.force_n)))
-            .collect()
+        rows.map(|(row, since_s)| Some(scene.exact_setpoint_c((*since_s)?, row.force_n))).collect()
     } else {
         nominal_setpoints_c(scene, rows)
     };
     let rows = rows.iter().zip(contacts).zip(exact_c);
-    rows.map(|((row, since_s), exact_c)| Some((since_s?, row.display_c - exact_c?)))
-        .collect()
+    rows.map(|((row, since_s), exact_c)| Some((since_s?, row.display_c - exact_c?))).collect()
 }
 
 /// The exact set-point for the scene's finger with nominal parameters, °C, for each row with a contact: that finger on the
 /// object, as the plant solves it.
 fn nominal_setpoints_c(scene: &Scene, rows: &[TraceRow]) -> Vec<Option<f64>> {
-    let config = PlantConfig {
-        start_s: 0.0,
-        params: scene.nominal.clone(),
-        ..scene.plant_config()
-    };
+    let config =
+        PlantConfig { start_s: 0.0, params: scene.nominal.clone(), ..scene.plant_config() };
     let Ok(mut plant) = Plant::new(&config) else {
         return vec![None; rows.len()];
     };
@@ -256,11 +251,7 @@ fn nominal_setpoints_c(scene: &Scene, rows: &[TraceRow]) -> Vec<Option<f64>> {
 
 /// Time since the last landing, s, and error of the skin, K, at every row in contact.
 pub fn skin_errors(scene: &Scene, outcome: &Outcome) -> impl Iterator<Item = (f64, f64)> {
-    let rows = outcome
-        .trace
-        .rows()
-        .iter()
-        .zip(contact_times(scene, outcome));
+    let rows = outcome.trace.rows().iter().zip(contact_times(scene, outcome));
     rows.filter_map(|(row, since_s)| Some((since_s?, row.skin_c - row.skin_real_c)))
 }
 
@@ -277,10 +268,7 @@ pub fn course_errors(scene: &Scene, outcome: &Outcome) -> impl Iterator<Item = (
 }
 
 fn range(values: impl Iterator<Item = f64>) -> Extremes {
-    let none = Extremes {
-        min: f64::INFINITY,
-        max: f64::NEG_INFINITY,
-    };
+    let none = Extremes { min: f64::INFINITY, max: f64::NEG_INFINITY };
     values.fold(none, |range, value| Extremes {
         min: range.min.min(value),
         max: range.max.max(value),
@@ -307,16 +295,11 @@ pub fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<ErrorFigures>
         }
     }
     let rms = (squares / f64::from(count)).sqrt() * 1e3;
-    (count > 0).then_some(ErrorFigures {
-        max_after_50ms: max_k.map(|error_k| error_k * 1e3),
-        rms,
-    })
+    (count > 0).then_some(ErrorFigures { max_after_50ms: max_k.map(|error_k| error_k * 1e3), rms })
 }
 
 fn draws(scene: &Scene) -> Option<DrawFigures> {
-    let Draws {
-        contact, finger, ..
-    } = scene.draws;
+    let Draws { contact, finger, .. } = scene.draws;
     let parts = [contact.map(|_| "contact."), finger.map(|_| "finger.")];
     let drawn = |key: &str| parts.iter().flatten().any(|part| key.starts_with(part));
     let parameters: BTreeMap<_, _> = parameters::all(&scene.params)
@@ -324,11 +307,7 @@ fn draws(scene: &Scene) -> Option<DrawFigures> {
         .filter(|parameter| drawn(&parameter.key))
         .map(|parameter| (parameter.key, parameter.value))
         .collect();
-    (!parameters.is_empty()).then_some(DrawFigures {
-        contact,
-        finger,
-        parameters,
-    })
+    (!parameters.is_empty()).then_some(DrawFigures { contact, finger, parameters })
 }
 
 /// The object, and that the device is told of a half-space if it is none.
@@ -342,9 +321,7 @@ fn object(scene: &Scene) -> String {
 }
 
 fn refused(exchanges: &[Exchange<'_>]) -> Vec<RefusedLine> {
-    let refused = exchanges
-        .iter()
-        .filter(|exchange| exchange.answer.starts_with("err"));
+    let refused = exchanges.iter().filter(|exchange| exchange.answer.starts_with("err"));
     refused
         .map(|exchange| RefusedLine {
             t_s: exchange.t_s,
@@ -356,12 +333,7 @@ fn refused(exchanges: &[Exchange<'_>]) -> Vec<RefusedLine> {
 
 fn resets(outcome: &Outcome) -> Vec<ResetRecord> {
     let resets = outcome.resets.iter();
-    resets
-        .map(|reset| ResetRecord {
-            t_s: reset.t_s,
-            cause: reset.cause.to_string(),
-        })
-        .collect()
+    resets.map(|reset| ResetRecord { t_s: reset.t_s, cause: reset.cause.to_string() }).collect()
 }
 
 /// The trips: every change into the state `tripped`.

@@ -29,10 +29,7 @@ pub fn scene(played: &Prepared, force_n: f64, skin_c: f64) -> Result<Scene, Scen
          [[force]]\nt_s = {LANDING_S:?}\nforce_n = {force_n:?}\n"
     );
     let scene = Scene::parse(&text, Path::new("play"))?;
-    Ok(Scene {
-        course: Some(played.points.clone()),
-        ..scene
-    })
+    Ok(Scene { course: Some(played.points.clone()), ..scene })
 }
 
 /// The figures of a played course, as `--json` prints them.
@@ -67,10 +64,7 @@ pub struct PlayFigures {
 impl PlayFigures {
     /// The figures of a run of [`scene`], whose errors are against the course as it was.
     pub fn new(played: &Prepared, scene: &Scene, outcome: &Outcome, figures: Figures) -> Self {
-        let whole = Scene {
-            course: Some(played.whole.clone()),
-            ..scene.clone()
-        };
+        let whole = Scene { course: Some(played.whole.clone()), ..scene.clone() };
         Self {
             engine: figures.engine,
             points: played.points.points().len(),

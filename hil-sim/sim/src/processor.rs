@@ -294,32 +294,18 @@ fn parse(text: &str) -> Option<MachineFault> {
     let bit = || pair()?.1.parse().ok();
     let address = || number(pair()?.0);
     Some(match kind {
-        "ram-bit" => MachineFault::RamBit {
-            address: address()?,
-            bit: bit()?,
-        },
-        "register-bit" => MachineFault::RegisterBit {
-            address: address()?,
-            bit: bit()?,
-        },
-        "core-bit" => MachineFault::CoreBit {
-            register: register(pair()?.0)?,
-            bit: bit()?,
-        },
-        "dma-stopped" => MachineFault::DmaStopped {
-            controller: pair()?.0.parse().ok()?,
-            stream: bit()?,
-        },
-        "power-cycle" => MachineFault::PowerCycle {
-            seed: value.parse().ok()?,
-        },
+        "ram-bit" => MachineFault::RamBit { address: address()?, bit: bit()? },
+        "register-bit" => MachineFault::RegisterBit { address: address()?, bit: bit()? },
+        "core-bit" => MachineFault::CoreBit { register: register(pair()?.0)?, bit: bit()? },
+        "dma-stopped" => {
+            MachineFault::DmaStopped { controller: pair()?.0.parse().ok()?, stream: bit()? }
+        }
+        "power-cycle" => MachineFault::PowerCycle { seed: value.parse().ok()? },
         "select-line-stuck" => MachineFault::SelectLineStuck {
             line: up_to(2, pair()?.0)?,
             level: up_to(1, pair()?.1)?,
         },
-        "select-line-open" => MachineFault::SelectLineOpen {
-            line: up_to(2, value)?,
-        },
+        "select-line-open" => MachineFault::SelectLineOpen { line: up_to(2, value)? },
         _ if !value.is_empty() => return None,
         "hung-core" => MachineFault::HungCore,
         "debugger-halt" => MachineFault::DebuggerHalt,

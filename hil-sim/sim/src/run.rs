@@ -93,28 +93,16 @@ pub(crate) fn run_with_settings<E: Engine>(
     let injections: Vec<_> = scene.injections.iter().chain(injections).collect();
     for &&Injection { t_s, fault } in &injections {
         if !(from_s..=to_s).contains(&t_s) {
-            return Err(RunError::InjectionTime {
-                fault,
-                t_s,
-                from_s,
-                to_s,
-            });
+            return Err(RunError::InjectionTime { fault, t_s, from_s, to_s });
         }
     }
-    let mut scene_run = SceneRun {
-        recording,
-        injections,
-        scene,
-        engine,
-        received: LineSplitter::default(),
-    };
+    let mut scene_run =
+        SceneRun { recording, injections, scene, engine, received: LineSplitter::default() };
     for ms in 0..=last_ms {
         if ms == zero_ms {
             scene_run.engine.reset_cost();
         }
-        scene_run
-            .recording
-            .apply_scene(ms, scene_run.engine.world());
+        scene_run.recording.apply_scene(ms, scene_run.engine.world());
         scene_run.send(2 * ms);
         scene_run.inject(2 * ms, |after_us| after_us == 0)?;
         scene_run.recording.record(ms, scene_run.engine.world());
@@ -132,9 +120,7 @@ pub(crate) fn run_with_settings<E: Engine>(
         progress(ms as f64 / last_ms as f64);
     }
     let real_time_factor = last_ms as f64 * 1e-3 / began.elapsed().as_secs_f64();
-    let SceneRun {
-        recording, engine, ..
-    } = scene_run;
+    let SceneRun { recording, engine, .. } = scene_run;
     Ok(recording.outcome(E::NAME, &engine.resets(), engine.cost(), real_time_factor))
 }
 

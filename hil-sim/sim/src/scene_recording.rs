@@ -112,8 +112,7 @@ impl<'a> SceneRecording<'a> {
         let bytes = self.host.send(half_ms)?;
         let lines = bytes.split(|byte| *byte == b'\n');
         let lines = lines.map(|line| String::from_utf8_lossy(line).into_owned());
-        self.sent
-            .extend((lines.filter(|line| !line.trim().is_empty())).map(|line| (t_s, line)));
+        self.sent.extend((lines.filter(|line| !line.trim().is_empty())).map(|line| (t_s, line)));
         Some(bytes)
     }
 

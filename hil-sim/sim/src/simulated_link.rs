@@ -56,8 +56,7 @@ impl VirtualLine {
         self.ms += 1;
         let at = self.now();
         let lines = self.splitter.complete().into_iter();
-        self.received
-            .extend(lines.map(|text| ReceivedLine { text, at }));
+        self.received.extend(lines.map(|text| ReceivedLine { text, at }));
         Ok(())
     }
 
@@ -89,10 +88,7 @@ impl VirtualLine {
 
     /// Loses what is on the line in either direction. Time goes on.
     pub fn clear(&mut self) {
-        *self = Self {
-            ms: self.ms,
-            ..Self::default()
-        };
+        *self = Self { ms: self.ms, ..Self::default() };
     }
 
     /// Milliseconds since the beginning.
@@ -116,10 +112,7 @@ pub struct SimulatedLink<'a, E> {
 impl<'a, E: Engine> SimulatedLink<'a, E> {
     /// A line to a device.
     pub fn new(engine: &'a mut E) -> Self {
-        Self {
-            engine,
-            line: VirtualLine::default(),
-        }
+        Self { engine, line: VirtualLine::default() }
     }
 
     /// The world around the device.

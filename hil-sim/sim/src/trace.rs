@@ -77,10 +77,7 @@ impl TraceRow {
 }
 
 fn flux_w_m2(plant: &Plant) -> Option<[f64; 2]> {
-    Some([
-        plant.flux_w_m2()?,
-        FluxParams::read_w_m2(plant.flux_code()?),
-    ])
+    Some([plant.flux_w_m2()?, FluxParams::read_w_m2(plant.flux_code()?)])
 }
 
 /// Rows of a run, each with the telemetry of the tick before it.
@@ -96,18 +93,13 @@ pub struct Trace {
 impl Trace {
     /// An empty trace with room for so many rows.
     pub fn with_capacity(rows: usize) -> Self {
-        Self {
-            rows: Vec::with_capacity(rows),
-            ..Self::default()
-        }
+        Self { rows: Vec::with_capacity(rows), ..Self::default() }
     }
 
     /// Appends a row; `tick` is the number of the device's last tick before it.
     pub fn push(&mut self, tick: u64, mut row: TraceRow) {
-        if let Some(index) = self
-            .early
-            .iter()
-            .position(|telemetry| u64::from(telemetry.tick) == tick)
+        if let Some(index) =
+            self.early.iter().position(|telemetry| u64::from(telemetry.tick) == tick)
         {
             row.device = self.early.remove(index);
         } else {
@@ -118,11 +110,7 @@ impl Trace {
 
     /// Attaches telemetry to its row, or keeps it until that row is appended.
     pub fn attach_telemetry(&mut self, telemetry: Telemetry) {
-        match self
-            .waiting
-            .iter()
-            .find(|(tick, _)| *tick == u64::from(telemetry.tick))
-        {
+        match self.waiting.iter().find(|(tick, _)| *tick == u64::from(telemetry.tick)) {
             Some((_, index)) => self.rows[*index].device = Some(telemetry),
             None => push_bounded(&mut self.early, telemetry),
         }
@@ -175,26 +163,15 @@ type Column = (&'static str, fn(&TraceRow) -> String);
 const COLUMNS: [Column; 17] = [
     ("t_s", |row| format!("{:.3}", row.t_s)),
     ("force_n", |row| format!("{:.6}", row.force_n)),
-    ("setpoint_c", |row| {
-        telemetry_cell(row, |device| device.setpoint_c, 5)
-    }),
+    ("setpoint_c", |row| telemetry_cell(row, |device| device.setpoint_c, 5)),
     ("display_c", |row| format!("{:.6}", row.display_c)),
-    ("sensor_c", |row| {
-        telemetry_cell(row, |device| device.display_c, 4)
-    }),
+    ("sensor_c", |row| telemetry_cell(row, |device| device.display_c, 4)),
     ("skin_c", |row| format!("{:.6}", row.skin_c)),
     ("skin_real_c", |row| format!("{:.6}", row.skin_real_c)),
     ("sink_c", |row| format!("{:.6}", row.sink_c)),
     ("current_a", |row| format!("{:.6}", row.current_a)),
-    ("state", |row| {
-        row.device
-            .as_ref()
-            .map_or("", |device| device.state.name())
-            .into()
-    }),
-    ("demand_a", |row| {
-        telemetry_cell(row, |device| device.demand_a, 3)
-    }),
+    ("state", |row| row.device.as_ref().map_or("", |device| device.state.name()).into()),
+    ("demand_a", |row| telemetry_cell(row, |device| device.demand_a, 3)),
     ("object_real_c", |row| format!("{:.6}", row.object_real_c)),
     ("remark", |row| {
         let device = row.device.as_ref();
@@ -203,32 +180,20 @@ const COLUMNS: [Column; 17] = [
     }),
     ("skin_cold_c", |row| optional_cell(row.receptors_c[0], 6)),
     ("skin_warm_c", |row| optional_cell(row.receptors_c[1], 6)),
-    ("skin_real_cold_c", |row| {
-        optional_cell(row.receptors_real_c[0], 6)
-    }),
-    ("skin_real_warm_c", |row| {
-        optional_cell(row.receptors_real_c[1], 6)
-    }),
+    ("skin_real_cold_c", |row| optional_cell(row.receptors_real_c[0], 6)),
+    ("skin_real_warm_c", |row| optional_cell(row.receptors_real_c[1], 6)),
 ];
 
 /// Additional columns of a run with a camera.
 const CAMERA_COLUMNS: [Column; 2] = [
-    ("camera_c", |row| {
-        optional_cell(row.camera.map(|reading| reading.apparent_c), 6)
-    }),
-    ("camera_skin_c", |row| {
-        optional_cell(row.camera.map(|reading| reading.recovered_c), 6)
-    }),
+    ("camera_c", |row| optional_cell(row.camera.map(|reading| reading.apparent_c), 6)),
+    ("camera_skin_c", |row| optional_cell(row.camera.map(|reading| reading.recovered_c), 6)),
 ];
 
 /// Additional columns of a run with a heat-flux sensor.
 const FLUX_COLUMNS: [Column; 2] = [
-    ("flux_w_m2", |row| {
-        optional_cell(row.flux_w_m2.map(|[flux, _]| flux), 3)
-    }),
-    ("flux_sensor_w_m2", |row| {
-        optional_cell(row.flux_w_m2.map(|[_, reading]| reading), 3)
-    }),
+    ("flux_w_m2", |row| optional_cell(row.flux_w_m2.map(|[flux, _]| flux), 3)),
+    ("flux_sensor_w_m2", |row| optional_cell(row.flux_w_m2.map(|[_, reading]| reading), 3)),
 ];
 
 fn telemetry_cell(row: &TraceRow, field: fn(&Telemetry) -> Option<f64>, digits: usize) -> String {

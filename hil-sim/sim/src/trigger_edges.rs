@@ -25,9 +25,7 @@ pub(crate) fn trigger_edges_us(scene: &Scene, range_us: &Range<i64>) -> Vec<i64>
         .map(|fault| to_us(fault.t_s));
     let chatter = of_kind(FaultKind::TriggerChatter).flat_map(|fault| chatter_us(fault, range_us));
     let moving = sound.chain(chatter).filter(|us| !is_stuck(*us));
-    let mut edges: Vec<_> = (moving.chain(goes_high))
-        .filter(|us| range_us.contains(us))
-        .collect();
+    let mut edges: Vec<_> = (moving.chain(goes_high)).filter(|us| range_us.contains(us)).collect();
     edges.sort_unstable();
     edges.dedup();
     edges

@@ -33,9 +33,5 @@ pub fn object_fit(material: &Material, layers: &[slab::Layer], back: &BackBounda
         let skin_m2k_w = 1.0 / (SKIN.effusivity() * s_1_s.sqrt());
         skin_m2k_w / (skin_m2k_w + resistance_m2k_w + object_m2k_w).powi(2)
     };
-    fit(
-        |s_1_s| impedance(&layers, back, s_1_s),
-        weight,
-        RELAXATIONS_MAX,
-    )
+    fit(|s_1_s| impedance(&layers, back, s_1_s), weight, RELAXATIONS_MAX)
 }

@@ -58,10 +58,7 @@ impl World {
             let camera = infrared.camera(scene.seed)?;
             Ok::<_, ParameterError>((infrared, camera))
         });
-        Ok(Self {
-            chip: scene.chip,
-            ..Self::with(plant, camera.transpose()?)
-        })
+        Ok(Self { chip: scene.chip, ..Self::with(plant, camera.transpose()?) })
     }
 
     /// The world of a scene on one of the five fingers of a device.
@@ -189,10 +186,7 @@ impl World {
 
     /// Replaces the defects of the plant.
     pub fn set_plant_defects(&mut self, defects: Defects) {
-        self.defects = ActiveDefects {
-            plant: defects,
-            ..ActiveDefects::default()
-        };
+        self.defects = ActiveDefects { plant: defects, ..ActiveDefects::default() };
         self.plant.set_defects(&self.defects.plant);
     }
 
@@ -207,10 +201,7 @@ impl World {
         if !self.plant.supply_cut() {
             place.connect_supply();
         }
-        *self = Self {
-            chip: self.chip,
-            ..place
-        };
+        *self = Self { chip: self.chip, ..place };
     }
 
     /// Code at the input of the heat-flux sensor at the end of the last step, 0 to 4095. A board without the sensor has the input

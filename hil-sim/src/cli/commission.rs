@@ -114,9 +114,8 @@ fn commission_on<E: Engine>(
 fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
     let text =
         std::fs::read_to_string(path).with_context(|| format!("--restore {}", path.display()))?;
-    let lines: Vec<String> = (text.lines().map(|line| line.trim().to_owned()))
-        .filter(|line| !line.is_empty())
-        .collect();
+    let lines: Vec<String> =
+        (text.lines().map(|line| line.trim().to_owned())).filter(|line| !line.is_empty()).collect();
     for (number, line) in (1..).zip(&lines) {
         ensure!(
             line.starts_with("set "),
@@ -124,11 +123,7 @@ fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
             path.display()
         );
     }
-    ensure!(
-        !lines.is_empty(),
-        "--restore {} has no lines",
-        path.display()
-    );
+    ensure!(!lines.is_empty(), "--restore {} has no lines", path.display());
     Ok(lines)
 }
 

@@ -55,8 +55,7 @@ fn displays() -> impl TypedValueParser<Value = Display> {
     let names = Display::ALL.map(Display::name);
     PossibleValuesParser::new(names).map(|name| {
         let mut all = Display::ALL.into_iter();
-        all.find(|display| display.name() == name)
-            .unwrap_or(Display::Ours)
+        all.find(|display| display.name() == name).unwrap_or(Display::Ours)
     })
 }
 
@@ -145,10 +144,8 @@ fn all(arguments: &Arguments) -> Result<(), Failure> {
         true => None,
         false => Some(runner(arguments, EngineKind::Native)?),
     };
-    let jobs: Vec<_> = scenes
-        .iter()
-        .flat_map(|scene| Display::ALL.map(|display| (scene, display)))
-        .collect();
+    let jobs: Vec<_> =
+        scenes.iter().flat_map(|scene| Display::ALL.map(|display| (scene, display))).collect();
     let bar = output::run_counter("displays".into(), jobs.len()).map_err(Failure::run)?;
     let rows = parallel_map(
         &jobs,
@@ -179,8 +176,5 @@ fn touch(scene: &Scene, path: &Path) -> Result<SingleContact, Failure> {
 }
 
 fn runner(arguments: &Arguments, without: EngineKind) -> Result<Box<dyn SceneRunner>, Failure> {
-    engine::runner(
-        arguments.engine.unwrap_or(without),
-        arguments.elf.as_deref(),
-    )
+    engine::runner(arguments.engine.unwrap_or(without), arguments.elf.as_deref())
 }

@@ -50,9 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let tests: Vec<_> = image.tests.iter().filter(chosen).collect();
     if arguments.list {
-        tests
-            .iter()
-            .for_each(|test| println!("{}: test", test.name));
+        tests.iter().for_each(|test| println!("{}: test", test.name));
         return Ok(());
     }
     let mut machine = Machine::new(&image.firmware, BareBoard).map_err(Failure::run)?;

@@ -77,9 +77,8 @@ pub fn read(path: &Path) -> Result<Scene, Failure> {
 /// Reads a scene and builds its world.
 pub fn scene(path: &Path) -> Result<(Scene, World), Failure> {
     let scene = read(path)?;
-    let world = World::new(&scene)
-        .with_context(|| path.display().to_string())
-        .map_err(Failure::input)?;
+    let world =
+        World::new(&scene).with_context(|| path.display().to_string()).map_err(Failure::input)?;
     Ok((scene, world))
 }
 

@@ -34,10 +34,7 @@ pub fn run() -> Result<(), Failure> {
 fn bits(z: f64) -> u32 {
     let u = z * z;
     if u.is_normal() {
-        let (exponent, fraction) = (
-            (u.to_bits() >> 52) as i16 - 1023,
-            (u.to_bits() >> 20) as u32,
-        );
+        let (exponent, fraction) = ((u.to_bits() >> 52) as i16 - 1023, (u.to_bits() >> 20) as u32);
         erfcx(Ticks::ONE, MantissaExponent::new(exponent, fraction)).to_bits()
     } else if z < 1.0 {
         Fraction::MAX.to_bits()

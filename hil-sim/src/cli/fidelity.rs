@@ -176,20 +176,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let (cases, populations) = cases(arguments)?;
     output::create(arguments.out.as_deref())?;
-    let usual = if cases.is_empty() {
-        EngineKind::Native
-    } else {
-        EngineKind::DEFAULT
-    };
+    let usual = if cases.is_empty() { EngineKind::Native } else { EngineKind::DEFAULT };
     let kind = arguments.engine.unwrap_or(usual);
     let image = image(arguments)?;
     // An image that repeats a sample has the file.
     let elf = arguments.elf.as_deref().filter(|_| image.is_none());
-    let campaign = Campaign {
-        arguments,
-        device: engine::runner(kind, elf)?,
-        laws,
-    };
+    let campaign = Campaign { arguments, device: engine::runner(kind, elf)?, laws };
     let rows = campaign.rows(&cases).map_err(Failure::run)?;
     let drawn = campaign.draws().map_err(Failure::run)?;
     let boxed = (!drawn.is_empty()).then(|| BoxReport {
@@ -256,10 +248,8 @@ fn cases(arguments: &Arguments) -> Result<(Vec<FidelityCase>, Vec<PopulationCase
         chosen if chosen.contains(&Chosen::All) => &Chosen::EACH,
         chosen => chosen,
     };
-    let mut cases: Vec<_> = (chosen.iter())
-        .filter_map(|chosen| chosen.scenario())
-        .flat_map(Scenario::cases)
-        .collect();
+    let mut cases: Vec<_> =
+        (chosen.iter()).filter_map(|chosen| chosen.scenario()).flat_map(Scenario::cases).collect();
     let mut populations = Vec::new();
     for population in Population::ALL {
         if chosen.contains(&Chosen::Populations(population.scenario())) {
@@ -320,9 +310,7 @@ impl Campaign<'_> {
     /// Runs every case with every law, with and without the limits to be removed.
     fn rows(&self, cases: &[FidelityCase]) -> anyhow::Result<Vec<FidelityRow>> {
         let bounds = expand(&self.arguments.without, &RemovedLimit::ALL);
-        let plants: Vec<_> = std::iter::once(None)
-            .chain(bounds.into_iter().map(Some))
-            .collect();
+        let plants: Vec<_> = std::iter::once(None).chain(bounds.into_iter().map(Some)).collect();
         let mut jobs = Vec::new();
         for case in cases {
             for law in &self.laws {
@@ -459,9 +447,7 @@ impl Campaign<'_> {
             output::write(folder, "box.csv", fidelity::box_csv(drawn)?)?;
         }
         if let Some(number) = self.arguments.replay {
-            let PlantDraw {
-                case, seed, plant, ..
-            } = PlantDraw::new(self.arguments.seed, number);
+            let PlantDraw { case, seed, plant, .. } = PlantDraw::new(self.arguments.seed, number);
             for law in &self.laws {
                 let text = case.text(*law, seed, &plant);
                 let name = format!("draw-{number}-{}.toml", law.name());
@@ -486,11 +472,7 @@ fn write_populations(
     let chart = fidelity::population_chart(results)?;
     let Some(svg) = &chart else { return Ok(None) };
     output::write(folder, fidelity::POPULATIONS_SVG, svg)?;
-    output::write(
-        folder,
-        "populations.csv",
-        fidelity::populations_csv(results)?,
-    )?;
+    output::write(folder, "populations.csv", fidelity::populations_csv(results)?)?;
     for report in reports {
         let told = report.ways.iter().filter(|way| way.way == Way::AsItIs);
         for (rank, worst) in (1..).zip(told.flat_map(|way| &way.worst)) {

@@ -63,10 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         #[cfg(feature = "emulator")]
         EngineKind::Image => measure(&scenes, &mut super::image::five_fingers(elf, worlds)?),
     }?;
-    let report = Report {
-        latency_cycles_max: cost.map(|cost| cost.latency_max),
-        fingers: figures,
-    };
+    let report = Report { latency_cycles_max: cost.map(|cost| cost.latency_max), fingers: figures };
     let table = || table(&report.fingers, cost);
     output::print_report(arguments.json, &report, table, None)
 }
@@ -76,9 +73,8 @@ fn measure<H: FiveFingerEngine>(
     five_fingers: &mut H,
 ) -> Result<(Vec<Figures>, Option<Cost>), Failure> {
     let name = format!("five fingers on engine {}", H::NAME);
-    let outcomes = output::with_progress(name, |progress| {
-        run_five_fingers(scenes, five_fingers, progress)
-    })?;
+    let outcomes =
+        output::with_progress(name, |progress| run_five_fingers(scenes, five_fingers, progress))?;
     let outcomes = outcomes.map_err(Failure::run)?;
     let figures = scenes.iter().zip(&outcomes);
     let figures = figures.map(|(scene, outcome)| figures_of(scene, outcome));
@@ -93,11 +89,7 @@ fn table(figures: &[Figures], cost: Option<Cost>) -> String {
     for (finger, of) in figures.iter().enumerate() {
         let number = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.1}"));
         let faults: Vec<_> = of.faults.iter().map(|fault| fault.fault.as_str()).collect();
-        let faults = if faults.is_empty() {
-            "none".into()
-        } else {
-            faults.join(", ")
-        };
+        let faults = if faults.is_empty() { "none".into() } else { faults.join(", ") };
         text += &format!(
             "{finger:<7}{:<18}{:>20}{:>12}  {faults}\n",
             of.material,

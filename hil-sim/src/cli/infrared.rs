@@ -17,12 +17,7 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     optic: Glass,
     /// True temperatures of the target, °C; one row each
-    #[arg(
-        long,
-        value_delimiter = ',',
-        required = true,
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_delimiter = ',', required = true, allow_hyphen_values = true)]
     target_c: Vec<f64>,
     /// Room, °C
     #[arg(long, allow_negative_numbers = true)]
@@ -49,12 +44,7 @@ pub struct Arguments {
     #[arg(long, allow_negative_numbers = true)]
     camera_c: Option<f64>,
     /// How much of what the window mirrors is the camera, 0 to 1
-    #[arg(
-        long,
-        default_value_t = 1.0,
-        requires = "camera_c",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, default_value_t = 1.0, requires = "camera_c", allow_negative_numbers = true)]
     camera_share: f64,
 }
 
@@ -98,20 +88,16 @@ fn camera(arguments: &Arguments) -> anyhow::Result<Camera> {
     }
     let (least, most) = RANGE_C.into_inner();
     for target_c in &arguments.target_c {
-        ensure!(
-            RANGE_C.contains(target_c),
-            "--target-c {target_c}; allowed is {least} to {most}"
-        );
+        ensure!(RANGE_C.contains(target_c), "--target-c {target_c}; allowed is {least} to {most}");
     }
     let params = CameraParams {
         optic,
         emissivity: arguments.emissivity,
         netd_k: arguments.netd_k,
         pixels: arguments.pixels,
-        self_reflection: arguments.camera_c.map(|camera_c| SelfReflection {
-            camera_c,
-            share: arguments.camera_share,
-        }),
+        self_reflection: arguments
+            .camera_c
+            .map(|camera_c| SelfReflection { camera_c, share: arguments.camera_share }),
     };
     let surroundings = Surroundings {
         ambient_c: arguments.ambient_c,
@@ -119,11 +105,9 @@ fn camera(arguments: &Arguments) -> anyhow::Result<Camera> {
         splitter_c: arguments.splitter_c.unwrap_or(arguments.ambient_c),
     };
     Camera::new(&params, &surroundings, arguments.seed).map_err(
-        |ParameterError {
-             name,
-             value,
-             allowed,
-         }| { anyhow!("--{} {value}; allowed is {allowed}", name.replace('_', "-")) },
+        |ParameterError { name, value, allowed }| {
+            anyhow!("--{} {value}; allowed is {allowed}", name.replace('_', "-"))
+        },
     )
 }
 
@@ -131,11 +115,7 @@ fn print(camera: &mut Camera, targets_c: &[f64]) -> io::Result<()> {
     let mut out = BufWriter::new(io::stdout().lock());
     writeln!(out, "u_tot,apparent_c,recovered_c")?;
     for &target_c in targets_c {
-        let Reading {
-            u_tot,
-            apparent_c,
-            recovered_c,
-        } = camera.read(target_c);
+        let Reading { u_tot, apparent_c, recovered_c } = camera.read(target_c);
         writeln!(out, "{u_tot},{apparent_c},{recovered_c}")?;
     }
     out.flush()

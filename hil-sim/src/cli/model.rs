@@ -102,21 +102,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn print(times: &[f64], rows: &[ModelRow]) -> io::Result<()> {
     let mut out = io::stdout().lock();
-    writeln!(
-        out,
-        "t_s,z,erfcx,t_skin_c,t_object_c,q_w_m2,t_display_c,r_m2k_w,ratio"
-    )?;
+    writeln!(out, "t_s,z,erfcx,t_skin_c,t_object_c,q_w_m2,t_display_c,r_m2k_w,ratio")?;
     for (t_s, row) in times.iter().zip(rows) {
-        let ModelRow {
-            z,
-            erfcx,
-            t_skin_c,
-            t_object_c,
-            q_w_m2,
-            t_display_c,
-            r_m2k_w,
-            ratio,
-        } = row;
+        let ModelRow { z, erfcx, t_skin_c, t_object_c, q_w_m2, t_display_c, r_m2k_w, ratio } = row;
         writeln!(
             out,
             "{t_s},{z},{erfcx},{t_skin_c},{t_object_c},{q_w_m2},{t_display_c},{r_m2k_w},{ratio}"
@@ -154,20 +142,11 @@ fn check(arguments: &Arguments) -> anyhow::Result<(Material, f64)> {
         Some(pressure_pa) => ("--pressure-pa", pressure_pa),
         None => ("--force-n", arguments.force_n),
     };
-    ensure!(
-        load > 0.0 && load.is_finite(),
-        "{name} {load}; allowed is a finite number above 0"
-    );
+    ensure!(load > 0.0 && load.is_finite(), "{name} {load}; allowed is a finite number above 0");
     let (least, most) = TEMPERATURE_RANGE_C.into_inner();
-    for (name, t_c) in [
-        ("--skin-c", arguments.skin_c),
-        ("--object-c", arguments.object_c),
-    ] {
+    for (name, t_c) in [("--skin-c", arguments.skin_c), ("--object-c", arguments.object_c)] {
         let range = f64::from(least)..=f64::from(most);
-        ensure!(
-            range.contains(&t_c),
-            "{name} {t_c}; allowed is {least} to {most}"
-        );
+        ensure!(range.contains(&t_c), "{name} {t_c}; allowed is {least} to {most}");
     }
     for t_s in &arguments.times {
         ensure!(
@@ -180,17 +159,9 @@ fn check(arguments: &Arguments) -> anyhow::Result<(Material, f64)> {
             depth_m >= 0.0 && depth_m.is_finite(),
             "--depth-m {depth_m}; allowed is a finite number from 0 on"
         );
-        ensure!(
-            arguments.arith == Arithmetic::F64,
-            "--depth-m needs --arith f64"
-        );
+        ensure!(arguments.arith == Arithmetic::F64, "--depth-m needs --arith f64");
     }
-    Ok((
-        object,
-        arguments
-            .pressure_pa
-            .unwrap_or_else(|| pressure_pa(arguments.force_n)),
-    ))
+    Ok((object, arguments.pressure_pa.unwrap_or_else(|| pressure_pa(arguments.force_n))))
 }
 
 /// The fixed-point path of the firmware: one tick of `b² t`.
@@ -204,17 +175,11 @@ fn fixed(
     let relative = (pressure_pa / SKIN_MICROHARDNESS_PA).log2();
     let contact = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s)?
         .at_pressure(Log2::saturating_from_num(relative));
-    let (skin, object) = (
-        Celsius::from_num(arguments.skin_c),
-        Celsius::from_num(arguments.object_c),
-    );
+    let (skin, object) =
+        (Celsius::from_num(arguments.skin_c), Celsius::from_num(arguments.object_c));
     let at = contact.at(elapsed, skin, object);
     Ok(ModelRow {
-        z: if elapsed == 0 {
-            0.0
-        } else {
-            contact.rate_per_tick.to_f64().sqrt()
-        },
+        z: if elapsed == 0 { 0.0 } else { contact.rate_per_tick.to_f64().sqrt() },
         erfcx: at.erfcx().to_num(),
         t_skin_c: at.skin().to_num(),
         t_object_c: at.object().to_num(),
@@ -233,17 +198,11 @@ fn float<F: Real>(
 ) -> ModelRow {
     let f = F::from_f64;
     let finger = (&SKIN, f(arguments.skin_c));
-    let contact = Contact::new(
-        finger,
-        (object, f(arguments.object_c)),
-        &REFERENCE_DISPLAY,
-        f(pressure_pa),
-    );
+    let contact =
+        Contact::new(finger, (object, f(arguments.object_c)), &REFERENCE_DISPLAY, f(pressure_pa));
     let at = contact.at(f(t_s));
     let depth_m = arguments.depth_m.map(f);
-    let skin_c = depth_m.map_or(at.skin_c, |depth_m| {
-        contact.skin_at_depth(&SKIN, depth_m, f(t_s))
-    });
+    let skin_c = depth_m.map_or(at.skin_c, |depth_m| contact.skin_at_depth(&SKIN, depth_m, f(t_s)));
     ModelRow {
         z: (contact.rate_per_s * f(t_s)).sqrt().to_f64(),
         erfcx: at.erfcx.to_f64(),

@@ -12,10 +12,7 @@ use super::Failure;
 
 /// Writes text, including its line ends, to standard output.
 pub fn print(text: &str) -> Result<(), Failure> {
-    stdout()
-        .write_all(text.as_bytes())
-        .context("standard output")
-        .map_err(Failure::run)
+    stdout().write_all(text.as_bytes()).context("standard output").map_err(Failure::run)
 }
 
 /// Prints a report: with `--json` as one object, otherwise as a table, with the path of its page if one was written.
@@ -28,9 +25,7 @@ pub fn print_report(
     if json {
         return print(&(serde_json::to_string(report).map_err(Failure::run)? + "\n"));
     }
-    let page = page.map_or(String::new(), |page| {
-        format!("report: {}\n", page.display())
-    });
+    let page = page.map_or(String::new(), |page| format!("report: {}\n", page.display()));
     print(&(table() + &page))
 }
 
@@ -44,9 +39,7 @@ pub fn threads(chosen: Option<u16>) -> usize {
 pub fn run_counter(message: String, runs: usize) -> anyhow::Result<ProgressBar> {
     let style =
         ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
-    Ok(ProgressBar::new(runs as u64)
-        .with_style(style)
-        .with_message(message))
+    Ok(ProgressBar::new(runs as u64).with_style(style).with_message(message))
 }
 
 /// Creates the folder of `--out` before a long run begins.

@@ -42,23 +42,19 @@ pub struct Arguments {
 
 /// Plays the course; prints its figures.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let selection = Selection {
-        column: arguments.column.as_deref(),
-    };
+    let selection = Selection { column: arguments.column.as_deref() };
     let course = read_course(&arguments.course, selection).map_err(Failure::input)?;
     let played = Prepared::new(course).fine_enough(arguments.coarse);
-    let played = played
-        .with_context(|| arguments.course.display().to_string())
-        .map_err(Failure::input)?;
+    let played =
+        played.with_context(|| arguments.course.display().to_string()).map_err(Failure::input)?;
     eprintln!(
         "hil-sim: {} points, reduction error {:.2} mK",
         played.points.points().len(),
         played.error_k * 1e3
     );
-    for (name, value, least, most) in [
-        ("--force-n", arguments.force_n, 0.01, 10.0),
-        ("--skin-c", arguments.skin_c, 15.0, 42.0),
-    ] {
+    for (name, value, least, most) in
+        [("--force-n", arguments.force_n, 0.01, 10.0), ("--skin-c", arguments.skin_c, 15.0, 42.0)]
+    {
         if !(least..=most).contains(&value) {
             let problem = anyhow!("{name} {value}; {least} to {most} is allowed");
             return Err(Failure::input(problem));

@@ -40,17 +40,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     engine.watch_tick();
     run_scene(&scene, &mut engine, |_| ()).map_err(Failure::run)?;
     let machine = engine.machine();
-    let watched = machine
-        .path()
-        .context("the image ran no tick")
-        .map_err(Failure::run)?;
+    let watched = machine.path().context("the image ran no tick").map_err(Failure::run)?;
     let mut shares = BTreeMap::<String, FunctionCost>::new();
     let mut names = HashMap::new();
     let mut charge = |block: ExecutedBlock, add: &dyn Fn(&mut FunctionCost, u64)| {
         for (address, cycles) in machine.instructions(block) {
-            let name = names
-                .entry(address)
-                .or_insert_with(|| owner(&symbols, address));
+            let name = names.entry(address).or_insert_with(|| owner(&symbols, address));
             add(shares.entry(name.clone()).or_default(), u64::from(cycles));
         }
     };
@@ -75,10 +70,7 @@ fn owner(symbols: &Loader, address: u32) -> String {
     let mut innermost = None;
     if let Ok(mut frames) = symbols.find_frames(u64::from(address)) {
         while let Ok(Some(frame)) = frames.next() {
-            let Some(name) = frame
-                .function
-                .as_ref()
-                .and_then(|function| function.raw_name().ok())
+            let Some(name) = frame.function.as_ref().and_then(|function| function.raw_name().ok())
             else {
                 continue;
             };
@@ -89,12 +81,7 @@ fn owner(symbols: &Loader, address: u32) -> String {
             innermost.get_or_insert(name);
         }
     }
-    innermost.unwrap_or_else(|| {
-        symbols
-            .find_symbol(u64::from(address))
-            .unwrap_or("?")
-            .into()
-    })
+    innermost.unwrap_or_else(|| symbols.find_symbol(u64::from(address)).unwrap_or("?").into())
 }
 
 fn table(shares: BTreeMap<String, FunctionCost>, ticks: u64) -> String {
@@ -128,18 +115,12 @@ fn table(shares: BTreeMap<String, FunctionCost>, ticks: u64) -> String {
     for (name, share) in &rows {
         if share.longest.1 < SMALL && share.all.1 < SMALL * ticks {
             rest.all = (rest.all.0 + share.all.0, rest.all.1 + share.all.1);
-            rest.longest = (
-                rest.longest.0 + share.longest.0,
-                rest.longest.1 + share.longest.1,
-            );
+            rest.longest = (rest.longest.0 + share.longest.0, rest.longest.1 + share.longest.1);
         } else {
             line(share, name);
         }
         sum.all = (sum.all.0 + share.all.0, sum.all.1 + share.all.1);
-        sum.longest = (
-            sum.longest.0 + share.longest.0,
-            sum.longest.1 + share.longest.1,
-        );
+        sum.longest = (sum.longest.0 + share.longest.0, sum.longest.1 + share.longest.1);
     }
     line(&rest, "others");
     line(&sum, "all, without the interrupt's entry and return");

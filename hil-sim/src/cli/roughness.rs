@@ -20,16 +20,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let profile = Profile::read(&arguments.profile)
         .with_context(|| arguments.profile.display().to_string())
         .map_err(Failure::input)?;
-    let Roughness {
-        rq_m,
-        rdq,
-        slope_rad,
-        rsm_m,
-    } = profile.roughness();
+    let Roughness { rq_m, rdq, slope_rad, rsm_m } = profile.roughness();
     let rsm_m = rsm_m.map_or(String::new(), |rsm_m| rsm_m.to_string());
-    writeln!(
-        stdout(),
-        "rq_m,rdq,slope_rad,rsm_m\n{rq_m},{rdq},{slope_rad},{rsm_m}"
-    )
-    .map_err(Failure::run)
+    writeln!(stdout(), "rq_m,rdq,slope_rad,rsm_m\n{rq_m},{rdq},{slope_rad},{rsm_m}")
+        .map_err(Failure::run)
 }

@@ -70,9 +70,7 @@ fn injection(text: &str) -> Result<Injection, String> {
         .ok_or("a time in seconds, a colon and a fault, such as 2.5:hung-core, is allowed")?;
     let t_s = (time.parse().ok().filter(|t_s: &f64| t_s.is_finite()))
         .ok_or_else(|| format!("`{time}` is no time in seconds"))?;
-    let fault = fault
-        .parse()
-        .map_err(|error: ParseMachineFaultError| error.to_string())?;
+    let fault = fault.parse().map_err(|error: ParseMachineFaultError| error.to_string())?;
     Ok(Injection { t_s, fault })
 }
 
@@ -82,9 +80,8 @@ fn measure<E: Engine>(
     engine: &mut E,
 ) -> Result<(Outcome, Figures), Failure> {
     let name = format!("{} on engine {}", scene.object.name, E::NAME);
-    let outcome = output::with_progress(name, |progress| {
-        run_with(scene, injections, engine, progress)
-    })?;
+    let outcome =
+        output::with_progress(name, |progress| run_with(scene, injections, engine, progress))?;
     let outcome = outcome.map_err(Failure::run)?;
     let figures = figures(scene, &outcome);
     Ok((outcome, figures))
@@ -92,9 +89,6 @@ fn measure<E: Engine>(
 
 fn write(folder: &Path, scene: &Scene, outcome: &Outcome, figures: &Figures) -> anyhow::Result<()> {
     let trace = folder.join("trace.csv");
-    outcome
-        .trace
-        .write(&trace)
-        .with_context(|| trace.display().to_string())?;
+    outcome.trace.write(&trace).with_context(|| trace.display().to_string())?;
     report::write(folder, scene, outcome, figures)
 }

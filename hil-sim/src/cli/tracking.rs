@@ -74,10 +74,7 @@ fn measure(arguments: &Arguments, device: &dyn SceneRunner) -> anyhow::Result<Tr
     let limits = parallel_map(&limits, threads, |case| case.run(device), || ())?;
     Ok(TrackingReport {
         engine: device.name(),
-        stimuli: stimuli
-            .iter()
-            .map(|stimulus| stimulus.name.clone())
-            .collect(),
+        stimuli: stimuli.iter().map(|stimulus| stimulus.name.clone()).collect(),
         results: results.collect(),
         limits,
         devices: arguments.devices,
@@ -91,9 +88,8 @@ fn boxed(
     device: &dyn SceneRunner,
     stimuli: &[Stimulus],
 ) -> anyhow::Result<Vec<TrackingBox>> {
-    let draws: Vec<_> = (0..arguments.devices)
-        .map(|number| PlantDraw::new(arguments.seed, number))
-        .collect();
+    let draws: Vec<_> =
+        (0..arguments.devices).map(|number| PlantDraw::new(arguments.seed, number)).collect();
     if draws.is_empty() {
         return Ok(Vec::new());
     }

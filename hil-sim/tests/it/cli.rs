@@ -14,9 +14,7 @@ fn golden(name: &str) -> Vec<Row> {
 #[test]
 fn the_readmes_example_prints_what_it_shows() {
     let readme = include_str!("../../README.md");
-    let (_, example) = readme
-        .split_once("$ cargo hil-sim ")
-        .expect("an example with a prompt");
+    let (_, example) = readme.split_once("$ cargo hil-sim ").expect("an example with a prompt");
     let (line, shown) = example.split_once('\n').expect("its output");
     let (shown, _) = shown.split_once("```").expect("an end");
     let arguments: Vec<&str> = line.split(' ').collect();
@@ -52,10 +50,8 @@ fn model_meets_golden_values_in_f64_and_fixed_point() {
                 Some("t_s,z,erfcx,t_skin_c,t_object_c,q_w_m2,t_display_c,r_m2k_w,ratio")
             );
             let line = lines.next().expect("a row");
-            let values: Vec<f64> = line
-                .split(',')
-                .map(|cell| cell.parse().expect("a number"))
-                .collect();
+            let values: Vec<f64> =
+                line.split(',').map(|cell| cell.parse().expect("a number")).collect();
             let kelvin =
                 bound * step_k.max(1.0) + 1e-6 * f64::from(u8::from(arithmetic == "fixed")) + 1e-11;
             for (index, column, allowed) in [
@@ -64,11 +60,7 @@ fn model_meets_golden_values_in_f64_and_fixed_point() {
                 (4, "T_object_s_C", kelvin),
                 (5, "q_W_m2", bound * flux_scale + 1e-6),
                 (6, "T_display_C", kelvin),
-                (
-                    7,
-                    "R_skin_object_m2K_W",
-                    bound * number(&row, "R_skin_object_m2K_W") + 1e-18,
-                ),
+                (7, "R_skin_object_m2K_W", bound * number(&row, "R_skin_object_m2K_W") + 1e-18),
                 (8, "ratio_Rdisp_Robj", bound),
             ] {
                 let error = (values[index] - number(&row, column)).abs();
@@ -104,43 +96,27 @@ fn skin_at_depth_meets_golden_values() {
         ];
         let own = ["--depth-m", &row["x_m"], "--times", &row["t_s"]];
         let text = good(&[&arguments[..], &own[..]].concat(), "");
-        let skin_c: f64 = text
-            .lines()
-            .nth(1)
-            .and_then(|line| line.split(',').nth(3))
-            .unwrap()
-            .parse()
-            .unwrap();
-        assert!(
-            (skin_c - number(row, "T_skin_x_t_C")).abs() < 1e-9,
-            "{row:?}"
-        );
+        let skin_c: f64 =
+            text.lines().nth(1).and_then(|line| line.split(',').nth(3)).unwrap().parse().unwrap();
+        assert!((skin_c - number(row, "T_skin_x_t_C")).abs() < 1e-9, "{row:?}");
     }
 }
 
 #[test]
 fn erfcx_meets_golden_values_in_decimal_and_hexadecimal() {
     let rows = golden("erfcx");
-    let words: Vec<&str> = rows
-        .iter()
-        .flat_map(|row| [row["x"].as_str(), row["x_hex"].as_str()])
-        .collect();
+    let words: Vec<&str> =
+        rows.iter().flat_map(|row| [row["x"].as_str(), row["x_hex"].as_str()]).collect();
     let text = good(&["erfcx"], &(words.join("\n") + "\n"));
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some("z,E_bits"));
     for row in &rows {
         let exact = (number(row, "erfcx") * 4_294_967_296.0).min(4_294_967_295.0);
         for column in ["x", "x_hex"] {
-            let (z, bits) = lines
-                .next()
-                .and_then(|line| line.split_once(','))
-                .expect("z,E_bits");
+            let (z, bits) = lines.next().and_then(|line| line.split_once(',')).expect("z,E_bits");
             assert_eq!(z, row[column]);
             let error = bits.parse::<f64>().expect("an integer") - exact;
-            assert!(
-                error.abs() <= 0.51 + 0.07,
-                "z = {z}: {error} units of 2^-32"
-            );
+            assert!(error.abs() <= 0.51 + 0.07, "z = {z}: {error} units of 2^-32");
         }
     }
 }
@@ -173,36 +149,11 @@ const SCENE: &str = "duration_s = 1\nskin_c = 34\nroom_c = 24\n[object]\nmateria
 fn bad_scenes_are_refused_with_file_line_and_what_is_allowed() {
     Scene::parse(SCENE, Path::new("scene")).expect("the scene that is spoiled is good");
     for (from, to, line, expected) in [
-        (
-            "copper",
-            "gold",
-            5,
-            "object.material = \"gold\"; known are copper, bronze",
-        ),
-        (
-            "skin_c",
-            "skinn_c",
-            2,
-            "unknown field `skinn_c`, expected one of",
-        ),
-        (
-            "force_n = 2",
-            "force_n = -1",
-            8,
-            "force.force_n = -1; allowed is 0 to 10",
-        ),
-        (
-            "duration_s = 1",
-            "duration_s = 0",
-            1,
-            "duration_s = 0; allowed is",
-        ),
-        (
-            "duration_s = 1",
-            "duration_s = nan",
-            1,
-            "duration_s = NaN; allowed is",
-        ),
+        ("copper", "gold", 5, "object.material = \"gold\"; known are copper, bronze"),
+        ("skin_c", "skinn_c", 2, "unknown field `skinn_c`, expected one of"),
+        ("force_n = 2", "force_n = -1", 8, "force.force_n = -1; allowed is 0 to 10"),
+        ("duration_s = 1", "duration_s = 0", 1, "duration_s = 0; allowed is"),
+        ("duration_s = 1", "duration_s = nan", 1, "duration_s = NaN; allowed is"),
         ("[object]", "[object", 4, "unclosed table"),
         (
             "material = \"copper\"",
@@ -210,25 +161,12 @@ fn bad_scenes_are_refused_with_file_line_and_what_is_allowed() {
             6,
             "allowed is 15 to 42 C",
         ),
-        (
-            "material = \"copper\"",
-            "k_w_mk = 1",
-            4,
-            "object.rho_kg_m3 is missing",
-        ),
-        (
-            "t_s = 0.5",
-            "t_s = 5",
-            7,
-            "force.t_s = 5; allowed is 0 to 1",
-        ),
+        ("material = \"copper\"", "k_w_mk = 1", 4, "object.rho_kg_m3 is missing"),
+        ("t_s = 0.5", "t_s = 5", 7, "force.t_s = 5; allowed is 0 to 1"),
     ] {
         let file = File::new("scene.toml", &SCENE.replacen(from, to, 1));
         let message = refused(&["run", file.path(), "--engine", "native"]);
-        assert!(
-            message.contains(&format!("{}:{line}: ", file.path())),
-            "{to}: {message}"
-        );
+        assert!(message.contains(&format!("{}:{line}: ", file.path())), "{to}: {message}");
         assert!(message.contains(expected), "{to}: {message}");
     }
 }
@@ -247,10 +185,8 @@ fn a_back_that_the_device_is_not_told_of_is_noticed() {
     ] {
         let text = SCENE.replacen("material = \"copper\"", &object, 1);
         let file = File::new("back.toml", &text);
-        for arguments in [
-            &["run", file.path(), "--engine", "native"][..],
-            &["object", file.path()],
-        ] {
+        for arguments in [&["run", file.path(), "--engine", "native"][..], &["object", file.path()]]
+        {
             let output = hil_sim(arguments, "");
             assert!(output.status.success(), "{object}: {output:?}");
             let message = String::from_utf8(output.stderr).expect("text");
@@ -273,10 +209,7 @@ fn a_slab_of_the_named_material_is_printed_as_one_line() {
         "[[object.layer]]\nthickness_m = 0.003\nk_w_mk = 398\nrho_kg_m3 = 8954\nc_j_kgk = ";
     for (object, line) in [
         ("thickness_m = 0.003", "object slab 3mm insulated"),
-        (
-            "thickness_m = 0.0015\nback = \"held\"",
-            "object slab 1.5mm held",
-        ),
+        ("thickness_m = 0.0015\nback = \"held\"", "object slab 1.5mm held"),
         (
             "thickness_m = 0.0001\nback = \"film\"\nback_film_w_m2k = 12.5",
             "object slab 0.1mm film 12.5",
@@ -292,11 +225,7 @@ fn a_slab_of_the_named_material_is_printed_as_one_line() {
         let lines: Vec<_> = lines.lines().collect();
         assert_eq!(lines[..2], ["material copper", "object room"], "{object}");
         assert!(lines[2].starts_with(line), "{object}: {lines:?}");
-        assert_eq!(
-            lines.len() == 3,
-            line.contains("slab"),
-            "{object}: {lines:?}"
-        );
+        assert_eq!(lines.len() == 3, line.contains("slab"), "{object}: {lines:?}");
     }
 }
 
@@ -355,15 +284,9 @@ fn parameters_are_printed_with_limits_and_drawn_alike_by_one_seed() {
     assert_eq!(drawn, read(&["--draw", "4"]));
     assert_ne!(drawn, read(&["--draw", "5"]));
     for (nominal, drawn) in nominal.iter().zip(&drawn) {
-        assert_eq!(
-            nominal["low"], drawn["low"],
-            "limits are those of the nominal value"
-        );
+        assert_eq!(nominal["low"], drawn["low"], "limits are those of the nominal value");
         let value = number(drawn, "value");
-        assert!(
-            number(drawn, "low") <= value && value <= number(drawn, "high"),
-            "{drawn:?}"
-        );
+        assert!(number(drawn, "low") <= value && value <= number(drawn, "high"), "{drawn:?}");
     }
     let json = good(&["parameters", "--json"], "");
     let json: Vec<serde_json::Value> = serde_json::from_str(&json).expect("an array");
@@ -391,10 +314,7 @@ fn run_reports_resets_and_refuses_other_faults_of_the_processor() {
     let t_s = figures["resets"][0]["t_s"].as_f64().expect("a time");
     assert!((t_s - 0.01).abs() < 1e-9, "{t_s}");
     for (fault, expected) in [
-        (
-            "0.01:bit-rot",
-            "`bit-rot` is no fault of the machine; allowed are ram-bit=",
-        ),
+        ("0.01:bit-rot", "`bit-rot` is no fault of the machine; allowed are ram-bit="),
         ("hung-core", "a time in seconds, a colon and a fault"),
         ("soon:hung-core", "`soon` is no time in seconds"),
     ] {
@@ -429,23 +349,15 @@ fn fidelity_compares_laws_and_is_reproducible_by_seed() {
     );
     assert!(value(0) > value(1) && value(1) > 0.0, "{text}");
     for row in rows {
-        assert_eq!(
-            row["judged"]["value"],
-            row["skin_error_mk"]["max_after_50ms"]
-        );
+        assert_eq!(row["judged"]["value"], row["skin_error_mk"]["max_after_50ms"]);
         let (max, rms) = (&row["current_a"]["max_abs"], &row["current_a"]["rms"]);
-        assert!(
-            max.as_f64() > rms.as_f64() && rms.as_f64() > Some(0.0),
-            "{row}"
-        );
+        assert!(max.as_f64() > rms.as_f64() && rms.as_f64() > Some(0.0), "{row}");
         assert!(row["energy_j"].as_f64() > Some(0.0), "{row}");
     }
     let drawn = || {
-        let mut report: serde_json::Value = serde_json::from_str(&good(
-            &["fidelity", "--box", "2", "--seed", "9", "--json"],
-            "",
-        ))
-        .expect("JSON");
+        let mut report: serde_json::Value =
+            serde_json::from_str(&good(&["fidelity", "--box", "2", "--seed", "9", "--json"], ""))
+                .expect("JSON");
         report["box"].take()
     };
     let first = drawn();

@@ -19,18 +19,8 @@ fn a_wrong_course_is_refused_with_file_line_and_what_is_allowed() {
         "{message}"
     );
     let good_course = file("good.csv", "t_s,celsius\n0,30\n1,29\n");
-    let message = refused(&[
-        "play",
-        &good_course,
-        "--engine",
-        "native",
-        "--force-n",
-        "11",
-    ]);
-    assert!(
-        message.contains("--force-n 11; 0.01 to 10 is allowed"),
-        "{message}"
-    );
+    let message = refused(&["play", &good_course, "--engine", "native", "--force-n", "11"]);
+    assert!(message.contains("--force-n 11; 0.01 to 10 is allowed"), "{message}");
     let message = refused(&["play", "no-such.csv", "--engine", "native"]);
     assert!(message.contains("no-such.csv"), "{message}");
 }
@@ -39,18 +29,11 @@ fn a_wrong_course_is_refused_with_file_line_and_what_is_allowed() {
 fn a_course_that_128_points_cannot_follow_is_refused() {
     let mut text = String::from("t_s,celsius\n");
     for i in 0..2000 {
-        text += &format!(
-            "{},{}\n",
-            f64::from(i) / 100.0,
-            30.0 + 0.05 * f64::from(i % 2)
-        );
+        text += &format!("{},{}\n", f64::from(i) / 100.0, 30.0 + 0.05 * f64::from(i % 2));
     }
     let noisy = file("noisy.csv", &text);
     let message = refused(&["play", &noisy, "--engine", "native"]);
-    assert!(
-        message.contains("mK off; up to 5 mK are allowed without --coarse"),
-        "{message}"
-    );
+    assert!(message.contains("mK off; up to 5 mK are allowed without --coarse"), "{message}");
 }
 
 #[test]
@@ -62,14 +45,7 @@ fn a_display_needs_a_scene_of_one_contact() {
         "duration_s = 4.0\nskin_c = 34.0\nroom_c = 24.0\n[object]\nmaterial = \"abs\"\n[[force]]\nt_s = 1.0\nforce_n = 1.0\n\
          [[force]]\nt_s = 2.0\nforce_n = 2.0\n",
     );
-    let message = refused(&[
-        "display",
-        &two,
-        "--display",
-        "yang-2006",
-        "--engine",
-        "native",
-    ]);
+    let message = refused(&["display", &two, "--display", "yang-2006", "--engine", "native"]);
     assert!(message.contains("is computed for one contact"), "{message}");
 }
 
@@ -84,10 +60,7 @@ fn all_displays_on_an_ideal_tile_are_one_json_object() {
     for row in rows {
         assert_eq!(row["material"], "granite");
         let error = &row["ideal_tile_skin_error_mk"];
-        assert!(
-            error["max_after_50ms"].is_number() && error["rms"].is_number(),
-            "{row}"
-        );
+        assert!(error["max_after_50ms"].is_number() && error["rms"].is_number(), "{row}");
     }
     assert_eq!(rows[0]["display"], "ho-2006-chapter-4");
     assert_eq!(rows[0]["better_than_ours_on_ideal_tile"], false);
@@ -99,17 +72,7 @@ fn a_course_is_played_from_landing_on_and_its_error_is_told() {
     let folder = temporary("played");
     let out = folder.to_str().expect("a path");
     let text = good(
-        &[
-            "play",
-            &course,
-            "--engine",
-            "native",
-            "--force-n",
-            "1",
-            "--out",
-            out,
-            "--json",
-        ],
+        &["play", &course, "--engine", "native", "--force-n", "1", "--out", out, "--json"],
         "",
     );
     let figures: serde_json::Value = serde_json::from_str(&text).expect("JSON");
@@ -120,14 +83,7 @@ fn a_course_is_played_from_landing_on_and_its_error_is_told() {
     // What was shown can be played again: the trace's display from landing on.
     let trace = folder.join("trace.csv");
     let again = good(
-        &[
-            "play",
-            trace.to_str().expect("a path"),
-            "--engine",
-            "native",
-            "--coarse",
-            "--json",
-        ],
+        &["play", trace.to_str().expect("a path"), "--engine", "native", "--coarse", "--json"],
         "",
     );
     let figures: serde_json::Value = serde_json::from_str(&again).expect("JSON");

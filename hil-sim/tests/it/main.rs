@@ -21,21 +21,13 @@ fn hil_sim(arguments: &[&str], input: &str) -> Output {
         .spawn()
         .expect("hil-sim starts");
     // A command that reads nothing closes the pipe.
-    let _ = child
-        .stdin
-        .take()
-        .expect("a pipe")
-        .write_all(input.as_bytes());
+    let _ = child.stdin.take().expect("a pipe").write_all(input.as_bytes());
     child.wait_with_output().expect("hil-sim ends")
 }
 
 fn good(arguments: &[&str], input: &str) -> String {
     let output = hil_sim(arguments, input);
-    assert!(
-        output.status.success(),
-        "{arguments:?}: {}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("text")
 }
 
@@ -63,18 +55,12 @@ fn rows(path: &str) -> Vec<Row> {
 }
 
 fn number(row: &Row, column: &str) -> f64 {
-    row[column]
-        .parse()
-        .unwrap_or_else(|_| panic!("{column} of {row:?}"))
+    row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
 }
 
 /// Status, standard output and standard error.
 fn command(arguments: &[&str]) -> (Option<i32>, String, String) {
     let output = hil_sim(arguments, "");
     let text = |bytes| String::from_utf8(bytes).expect("text");
-    (
-        output.status.code(),
-        text(output.stdout),
-        text(output.stderr),
-    )
+    (output.status.code(), text(output.stdout), text(output.stderr))
 }

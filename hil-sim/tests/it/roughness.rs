@@ -29,29 +29,13 @@ fn command_prints_the_parameters() {
     let sine = profile(|x_m| 3e-6 * (TAU * x_m / 0.8e-3).sin());
     let (status, out, error) = roughness(&file("sine.csv", &sine));
     assert_eq!((status, error.as_str()), (Some(0), ""));
-    let found = Profile::parse(sine.as_bytes())
-        .expect("a profile")
-        .roughness();
+    let found = Profile::parse(sine.as_bytes()).expect("a profile").roughness();
     let (header, row) = out.trim_end().split_once('\n').expect("two lines");
     assert_eq!(header, "rq_m,rdq,slope_rad,rsm_m");
-    let cells: Vec<f64> = row
-        .split(',')
-        .map(|cell| cell.parse().expect("a number"))
-        .collect();
-    assert_eq!(
-        cells,
-        [
-            found.rq_m,
-            found.rdq,
-            found.slope_rad,
-            found.rsm_m.expect("an element")
-        ]
-    );
+    let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().expect("a number")).collect();
+    assert_eq!(cells, [found.rq_m, found.rdq, found.slope_rad, found.rsm_m.expect("an element")]);
     let (status, out, _) = roughness(&file("flat.csv", &profile(|_| 0.0)));
-    assert_eq!(
-        (status, out.as_str()),
-        (Some(0), "rq_m,rdq,slope_rad,rsm_m\n0,0,0,\n")
-    );
+    assert_eq!((status, out.as_str()), (Some(0), "rq_m,rdq,slope_rad,rsm_m\n0,0,0,\n"));
 }
 
 #[test]
@@ -59,15 +43,10 @@ fn command_names_file_and_line() {
     let path = file("short.csv", "x_m,z_m\n0,0\n1e-6,nan\n");
     let (status, out, error) = roughness(&path);
     assert_eq!((status, out.as_str()), (Some(2), ""));
-    let expected = format!(
-        "hil-sim: {}: line 3: z_m = \"nan\"; allowed is a finite number\n",
-        path.display()
-    );
+    let expected =
+        format!("hil-sim: {}: line 3: z_m = \"nan\"; allowed is a finite number\n", path.display());
     assert_eq!(error, expected);
     let (status, out, error) = roughness(Path::new("no such profile.csv"));
     assert_eq!((status, out.as_str()), (Some(2), ""));
-    assert!(
-        error.starts_with("hil-sim: no such profile.csv: "),
-        "{error}"
-    );
+    assert!(error.starts_with("hil-sim: no such profile.csv: "), "{error}");
 }

@@ -121,27 +121,15 @@ fn ctrl_c_and_sigterm_end_it_with_status_0() {
 fn what_cannot_be_served_is_refused_with_what_is_allowed() {
     let serve = |rest: &[&str]| refused(&[&["serve", "--engine", "native"], rest].concat());
     for (arguments, expected) in [
-        (
-            &["--tcp", "0.0.0.0:4000"][..],
-            "--tcp: 0.0.0.0:4000 is not a loopback address",
-        ),
-        (
-            &["--tcp", "4000"],
-            "--tcp: '4000' is no address; allowed is a loopback address",
-        ),
+        (&["--tcp", "0.0.0.0:4000"][..], "--tcp: 0.0.0.0:4000 is not a loopback address"),
+        (&["--tcp", "4000"], "--tcp: '4000' is no address; allowed is a loopback address"),
         (&[], "<--pty|--tcp <ADDR>>"),
         (
             &["--tcp", "127.0.0.1:0", "--fingers", "3"],
             "invalid value '3' for '--fingers <FINGERS>': devices have 1 or 5 fingers",
         ),
-        (
-            &["--tcp", "127.0.0.1:0", "--speed", "2"],
-            "[possible values: 1, max]",
-        ),
-        (
-            &["--tcp", "127.0.0.1:0", "--elf", "x.elf"],
-            "--elf is for --engine image",
-        ),
+        (&["--tcp", "127.0.0.1:0", "--speed", "2"], "[possible values: 1, max]"),
+        (&["--tcp", "127.0.0.1:0", "--elf", "x.elf"], "--elf is for --engine image"),
         (&["nowhere.toml", "--tcp", "127.0.0.1:0"], "nowhere.toml"),
         (
             &["--tcp", "127.0.0.1:0", "--surroundings", "10.0.0.1:0"],

@@ -22,9 +22,7 @@ static PRINTED: LazyLock<(String, PathBuf)> = LazyLock::new(|| {
 });
 
 fn count_of(rows: &[Row], word: &str) -> usize {
-    rows.iter()
-        .filter(|row| row.verdict().word() == word)
-        .count()
+    rows.iter().filter(|row| row.verdict().word() == word).count()
 }
 
 #[test]
@@ -33,12 +31,7 @@ fn the_table_ends_with_the_counts_of_its_lines() {
     let rows = &*ROWS;
     let lines = text.lines().filter(|line| line.starts_with("  ")).count();
     assert_eq!(lines, rows.len());
-    assert_eq!(
-        text.lines()
-            .filter(|line| line.starts_with("Chapter "))
-            .count(),
-        9
-    );
+    assert_eq!(text.lines().filter(|line| line.starts_with("Chapter ")).count(), 9);
     let count = |word: &str| count_of(rows, word);
     // The line after the table names the page.
     let last = text.lines().nth_back(1).expect("a last line");
@@ -71,12 +64,7 @@ fn json_is_one_object_with_all_rows() {
     assert!(measured.len() > 40);
     assert!(measured.iter().all(|row| {
         let plants = row["plant"].as_array().map(Vec::len);
-        plants
-            == Some(if row["verdict"] == "not-modelled" {
-                0
-            } else {
-                4
-            })
+        plants == Some(if row["verdict"] == "not-modelled" { 0 } else { 4 })
     }));
     let g10 = rows
         .iter()
@@ -87,28 +75,19 @@ fn json_is_one_object_with_all_rows() {
     assert_eq!(g10["stated"], "29.0");
     assert_eq!(g10["verdict"], "wrong");
     let difference = g10["difference"].as_f64().expect("a number");
-    assert!(
-        (difference - 0.053_124_040_144_6).abs() < 1e-9,
-        "{difference}"
-    );
+    assert!((difference - 0.053_124_040_144_6).abs() < 1e-9, "{difference}");
 }
 
 #[test]
 fn out_writes_a_page_that_needs_no_other_file_and_all_rows_as_csv() {
     let (text, folder) = &*PRINTED;
-    assert!(text.ends_with(&format!(
-        "report: {}\n",
-        folder.join("thesis.html").display()
-    )));
+    assert!(text.ends_with(&format!("report: {}\n", folder.join("thesis.html").display())));
     let rows = &*ROWS;
     let page = std::fs::read_to_string(folder.join("thesis.html")).expect("the page");
     assert_eq!(page.matches("<figure>").count(), 15);
     assert_eq!(page.matches("<svg").count(), 15);
     assert_eq!(page.matches("<td class=\"v ").count(), rows.len());
-    assert_eq!(
-        page.matches(">wrong in the thesis<").count(),
-        count_of(rows, "wrong")
-    );
+    assert_eq!(page.matches(">wrong in the thesis<").count(), count_of(rows, "wrong"));
     for link in ["href", "src=", "url(", "@import"] {
         assert!(!page.contains(link), "{link} in the page");
     }
@@ -116,9 +95,7 @@ fn out_writes_a_page_that_needs_no_other_file_and_all_rows_as_csv() {
     let header = reader.headers().expect("a header").clone();
     assert_eq!(
         header,
-        vec![
-            "chapter", "place", "quantity", "unit", "stated", "computed", "verdict", "remark"
-        ]
+        vec!["chapter", "place", "quantity", "unit", "stated", "computed", "verdict", "remark"]
     );
     let records: Vec<_> = reader.records().collect::<Result<_, _>>().expect("records");
     assert_eq!(records.len(), rows.len());
@@ -135,8 +112,5 @@ fn an_impossible_folder_is_refused_by_name() {
     std::fs::write(&file, "").expect("a file");
     let below = file.join("below");
     let message = refused(&["thesis", "--out", below.to_str().expect("a path")]);
-    assert!(
-        message.contains(&format!("--out {}", below.display())),
-        "{message}"
-    );
+    assert!(message.contains(&format!("--out {}", below.display())), "{message}");
 }

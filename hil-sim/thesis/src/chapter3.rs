@@ -105,10 +105,7 @@ const TOTAL: &str = "total, d' of {} %";
 /// Percentages correct for which a column of Table 3-5 states d'.
 pub(super) fn table_3_5(column: &str) -> Vec<Answers> {
     let statements = STATEMENTS.iter().filter(|row| row.quantity == column);
-    let answers = statements.map(|row| Answers {
-        pair: row.of.clone(),
-        percent: row.given(),
-    });
+    let answers = statements.map(|row| Answers { pair: row.of.clone(), percent: row.given() });
     answers.collect()
 }
 
@@ -119,11 +116,7 @@ fn mean(answers: &[Answers]) -> f64 {
 /// Mean over the pairs of materials that are in both tables.
 fn mean_of_shared(mut answers: Vec<Answers>) -> f64 {
     let both = ["copper", "stainless steel", "ABS", "foam"];
-    answers.retain(|row| {
-        row.pair
-            .split(" / ")
-            .all(|material| both.contains(&material))
-    });
+    answers.retain(|row| row.pair.split(" / ").all(|material| both.contains(&material)));
     mean(&answers)
 }
 
@@ -137,9 +130,6 @@ mod tests {
         let failed = table_3_3().into_iter().filter(|row| row.percent < 72.0);
         let failed: Vec<_> = failed.map(|row| row.pair).collect();
         let section = STATEMENTS.iter().filter(|row| row.place == "Section 3.2.2");
-        assert_eq!(
-            failed,
-            section.map(|row| row.of.as_str()).collect::<Vec<_>>()
-        );
+        assert_eq!(failed, section.map(|row| row.of.as_str()).collect::<Vec<_>>());
     }
 }

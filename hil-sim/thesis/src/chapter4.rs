@@ -31,10 +31,7 @@ fn effusivity_at(interface_c: f64) -> f64 {
     let (skin_c, object_c) = BEFORE_C;
     let fall = |effusivity: f64| {
         let object = Material {
-            surface: Surface {
-                conductivity_w_mk: effusivity,
-                ..SKIN.surface
-            },
+            surface: Surface { conductivity_w_mk: effusivity, ..SKIN.surface },
             density_kg_m3: effusivity,
             specific_heat_j_kgk: 1.0,
         };

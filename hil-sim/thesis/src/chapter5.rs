@@ -11,10 +11,7 @@ use super::statement::Statement;
 /// Temperature of room and optics, °C (section 5.2.2).
 const AMBIENT_C: f64 = 24.0;
 /// Temperature of the camera that is reflected in the window, "approximately 30 °C" (section 5.2.5).
-const CAMERA: SelfReflection = SelfReflection {
-    camera_c: 30.0,
-    share: 1.0,
-};
+const CAMERA: SelfReflection = SelfReflection { camera_c: 30.0, share: 1.0 };
 /// Targets of section 5.2.5 without optics and behind a window, °C.
 const CHECK_C: [f64; 5] = [28.0, 30.0, 32.0, 34.0, 36.0];
 const TARGETS_C: [f64; 6] = [27.0, 28.0, 29.0, 30.0, 31.0, 32.0];
@@ -27,10 +24,7 @@ pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
         "skin at 10 s, 2 N" => {
             let case = Case {
                 object_c: 24.0,
-                ..Case::validation(
-                    statement.material(),
-                    contact_model::pressure::pressure_pa(2.0),
-                )
+                ..Case::validation(statement.material(), contact_model::pressure::pressure_pa(2.0))
             };
             case.contact().at(10.0).skin_c
         }
@@ -69,16 +63,12 @@ fn window(name: &str) -> Option<Bandpass> {
 /// Slope of the regression line through the origin of recovered over true temperature.
 fn slope(optic: Optic, targets_c: &[f64], camera: Option<SelfReflection>) -> f64 {
     let assumed = OpticalPath::new(optic, SKIN_EMISSIVITY, &Surroundings::at(AMBIENT_C));
-    let sight = camera.map_or(assumed, |camera| {
-        assumed.with_self_reflection(optic, &camera, AMBIENT_C)
-    });
+    let sight =
+        camera.map_or(assumed, |camera| assumed.with_self_reflection(optic, &camera, AMBIENT_C));
     let recovered = |target_c: f64| {
         temperature_c(assumed.target_radiance(sight.total_radiance(radiance(target_c))))
     };
-    let products: f64 = targets_c
-        .iter()
-        .map(|&target_c| target_c * recovered(target_c))
-        .sum();
+    let products: f64 = targets_c.iter().map(|&target_c| target_c * recovered(target_c)).sum();
     let squares: f64 = targets_c.iter().map(|target_c| target_c * target_c).sum();
     products / squares
 }

@@ -28,10 +28,7 @@ pub(super) fn material(name: &str) -> Material {
 }
 
 pub(super) fn sample(name: &'static str) -> Sample {
-    Sample {
-        name,
-        material: material(name),
-    }
+    Sample { name, material: material(name) }
 }
 
 /// The five materials of chapters 4 and 6 in order of decreasing contact coefficient.
@@ -60,22 +57,12 @@ pub struct Case {
 impl Case {
     /// Section 6.3: 34 and 24 °C, 2 N on 135 mm².
     pub(super) fn simulation(object: Material) -> Self {
-        Self {
-            object,
-            skin_c: 34.0,
-            object_c: 24.0,
-            pressure_pa: SIMULATION_PRESSURE_PA,
-        }
+        Self { object, skin_c: 34.0, object_c: 24.0, pressure_pa: SIMULATION_PRESSURE_PA }
     }
 
     /// Section 6.4: 34 and 26 °C at one of the measured pressures.
     pub(super) fn validation(object: Material, pressure_pa: f64) -> Self {
-        Self {
-            object,
-            skin_c: 34.0,
-            object_c: 26.0,
-            pressure_pa,
-        }
+        Self { object, skin_c: 34.0, object_c: 26.0, pressure_pa }
     }
 
     /// The contact by Eq. 6-5 to 6-12, reproduced on the reference display.

@@ -51,10 +51,7 @@ pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
 /// Probability of the value of a statistic or a larger one, as `F(2,9) = {}` names it.
 fn tail(test: &str, value: f64) -> Option<f64> {
     let degrees = |letter: &str| -> Option<Vec<f64>> {
-        let (degrees, _) = test
-            .strip_prefix(letter)?
-            .strip_prefix('(')?
-            .split_once(')')?;
+        let (degrees, _) = test.strip_prefix(letter)?.strip_prefix('(')?.split_once(')')?;
         let numbers = degrees.split(',').map(str::parse);
         numbers.collect::<Result<_, _>>().ok()
     };

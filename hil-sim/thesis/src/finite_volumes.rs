@@ -33,11 +33,8 @@ impl ContactSolver for FiniteVolumes {
             flux_w_m2: reference.flux_w_m2(),
         };
         // At time zero the interpolated surface temperatures already differ from the initial ones.
-        let initial = Surfaces {
-            skin_c: case.skin_c,
-            object_c: case.object_c,
-            ..surfaces(&reference)
-        };
+        let initial =
+            Surfaces { skin_c: case.skin_c, object_c: case.object_c, ..surfaces(&reference) };
         let mut before = (0.0, initial);
         let mut after = before;
         let mut solution = Vec::with_capacity(times_s.len());
@@ -55,11 +52,7 @@ impl ContactSolver for FiniteVolumes {
 
 /// Interpolates between two sub-steps, linearly in the square root of time.
 fn interpolate((a_s, a): &(f64, Surfaces), (b_s, b): &(f64, Surfaces), t_s: f64) -> Surfaces {
-    let part = if b_s > a_s {
-        (t_s.sqrt() - a_s.sqrt()) / (b_s.sqrt() - a_s.sqrt())
-    } else {
-        1.0
-    };
+    let part = if b_s > a_s { (t_s.sqrt() - a_s.sqrt()) / (b_s.sqrt() - a_s.sqrt()) } else { 1.0 };
     let mix = |a: f64, b: f64| a + part * (b - a);
     Surfaces {
         skin_c: mix(a.skin_c, b.skin_c),

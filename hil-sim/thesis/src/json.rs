@@ -41,15 +41,12 @@ struct JsonPlant {
 impl<'a> JsonMeasurement<'a> {
     fn new(measurement: &'a Measurement) -> Self {
         let values = measurement.plant.iter().flatten();
-        let plant = VARIANTS
-            .iter()
-            .zip(values)
-            .map(|(variant, &value)| JsonPlant {
-                finger: variant.finger(),
-                contact: variant.contact(),
-                value,
-                agrees: measurement.measured.agrees(value),
-            });
+        let plant = VARIANTS.iter().zip(values).map(|(variant, &value)| JsonPlant {
+            finger: variant.finger(),
+            contact: variant.contact(),
+            value,
+            agrees: measurement.measured.agrees(value),
+        });
         Self {
             place: measurement.place,
             quantity: &measurement.quantity,

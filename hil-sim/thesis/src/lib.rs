@@ -62,12 +62,7 @@ pub fn chapters() -> Vec<Chapter> {
     );
     chapters.extend(of(
         &EXPERIMENTS,
-        &[
-            (2, "Thickness of the skin"),
-            (3, "Experiments"),
-            (4, "Experiments"),
-            (6, "Experiments"),
-        ],
+        &[(2, "Thickness of the skin"), (3, "Experiments"), (4, "Experiments"), (6, "Experiments")],
     ));
     chapters
 }

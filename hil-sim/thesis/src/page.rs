@@ -74,19 +74,13 @@ fn page(
         body.push_str("</table>");
         let prefix = format!("{}-", chapter.number);
         let first = chapters.iter().position(|one| one.number == chapter.number);
-        for figure in figures
-            .iter()
-            .filter(|figure| first == Some(i) && figure.number.starts_with(&prefix))
+        for figure in
+            figures.iter().filter(|figure| first == Some(i) && figure.number.starts_with(&prefix))
         {
             let svg = draw(figure)?;
-            let compared = differences
-                .iter()
-                .find(|difference| difference.number == figure.number);
+            let compared = differences.iter().find(|difference| difference.number == figure.number);
             let compared = compared.map_or(String::new(), |difference| {
-                format!(
-                    "<p>By the plant's finite volumes: {}.</p>",
-                    escape(&difference.text())
-                )
+                format!("<p>By the plant's finite volumes: {}.</p>", escape(&difference.text()))
             });
             let _ = write!(
                 body,
@@ -108,18 +102,11 @@ fn measured_table(measured: &[Measurement]) -> String {
     );
     for variant in VARIANTS {
         // Writing to a String cannot fail.
-        let _ = write!(
-            table,
-            "<th>finger {}, {}</th>",
-            variant.finger(),
-            variant.contact()
-        );
+        let _ = write!(table, "<th>finger {}, {}</th>", variant.finger(), variant.contact());
     }
     table.push_str("<th>unit</th><th>verdict</th><th>why</th></tr>");
     for row in measured {
-        let plants = row
-            .plant_texts()
-            .map(|text| format!("<td class=\"n\">{text}</td>"));
+        let plants = row.plant_texts().map(|text| format!("<td class=\"n\">{text}</td>"));
         let _ = write!(
             table,
             "<tr><td class=\"w\">{}</td><td>{}</td><td class=\"n\">{}</td>{}<td class=\"w\">{}</td>\
@@ -170,12 +157,8 @@ fn draw(figure: &Figure) -> anyhow::Result<String> {
         .collect();
     let last = curves.iter().flat_map(|curve| &curve.points);
     let last = last.fold(0.0, |last: f64, (x, _)| last.max(*x));
-    let panel = Panel {
-        x: 0.0..last,
-        x_name: figure.x,
-        y_name: figure.y,
-        legend: Legend::Beside(LEGEND),
-    };
+    let panel =
+        Panel { x: 0.0..last, x_name: figure.x, y_name: figure.y, legend: Legend::Beside(LEGEND) };
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();

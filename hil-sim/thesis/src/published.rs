@@ -26,18 +26,13 @@ pub const ANSWERS_OF_TABLE_3_5: u32 = 90;
 fn pair(pair: &str, percent: f64) -> Option<PublishedPair> {
     let (first, second) = pair.split_once(" / ")?;
     let name = |words: &str| words.to_lowercase().replace(' ', "-");
-    Some(PublishedPair {
-        first: name(first),
-        second: name(second),
-        percent,
-    })
+    Some(PublishedPair { first: name(first), second: name(second), percent })
 }
 
 /// Table 3-3: which of two real materials is colder.
 pub fn discrimination() -> Vec<PublishedPair> {
     let rows = table_3_3().into_iter();
-    rows.filter_map(|row| pair(&row.pair, row.percent))
-        .collect()
+    rows.filter_map(|row| pair(&row.pair, row.percent)).collect()
 }
 
 /// Table 3-5: which of three fingers touches another material than the other two.
@@ -45,22 +40,18 @@ pub fn localisation() -> Vec<PublishedPair> {
     let high = table_3_5(HIGH_LOW).into_iter();
     let high = high.filter_map(|row| pair(&row.pair, row.percent));
     let low = table_3_5(LOW_HIGH).into_iter();
-    let low = low
-        .filter_map(|row| pair(&row.pair, row.percent))
-        .map(|row| PublishedPair {
-            first: row.second,
-            second: row.first,
-            ..row
-        });
+    let low = low.filter_map(|row| pair(&row.pair, row.percent)).map(|row| PublishedPair {
+        first: row.second,
+        second: row.first,
+        ..row
+    });
     high.chain(low).collect()
 }
 
 /// Young's modulus of a material, GPa (Tables 3-2 and 4-1); `None` of one that the thesis does not have.
 pub fn youngs_modulus_gpa(material: &str) -> Option<f64> {
     let mut moduli = MODULI_GPA.iter();
-    moduli
-        .find(|(name, _)| *name == material)
-        .map(|(_, gpa)| *gpa)
+    moduli.find(|(name, _)| *name == material).map(|(_, gpa)| *gpa)
 }
 
 /// A result that the thesis states in words, because it is in a picture only.
@@ -107,18 +98,11 @@ mod tests {
         let (pairs, targets) = (discrimination(), localisation());
         assert_eq!((pairs.len(), targets.len()), (15, 20));
         for row in pairs.iter().chain(&targets) {
-            assert!(
-                find(&row.first).is_some() && find(&row.second).is_some(),
-                "{row:?}"
-            );
+            assert!(find(&row.first).is_some() && find(&row.second).is_some(), "{row:?}");
         }
-        let ss_granite = targets
-            .iter()
-            .find(|row| row.first == "granite" && row.second == "stainless-steel");
+        let ss_granite =
+            targets.iter().find(|row| row.first == "granite" && row.second == "stainless-steel");
         assert_eq!(ss_granite.map(|row| row.percent), Some(43.0));
-        assert_eq!(
-            (identification().len(), real_against_simulated().len()),
-            (9, 12)
-        );
+        assert_eq!((identification().len(), real_against_simulated().len()), (9, 12));
     }
 }

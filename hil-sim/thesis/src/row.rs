@@ -87,10 +87,7 @@ impl Row {
         let corrected = |why: &str, correction: &Correction| match correction {
             Correction::Reads(stated) => format!("{why}; should read {stated}"),
             Correction::Is(value) => {
-                format!(
-                    "{why}; that is {value:.*}",
-                    self.stated.decimals_for_computed()
-                )
+                format!("{why}; that is {value:.*}", self.stated.decimals_for_computed())
             }
         };
         match &self.remark {

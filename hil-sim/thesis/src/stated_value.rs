@@ -104,9 +104,7 @@ impl TryFrom<String> for Stated {
     fn try_from(text: String) -> Result<Self, String> {
         let wrong = || format!("{text:?} is no number");
         let number = |text: &str| text.trim().parse().map_err(|_| wrong());
-        let quoted = text
-            .strip_prefix('"')
-            .and_then(|text| text.strip_suffix('"'));
+        let quoted = text.strip_prefix('"').and_then(|text| text.strip_suffix('"'));
         Ok(if let Some(text) = quoted {
             Self::Garbled(text.into())
         } else if let Some(limit) = text.strip_prefix('<') {
@@ -124,10 +122,7 @@ impl TryFrom<String> for Stated {
             let power: i32 = power.parse().map_err(|_| wrong())?;
             let fraction = digits.split_once('.').map_or("", |(_, fraction)| fraction);
             let value = number(&text)?;
-            Self::Printed {
-                value,
-                decimals: fraction.len() as i32 - power,
-            }
+            Self::Printed { value, decimals: fraction.len() as i32 - power }
         })
     }
 }

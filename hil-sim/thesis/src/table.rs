@@ -45,14 +45,7 @@ impl Counts {
 
     /// The counts as a sentence.
     pub(super) fn text(&self) -> String {
-        let Self {
-            rows,
-            agrees,
-            cut,
-            differs,
-            damaged,
-            wrong,
-        } = self;
+        let Self { rows, agrees, cut, differs, damaged, wrong } = self;
         format!(
             "{rows} numbers: {agrees} agree, {cut} cut instead of rounded, {damaged} damaged in the text, {wrong} \
              wrong in the thesis, {differs} differ"
@@ -67,12 +60,8 @@ pub fn table(
     measured: &[Measurement],
 ) -> String {
     let rows = || chapters.iter().flat_map(|chapter| &chapter.rows);
-    let width = |text: fn(&Row) -> String| {
-        rows()
-            .map(|row| text(row).chars().count())
-            .max()
-            .unwrap_or(0)
-    };
+    let width =
+        |text: fn(&Row) -> String| rows().map(|row| text(row).chars().count()).max().unwrap_or(0);
     let quantity = |row: &Row| row.quantity.clone();
     let stated = |row: &Row| row.stated.to_string();
     let (quantities, stateds) = (width(quantity), width(stated));
@@ -100,10 +89,7 @@ pub fn table(
         }
         text.push('\n');
     }
-    let _ = writeln!(
-        text,
-        "Model figures by the plant's finite volumes, against the closed forms"
-    );
+    let _ = writeln!(text, "Model figures by the plant's finite volumes, against the closed forms");
     for figure in figures {
         let _ = writeln!(text, "{}", figure.text());
     }
@@ -125,18 +111,10 @@ fn measured_table(measured: &[Measurement]) -> String {
             variant.contact()
         );
     }
-    let width = measured
-        .iter()
-        .map(|row| row.quantity.chars().count())
-        .max()
-        .unwrap_or(0);
+    let width = measured.iter().map(|row| row.quantity.chars().count()).max().unwrap_or(0);
     for row in measured {
         let plants = row.plant_texts().map(|text| format!("{text:>9}")).concat();
-        let why = if row.why().is_empty() {
-            String::new()
-        } else {
-            format!(": {}", row.why())
-        };
+        let why = if row.why().is_empty() { String::new() } else { format!(": {}", row.why()) };
         let _ = writeln!(
             text,
             "- {:<13}  {:<width$}  {:>13}{plants}  {:<2}  {}{why}",

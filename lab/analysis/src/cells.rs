@@ -71,14 +71,10 @@ pub fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
 
 /// Participants' own means, from observations: participant, value.
 pub fn means_of_participants(observations: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
-    let observations: Vec<_> = observations
-        .filter(|(_, value)| value.is_finite())
-        .collect();
+    let observations: Vec<_> = observations.filter(|(_, value)| value.is_finite()).collect();
     let participants = distinct(observations.iter().map(|(participant, _)| *participant));
     let own = |participant: usize| {
-        let own = observations
-            .iter()
-            .filter(move |(one, _)| *one == participant);
+        let own = observations.iter().filter(move |(one, _)| *one == participant);
         mean(own.map(|(_, value)| *value))
     };
     participants.into_iter().filter_map(own).collect()

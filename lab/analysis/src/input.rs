@@ -72,10 +72,7 @@ pub struct Stimulus<'a> {
 pub fn tasks(sessions: &[RecordedSession]) -> Vec<Task> {
     let mut tasks: Vec<(Session, Task)> = Vec::new();
     for recorded in sessions {
-        let read = Session {
-            text: String::new(),
-            ..recorded.session.clone()
-        };
+        let read = Session { text: String::new(), ..recorded.session.clone() };
         let known = tasks.iter().position(|(session, _)| *session == read);
         let at = known.unwrap_or_else(|| {
             let new = task(&read);
@@ -133,27 +130,17 @@ fn task(session: &Session) -> Task {
         chance: session.score.chance,
         threshold: session.score.threshold,
         analyses: session.score.analyses.clone(),
-        stations: session
-            .stations
-            .iter()
-            .map(|station| station.name.clone())
-            .collect(),
+        stations: session.stations.iter().map(|station| station.name.clone()).collect(),
         factors: Vec::new(),
-        staircases: staircases
-            .map(|named| (named.name.clone(), named.initial.clone()))
-            .collect(),
+        staircases: staircases.map(|named| (named.name.clone(), named.initial.clone())).collect(),
         materials: BTreeMap::new(),
         participants: Vec::new(),
     }
 }
 
 fn participant(recorded: &RecordedSession) -> Participant {
-    let planned: BTreeMap<u32, _> = recorded
-        .plan
-        .trials
-        .iter()
-        .map(|trial| (trial.number, trial))
-        .collect();
+    let planned: BTreeMap<u32, _> =
+        recorded.plan.trials.iter().map(|trial| (trial.number, trial)).collect();
     let trial = |record: &TrialRecord| {
         let plan = planned.get(&record.trial);
         let levels = recorded.plan.factors.iter().zip(&record.levels);
@@ -242,11 +229,7 @@ impl Trial {
                 Presented::Material { material, .. } => (material, true),
                 _ => return None,
             };
-            Some(Stimulus {
-                station,
-                material,
-                is_simulated,
-            })
+            Some(Stimulus { station, material, is_simulated })
         })
     }
 
@@ -279,13 +262,8 @@ impl Trial {
 
     /// Levels of all factors as one text.
     pub fn condition(&self, without: &[&str]) -> String {
-        let levels = self
-            .levels
-            .iter()
-            .filter(|(factor, _)| !without.contains(&factor.as_str()));
-        let levels: Vec<_> = levels
-            .map(|(factor, level)| format!("{factor} {level}"))
-            .collect();
+        let levels = self.levels.iter().filter(|(factor, _)| !without.contains(&factor.as_str()));
+        let levels: Vec<_> = levels.map(|(factor, level)| format!("{factor} {level}")).collect();
         levels.join(", ")
     }
 }

@@ -19,12 +19,7 @@ pub use report::{Analysis, Cell, Column, Picture, Section, Table, TaskAnalysis};
 /// differ are analysed apart. Void trials do not count. Whatever the records
 /// are, every number is finite; what cannot be computed is a sentence in [`Section::not_possible`].
 pub fn analyse(sessions: &[RecordedSession]) -> Analysis {
-    Analysis {
-        tasks: input::tasks(sessions)
-            .iter()
-            .map(analyses::of_task)
-            .collect(),
-    }
+    Analysis { tasks: input::tasks(sessions).iter().map(analyses::of_task).collect() }
 }
 
 impl Analysis {
@@ -74,9 +69,5 @@ impl Table {
 
 /// A number as text, small ones with an exponent.
 fn decimal_or_scientific(number: f64) -> String {
-    if number != 0.0 && number.abs() < 1e-4 {
-        format!("{number:e}")
-    } else {
-        number.to_string()
-    }
+    if number != 0.0 && number.abs() < 1e-4 { format!("{number:e}") } else { number.to_string() }
 }

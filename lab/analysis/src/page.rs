@@ -21,10 +21,7 @@ pub fn page(tasks: &[TaskAnalysis]) -> String {
     };
     let body: String = match tasks {
         [] => "<p>The data set has no sessions.</p>".into(),
-        _ => tasks
-            .iter()
-            .map(|task| of_task(task, tasks.len() > 1))
-            .collect(),
+        _ => tasks.iter().map(|task| of_task(task, tasks.len() > 1)).collect(),
     };
     document(&title, STYLE, &body)
 }
@@ -112,15 +109,9 @@ fn of_table(table: &Table) -> String {
     let class = |index: usize| if is_number(index) { " class=\"n\"" } else { "" };
     let caption = escape(&table.caption);
     let (begin, end) = if table.is_folded {
-        (
-            format!("<details><summary>{caption}</summary><table><tr>"),
-            "</table></details>",
-        )
+        (format!("<details><summary>{caption}</summary><table><tr>"), "</table></details>")
     } else {
-        (
-            format!("<div class=\"wide\"><table><caption>{caption}</caption><tr>"),
-            "</table></div>",
-        )
+        (format!("<div class=\"wide\"><table><caption>{caption}</caption><tr>"), "</table></div>")
     };
     let mut text = begin;
     for &index in &columns {

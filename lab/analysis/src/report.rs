@@ -78,10 +78,7 @@ impl Section {
     /// Adds a picture.
     pub(crate) fn draw(&mut self, caption: impl Into<String>, svg: anyhow::Result<String>) {
         match svg {
-            Ok(svg) => self.pictures.push(Picture {
-                caption: caption.into(),
-                svg,
-            }),
+            Ok(svg) => self.pictures.push(Picture { caption: caption.into(), svg }),
             Err(error) => self.lacks(&format!("Picture \"{}\"", caption.into()), error),
         }
     }
@@ -134,12 +131,7 @@ impl Table {
     }
 
     pub(crate) fn row(&mut self, cells: Vec<Cell>) {
-        debug_assert_eq!(
-            cells.len(),
-            self.columns.len(),
-            "cells of a row of {}",
-            self.name
-        );
+        debug_assert_eq!(cells.len(), self.columns.len(), "cells of a row of {}", self.name);
         self.rows.push(cells);
     }
 }
@@ -168,29 +160,17 @@ pub(crate) enum Shown {
 
 /// A column of words or counts.
 pub(crate) fn words(name: impl Into<String>) -> Column {
-    Column {
-        name: name.into(),
-        unit: "",
-        shown: Shown::Plain,
-    }
+    Column { name: name.into(), unit: "", shown: Shown::Plain }
 }
 
 /// A column of numbers with this many decimals.
 pub(crate) fn numbers(name: impl Into<String>, unit: &'static str, decimals: usize) -> Column {
-    Column {
-        name: name.into(),
-        unit,
-        shown: Shown::Decimals(decimals),
-    }
+    Column { name: name.into(), unit, shown: Shown::Decimals(decimals) }
 }
 
 /// A column of probabilities.
 pub(crate) fn probabilities(name: impl Into<String>) -> Column {
-    Column {
-        name: name.into(),
-        unit: "",
-        shown: Shown::Probability,
-    }
+    Column { name: name.into(), unit: "", shown: Shown::Probability }
 }
 
 /// A cell of a table. A number is finite.
@@ -237,11 +217,7 @@ impl From<String> for Cell {
 
 impl From<f64> for Cell {
     fn from(number: f64) -> Self {
-        if number.is_finite() {
-            Self::Number(number)
-        } else {
-            Self::Nothing
-        }
+        if number.is_finite() { Self::Number(number) } else { Self::Nothing }
     }
 }
 

@@ -12,9 +12,8 @@ fn files() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sessions");
     let entries = std::fs::read_dir(folder).expect("the ready sessions");
     let paths = entries.map(|entry| entry.expect("an entry").path());
-    let mut files: Vec<_> = paths
-        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
-        .collect();
+    let mut files: Vec<_> =
+        paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
     files.sort();
     files
 }
@@ -30,10 +29,7 @@ fn record(session: &Session, planned: &PlannedTrial, person: u32) -> TrialRecord
         AnswerKind::OneOf(words) => words[(chance(1) * words.len() as f64) as usize].clone(),
         AnswerKind::NumberPerStation(low, high) => {
             let number = |salt: u32| (low + (high - low) * chance(salt)).round().to_string();
-            (0..session.stations.len() as u32)
-                .map(number)
-                .collect::<Vec<_>>()
-                .join(";")
+            (0..session.stations.len() as u32).map(number).collect::<Vec<_>>().join(";")
         }
     });
     let begin_s = 30.0 * f64::from(planned.number);
@@ -61,10 +57,7 @@ fn record(session: &Session, planned: &PlannedTrial, person: u32) -> TrialRecord
         answer_s: Some(begin_s + 6.0 + 5.0 * chance(80)),
         end_s: begin_s + 20.0,
         target_force_n: planned.target_force_n,
-        is_correct: planned
-            .correct
-            .as_ref()
-            .map(|correct| Some(correct) == answer.as_ref()),
+        is_correct: planned.correct.as_ref().map(|correct| Some(correct) == answer.as_ref()),
         expected: planned.correct.clone(),
         answer,
         room_c: Some(24.0),
@@ -77,10 +70,7 @@ fn record(session: &Session, planned: &PlannedTrial, person: u32) -> TrialRecord
 fn recorded(session: &Session, person: u32) -> RecordedSession {
     let participant = format!("P{person}");
     let plan = Plan::new(session, &participant, 1).expect("a plan");
-    let records = plan
-        .trials
-        .iter()
-        .map(|planned| record(session, planned, person));
+    let records = plan.trials.iter().map(|planned| record(session, planned, person));
     RecordedSession {
         folder: Folder::new(Path::new("no such folder"), &participant, &session.task),
         info: SessionInfo {
@@ -116,10 +106,7 @@ fn every_word_of_the_ready_sessions_gives_its_tables() {
         let sessions: Vec<_> = (1..=3).map(|person| recorded(&session, person)).collect();
         let analysis = of_one(&sessions);
         for word in &session.score.analyses {
-            let section = analysis
-                .sections
-                .iter()
-                .find(|section| section.name == *word);
+            let section = analysis.sections.iter().find(|section| section.name == *word);
             let section = section.unwrap_or_else(|| panic!("{}: {word}", file.display()));
             // Courses need telemetry, and two windows are too few for a correlation.
             if word != "exponential-fit"
@@ -139,33 +126,21 @@ fn every_word_of_the_ready_sessions_gives_its_tables() {
 #[test]
 fn the_analyses_are_those_that_a_session_file_may_ask_for() {
     let mut session = Session::read(&files()[0]).expect("a session");
-    session.score.analyses = ANALYSES
-        .iter()
-        .map(|(word, _)| (*word).to_owned())
-        .collect();
+    session.score.analyses = ANALYSES.iter().map(|(word, _)| (*word).to_owned()).collect();
     let analysis = of_one(&[recorded(&session, 1)]);
-    let known: BTreeSet<_> = analysis
-        .sections
-        .iter()
-        .map(|section| section.name.clone())
-        .collect();
+    let known: BTreeSet<_> = analysis.sections.iter().map(|section| section.name.clone()).collect();
     for word in &session.score.analyses {
         assert!(known.contains(word), "{word}");
     }
     let unknown = "this version knows no such analysis";
-    let mut sentences = analysis
-        .sections
-        .iter()
-        .flat_map(|section| &section.not_possible);
+    let mut sentences = analysis.sections.iter().flat_map(|section| &section.not_possible);
     assert!(!sentences.any(|sentence| sentence.contains(unknown)));
 }
 
 #[test]
 fn sessions_of_several_tasks_are_analysed_apart() {
-    let sessions: Vec<_> = files()
-        .iter()
-        .map(|file| recorded(&Session::read(file).expect("a session"), 1))
-        .collect();
+    let sessions: Vec<_> =
+        files().iter().map(|file| recorded(&Session::read(file).expect("a session"), 1)).collect();
     let analysis = analyse(&sessions);
     assert_eq!(analysis.tasks.len(), sessions.len());
     assert!(analysis.page().contains("<h1>Analysis of experiments</h1>"));
@@ -176,39 +151,23 @@ fn sessions_of_several_tasks_are_analysed_apart() {
 /// Comments and order of participants do not matter; another rule of the trials does.
 #[test]
 fn sessions_of_a_task_whose_files_differ_are_analysed_apart() {
-    let file = files()
-        .into_iter()
-        .find(|file| file.ends_with("p1-discrimination.toml"));
+    let file = files().into_iter().find(|file| file.ends_with("p1-discrimination.toml"));
     let path = file.expect("P1");
     let text = std::fs::read_to_string(&path).expect("a file");
     let parsed = |text: &str| Session::parse(text, &path).expect("a session");
     let (one, comment) = (parsed(&text), parsed(&format!("# Day 2\n{text}")));
     let other = parsed(&text.replace("max_s = 10.0", "max_s = 5.0"));
-    let sessions = [
-        recorded(&one, 1),
-        recorded(&other, 2),
-        recorded(&comment, 3),
-    ];
+    let sessions = [recorded(&one, 1), recorded(&other, 2), recorded(&comment, 3)];
     let analysis = analyse(&sessions);
     let sentence = "Session files of this task differ, so its sessions are analysed apart: p1-1 has P1, P3; p1-2 has P2.";
-    let found: Vec<_> = analysis
-        .tasks
-        .iter()
-        .map(|task| (&*task.task, task.participants.join(" ")))
-        .collect();
+    let found: Vec<_> =
+        analysis.tasks.iter().map(|task| (&*task.task, task.participants.join(" "))).collect();
     assert_eq!(found, [("p1-1", "P1 P3".into()), ("p1-2", "P2".into())]);
     for task in &analysis.tasks {
         assert!(task.sections[0].notes.contains(&sentence.to_owned()));
-        assert!(
-            task.sections
-                .iter()
-                .any(|section| section.name == "published")
-        );
+        assert!(task.sections.iter().any(|section| section.name == "published"));
     }
     let names: BTreeSet<_> = analysis.csv().into_iter().map(|(name, _)| name).collect();
     assert_eq!(names.len(), analysis.csv().len());
-    assert_eq!(
-        of_one(&[recorded(&one, 1), recorded(&comment, 3)]).task,
-        "p1"
-    );
+    assert_eq!(of_one(&[recorded(&one, 1), recorded(&comment, 3)]).task, "p1");
 }

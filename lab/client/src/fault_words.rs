@@ -44,14 +44,8 @@ pub const fn fault_words(fault: Fault) -> FaultWords {
             "the sink's thermistor jumped by 0.5 K in 4 ms, faster than the sink can",
             "a loose contact: look at its connector and its wire",
         ),
-        Fault::DisplayFrozen => (
-            "the display's first thermistor does not move at all",
-            FROZEN,
-        ),
-        Fault::CheckFrozen => (
-            "the display's second thermistor does not move at all",
-            FROZEN,
-        ),
+        Fault::DisplayFrozen => ("the display's first thermistor does not move at all", FROZEN),
+        Fault::CheckFrozen => ("the display's second thermistor does not move at all", FROZEN),
         Fault::SinkFrozen => ("the sink's thermistor does not move at all", FROZEN),
         Fault::SkinFrozen => ("the skin's thermistor does not move at all", FROZEN),
         Fault::RoomFrozen => ("the room's thermistor does not move at all", FROZEN),
@@ -132,10 +126,7 @@ pub const fn fault_words(fault: Fault) -> FaultWords {
         ),
         Fault::Sampling => ("samples were lost, or a tick was late", RESTART),
         Fault::Stack => ("the program's stack has overflowed", RESTART),
-        Fault::Panic => (
-            "the device's program has ended by an error of its own",
-            RESTART,
-        ),
+        Fault::Panic => ("the device's program has ended by an error of its own", RESTART),
         Fault::HardFault => ("the processor could not go on", RESTART),
         Fault::Clock => (
             "the 8 MHz clock of the probe is missing",

@@ -115,15 +115,8 @@ impl LineSplitter {
     pub fn complete(&mut self) -> Vec<String> {
         let end = self.0.iter().rposition(|byte| *byte == b'\n');
         let end = end.map_or(0, |end| end + 1);
-        let end = if self.0.len() - end > LINE_MAX_BYTES {
-            self.0.len()
-        } else {
-            end
-        };
+        let end = if self.0.len() - end > LINE_MAX_BYTES { self.0.len() } else { end };
         let complete: Vec<u8> = self.0.drain(..end).collect();
-        String::from_utf8_lossy(&complete)
-            .lines()
-            .map(|line| line.trim_end().to_owned())
-            .collect()
+        String::from_utf8_lossy(&complete).lines().map(|line| line.trim_end().to_owned()).collect()
     }
 }

@@ -23,12 +23,8 @@ const MIDDLE_N: f64 = 0.447;
 /// Unit of the gap's conductance, W/(m² K), so that all unknowns are near 1.
 const GAP_UNIT_W_M2K: f64 = 100.0;
 /// Prior of the finger's properties: mean and standard deviation of the two components, of the air's flux, and of the skin, K.
-const PRIOR: [(f64, f64); PROPERTIES] = [
-    (COMPONENT_MEANS[0], 1.0),
-    (COMPONENT_MEANS[1], 1.0),
-    (0.0, 0.48),
-    (0.0, 0.05),
-];
+const PRIOR: [(f64, f64); PROPERTIES] =
+    [(COMPONENT_MEANS[0], 1.0), (COMPONENT_MEANS[1], 1.0), (0.0, 0.48), (0.0, 0.05)];
 /// Prior of the exponent: that of Eq. 6-8, and the spread of other correlations for spots in contact, 0.85 to 1. It matters where
 /// there is a gap, which looks much like a smaller exponent.
 const EXPONENT_PRIOR: (f64, f64) = (0.95, 0.05);
@@ -109,9 +105,7 @@ impl Problem {
             (equation.since_s >= FROM_S)
                 .then(|| (equation, ramp, log_pressure(equation.log_force.exp())))
         });
-        Self {
-            equations: counted.collect(),
-        }
+        Self { equations: counted.collect() }
     }
 
     /// Normal equations of the next step, and the sum of squares, in which each ramp counts `times` times.
@@ -219,10 +213,7 @@ fn resamples() -> impl Iterator<Item = ([f64; RAMPS], f64)> {
             std::array::from_fn(|ramp| code / (RAMPS + 1).pow(ramp as u32) % (RAMPS + 1));
         (times.iter().sum::<usize>() == RAMPS).then(|| {
             let ways = factorial(RAMPS) / times.iter().map(|n| factorial(*n)).product::<f64>();
-            (
-                times.map(|n| n as f64),
-                ways / (RAMPS as f64).powi(RAMPS as i32),
-            )
+            (times.map(|n| n as f64), ways / (RAMPS as f64).powi(RAMPS as i32))
         })
     })
 }
@@ -233,14 +224,9 @@ fn interval(fitted: f64, values: impl Iterator<Item = (f64, f64)> + Clone) -> In
     /// underestimate the deviation.
     const HALF_WIDTH_PER_DEVIATION: f64 = 3.182 * 1.1547;
     let mean: f64 = values.clone().map(|(value, weight)| weight * value).sum();
-    let variance: f64 = values
-        .map(|(value, weight)| weight * (value - mean).powi(2))
-        .sum();
+    let variance: f64 = values.map(|(value, weight)| weight * (value - mean).powi(2)).sum();
     let half = HALF_WIDTH_PER_DEVIATION * variance.sqrt();
-    Interval {
-        low: fitted - half,
-        high: fitted + half,
-    }
+    Interval { low: fitted - half, high: fitted + half }
 }
 
 /// Mean conductance of the thesis's skin on a surface, W/(m² K).
@@ -274,18 +260,13 @@ pub fn fit(recording: &Recording) -> Result<Fit, RecordingError> {
         .map(|(times, weight)| (problem.solve(&best, &times, has_gap).unknowns, weight))
         .collect();
     let of = |value: &dyn Fn(&Unknowns) -> f64| {
-        let values: Vec<_> = again
-            .iter()
-            .map(|(unknowns, weight)| (value(unknowns), *weight))
-            .collect();
+        let values: Vec<_> =
+            again.iter().map(|(unknowns, weight)| (value(unknowns), *weight)).collect();
         interval(value(&best), values.into_iter())
     };
     let ends = |force_n: f64| {
         let logarithm = of(&|unknowns| resistance_m2k_w(unknowns, force_n).ln());
-        Interval {
-            low: logarithm.low.exp(),
-            high: logarithm.high.exp(),
-        }
+        Interval { low: logarithm.low.exp(), high: logarithm.high.exp() }
     };
     let exponent = best[EXPONENT];
     // The microhardness at which the spots have their conductance at the middle force.
@@ -300,10 +281,7 @@ pub fn fit(recording: &Recording) -> Result<Fit, RecordingError> {
         resistances_m2k_w: FORCES_N.map(|force_n| resistance_m2k_w(&best, force_n)),
         resistance_intervals_m2k_w: FORCES_N.map(ends),
         exponent_interval: of(&|unknowns| unknowns[EXPONENT]),
-        gap_interval_w_m2k: Interval {
-            low: gap_interval.low.max(0.0),
-            ..gap_interval
-        },
+        gap_interval_w_m2k: Interval { low: gap_interval.low.max(0.0), ..gap_interval },
         chi2_reduction_by_gap,
         residual_k: problem.residual_k(&best),
     })

@@ -64,11 +64,7 @@ impl ForceTracking {
         }
         for (ramp, &(least_n, largest_n)) in reached_n.iter().enumerate() {
             if least_n > REACHED_N.0 || largest_n < REACHED_N.1 {
-                return Err(ForceTrackingError::Range {
-                    ramp: ramp + 1,
-                    least_n,
-                    largest_n,
-                });
+                return Err(ForceTrackingError::Range { ramp: ramp + 1, least_n, largest_n });
             }
         }
         let log_rms = f64::sqrt(squares / count);
@@ -76,9 +72,6 @@ impl ForceTracking {
         if log_rms > LOG_RMS_MAX {
             return Err(ForceTrackingError::Deviation(deviation_percent));
         }
-        Ok(Self {
-            deviation_percent,
-            reached_n,
-        })
+        Ok(Self { deviation_percent, reached_n })
     }
 }

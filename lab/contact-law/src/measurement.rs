@@ -170,13 +170,8 @@ pub fn measure<L: Link>(
     options: &MeasurementOptions,
     guide: &mut dyn FnMut(&mut Client<L>, &Step),
 ) -> Result<Measurement, MeasurementError> {
-    let recorded = Session {
-        client,
-        finger: options.finger,
-        guide,
-        recent: VecDeque::new(),
-    }
-    .record(options);
+    let recorded =
+        Session { client, finger: options.finger, guide, recent: VecDeque::new() }.record(options);
     // Also after a failure: the bridge may be driven.
     let ended = client.abort_and_end_stream(options.finger);
     let no_events = client.ask_finger(options.finger, &PlainCommand::Events(false));
@@ -184,10 +179,7 @@ pub fn measure<L: Link>(
     ended.and(no_events)?;
     recording.check()?;
     let force_tracking = ForceTracking::of(&recording)?;
-    Ok(Measurement {
-        recording,
-        force_tracking,
-    })
+    Ok(Measurement { recording, force_tracking })
 }
 
 struct Session<'a, L> {
@@ -208,17 +200,14 @@ impl<L: Link> Session<'_, L> {
         if let Some(fault) = state.fault() {
             return Err(MeasurementError::Tripped(fault.name()));
         }
-        self.client
-            .ask_finger(finger, &PlainCommand::stream_fields(STREAM_MS, &FIELDS))?;
-        self.client
-            .ask_finger(finger, &PlainCommand::Events(true))?;
+        self.client.ask_finger(finger, &PlainCommand::stream_fields(STREAM_MS, &FIELDS))?;
+        self.client.ask_finger(finger, &PlainCommand::Events(true))?;
         self.wait_for_lifting()?;
         if options.takes_zero {
             self.client.ask_finger(finger, &PlainCommand::FluxZero)?;
         }
         arm(self.client, finger)?;
-        self.client
-            .ask_finger(finger, &PlainCommand::Hold(HELD_C, None))?;
+        self.client.ask_finger(finger, &PlainCommand::Hold(HELD_C, None))?;
         self.settle()?;
         let ([skin_c, room_c], samples) = self.follow()?;
         Ok(Recording {
@@ -284,20 +273,13 @@ impl<L: Link> Session<'_, L> {
     fn settle(&mut self) -> Result<(), MeasurementError> {
         let (mut settled, surface_c) = (0, Cell::new(None));
         self.wait(
-            (
-                "the display did not reach its temperature without a finger on it",
-                WAIT_MAX,
-            ),
+            ("the display did not reach its temperature without a finger on it", WAIT_MAX),
             || Step::Wait(surface_c.get()),
             |_, line| {
                 surface_c.set(line.telemetry.surface_c);
                 let is_there = (surface_c.get()).is_some_and(|c| (c - HELD_C).abs() < SETTLED_K);
                 let is_lifted = line.telemetry.is_lifted() == Some(true);
-                settled = if is_there && is_lifted {
-                    settled + 1
-                } else {
-                    0
-                };
+                settled = if is_there && is_lifted { settled + 1 } else { 0 };
                 Ok(settled >= SETTLED_LINES)
             },
         )
@@ -330,11 +312,7 @@ impl<L: Link> Session<'_, L> {
             let known: Vec<f64> = before.iter().filter_map(|line| of(line)).collect();
             let unknown = MeasurementError::Unknown { what, since_s: 0.0 };
             let mean_c = known.iter().sum::<f64>() / known.len() as f64;
-            if known.is_empty() {
-                Err(unknown)
-            } else {
-                Ok(mean_c)
-            }
+            if known.is_empty() { Err(unknown) } else { Ok(mean_c) }
         };
         let temperatures_c = [
             mean_c("the skin", |line| line.telemetry.skin_c)?,
@@ -390,9 +368,7 @@ fn sample(line: &ReceivedTelemetry, since_s: f64) -> Result<Sample, MeasurementE
     if lost > 0 {
         return Err(MeasurementError::Lost { lost, since_s });
     }
-    let flux_w_m2 = telemetry
-        .flux_w_m2
-        .ok_or(MeasurementError::SensorFault(Some(since_s)))?;
+    let flux_w_m2 = telemetry.flux_w_m2.ok_or(MeasurementError::SensorFault(Some(since_s)))?;
     let known = |value: Option<f64>, what| value.ok_or(MeasurementError::Unknown { what, since_s });
     Ok(Sample {
         since_s,

@@ -56,9 +56,6 @@ mod tests {
             assert!((at(since_s) / force - 1.0).abs() < 1e-12, "{since_s} s");
         }
         assert_eq!((force_n(21.01), TOTAL_S), (None, 21.0));
-        assert_eq!(
-            [0.0, 4.9, 5.1, 9.1, 20.9].map(ramp_at),
-            [0, 0, 1, 2, 3].map(Some)
-        );
+        assert_eq!([0.0, 4.9, 5.1, 9.1, 20.9].map(ramp_at), [0, 0, 1, 2, 3].map(Some));
     }
 }

@@ -76,27 +76,13 @@ impl Recording {
         let is_plausible_c = |value: f64| (-40.0..=125.0).contains(&value);
         let mut before_s: Option<f64> = None;
         for sample in &self.samples {
-            let &Sample {
-                since_s,
-                flux_w_m2,
-                surface_c,
-                force_n,
-            } = sample;
-            let value = |what, value, allowed| {
-                Err(RecordingError::Value {
-                    what,
-                    value,
-                    since_s,
-                    allowed,
-                })
-            };
+            let &Sample { since_s, flux_w_m2, surface_c, force_n } = sample;
+            let value =
+                |what, value, allowed| Err(RecordingError::Value { what, value, since_s, allowed });
             if let Some(step_s) = before_s.map(|before_s| since_s - before_s)
                 && !(STEP_S - STEP_TOLERANCE_S..=STEP_S + STEP_TOLERANCE_S).contains(&step_s)
             {
-                return Err(RecordingError::Gap {
-                    after_s: since_s,
-                    step_s,
-                });
+                return Err(RecordingError::Gap { after_s: since_s, step_s });
             }
             before_s = Some(since_s);
             if !(-1e5..=1e5).contains(&flux_w_m2) {

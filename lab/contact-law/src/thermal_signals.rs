@@ -54,10 +54,7 @@ struct Bank {
 
 impl Bank {
     fn new() -> Self {
-        Self {
-            states: vec![0.0; MEAN.impedance.relaxations.len()],
-            flux_w_m2: 0.0,
-        }
+        Self { states: vec![0.0; MEAN.impedance.relaxations.len()], flux_w_m2: 0.0 }
     }
 
     fn step(&mut self, flux_w_m2: f64) {
@@ -81,10 +78,7 @@ impl Bank {
     fn rise_k(&self, weight: impl Fn(usize) -> f64) -> f64 {
         let gain = |(index, one): (usize, &Relaxation)| weight(index) * one.gain_m2k_j;
         let relaxed = MEAN.impedance.relaxations.iter().enumerate().map(gain);
-        let relaxed: f64 = relaxed
-            .zip(&self.states)
-            .map(|(gain, state)| gain * state)
-            .sum();
+        let relaxed: f64 = relaxed.zip(&self.states).map(|(gain, state)| gain * state).sum();
         let direct = weight(self.states.len()) * MEAN.impedance.direct_m2k_w;
         relaxed + direct * self.flux_w_m2
     }
@@ -92,11 +86,7 @@ impl Bank {
 
 /// Weight of a relaxation in a component; the integrator, which comes first, is in none.
 fn component(of: usize) -> impl Fn(usize) -> f64 {
-    move |index| {
-        index
-            .checked_sub(1)
-            .map_or(0.0, |index| COMPONENTS[of][index])
-    }
+    move |index| index.checked_sub(1).map_or(0.0, |index| COMPONENTS[of][index])
 }
 
 /// The equations of all samples.

@@ -25,10 +25,7 @@ use deviations::{Deviations, Exact};
 
 type Device<'a> = Client<SimulatedLink<'a, NativeEngine>>;
 
-const OPTIONS: MeasurementOptions = MeasurementOptions {
-    finger: None,
-    takes_zero: false,
-};
+const OPTIONS: MeasurementOptions = MeasurementOptions { finger: None, takes_zero: false };
 
 /// Fingers of each kind.
 const FINGERS: u64 = 24;
@@ -101,10 +98,7 @@ fn assert_measured(kind: &str, keys: &str, has_gap: bool) {
             });
             (measured, client.ask(&QueryState).expect("a state").state)
         });
-        let Measurement {
-            recording,
-            force_tracking,
-        } = measured.expect("a recording");
+        let Measurement { recording, force_tracking } = measured.expect("a recording");
         assert_eq!(state, StateName::Ready);
         // 0.2 s of a ramp of ln 20 in 4 s and in 6 s, and the trembling, are 13 %.
         let percent = force_tracking.deviation_percent;
@@ -157,10 +151,7 @@ fn refused(
     with_device(scene, |client| {
         let refused = measure(client, options, &mut finger).expect_err("refused");
         let state = client.ask(&QueryState).expect("a state").state;
-        let is_off = matches!(
-            state,
-            StateName::Off | StateName::Ready | StateName::Tripped(_)
-        );
+        let is_off = matches!(state, StateName::Off | StateName::Ready | StateName::Tripped(_));
         assert!(is_off, "{refused}: {state:?}");
         refused
     })
@@ -181,10 +172,7 @@ fn a_finger_that_lifts_or_does_not_follow_is_told_and_the_bridge_is_off() {
         press(client, persons_force_n(step).min(0.5));
     });
     let text = error.to_string();
-    let (start, end) = (
-        "ramp 1 went from 0.",
-        " N; it must go below 0.2 and above 1 N",
-    );
+    let (start, end) = ("ramp 1 went from 0.", " N; it must go below 0.2 and above 1 N");
     assert!(text.starts_with(start) && text.ends_with(end), "{text}");
     let error = refused(&OPTIONS, &scene, |client, step| {
         let target_n = persons_force_n(step);
@@ -203,15 +191,9 @@ fn a_finger_that_lifts_or_does_not_follow_is_told_and_the_bridge_is_off() {
     });
     let text = error.to_string();
     let end = "follows the one before by 0.020 s; allowed is 0.01 s";
-    assert!(
-        text.starts_with("the sample 3.0") && text.ends_with(end),
-        "{text}"
-    );
+    assert!(text.starts_with("the sample 3.0") && text.ends_with(end), "{text}");
     let pressed = refused(&OPTIONS, &scene, |client, _| press(client, 1.0));
-    assert_eq!(
-        pressed.to_string(),
-        "the finger was not lifted within 120 s"
-    );
+    assert_eq!(pressed.to_string(), "the finger was not lifted within 120 s");
     let absent = refused(&OPTIONS, &scene, |client, _| press(client, 0.0));
     assert_eq!(absent.to_string(), "the finger did not land within 900 s");
 }
@@ -238,13 +220,7 @@ fn a_device_that_trips_is_told_at_any_time() {
 #[test]
 fn a_device_without_a_sound_sensor_is_told() {
     let with = scene(0, "");
-    let scene = Scene {
-        params: Params {
-            flux: None,
-            ..with.params.clone()
-        },
-        ..with
-    };
+    let scene = Scene { params: Params { flux: None, ..with.params.clone() }, ..with };
     let follow = |client: &mut Device<'_>, step: &Step| press(client, persons_force_n(step));
     let error = refused(&OPTIONS, &scene, follow);
     assert_eq!(error, MeasurementError::NoSensor);

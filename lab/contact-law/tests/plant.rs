@@ -59,11 +59,7 @@ fn record(params: &Params, seed: u64) -> Recording {
         let above_k = plant.display_c() - HELD_C;
         integral += 0.5 * above_k * STEP_S;
         let drive = (0.25 * above_k + integral).clamp(-0.45, 0.45);
-        plant.step(&BridgeOutputs {
-            a: Leg::Duty(0.5 + drive),
-            b: Leg::Duty(0.5),
-            enabled: true,
-        });
+        plant.step(&BridgeOutputs { a: Leg::Duty(0.5 + drive), b: Leg::Duty(0.5), enabled: true });
         if step % 10 == 9 {
             samples.push(Sample {
                 since_s: since_s + STEP_S,

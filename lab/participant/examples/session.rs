@@ -26,19 +26,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let who = (code.as_str(), seed);
         let mut recorder = Recorder::create(Path::new(folder), &session, &plan, who, true)?;
         let mut people = bench.people();
-        Executor::new(
-            &session,
-            Client::new(bench.link()),
-            &mut people,
-            &mut recorder,
-        )
-        .run(&plan, Schedule::new(&session, &plan))?;
+        Executor::new(&session, Client::new(bench.link()), &mut people, &mut recorder)
+            .run(&plan, Schedule::new(&session, &plan))?;
         let records = recorder.records();
         trials += records.len();
-        void += records
-            .iter()
-            .filter(|record| record.void.is_some())
-            .count();
+        void += records.iter().filter(|record| record.void.is_some()).count();
         let judged = || records.iter().filter_map(|record| record.is_correct);
         let correct = judged().filter(|is_correct| *is_correct).count();
         println!("{code}: {correct} of {} correct", judged().count());

@@ -107,10 +107,7 @@ impl BenchOptions {
     /// section 4.4 of the thesis.
     pub fn of_session(session: &Session) -> Self {
         let measures_falls = session.score.analyses.iter().any(|word| word == "falls");
-        Self {
-            edge_share: measures_falls.then_some(Self::EDGE_SHARE),
-            ..Self::default()
-        }
+        Self { edge_share: measures_falls.then_some(Self::EDGE_SHARE), ..Self::default() }
     }
 
     /// Parameters of plants with the finger of a session.
@@ -123,10 +120,9 @@ impl BenchOptions {
             None | Some(AssumedFinger::Thesis) => FingerParams::homogeneous(),
             Some(AssumedFinger::Mean) => FingerParams::layered(),
             // A finger that comes from an insulating pad loses no heat before the contact.
-            Some(AssumedFinger::MeanOnPad) => FingerParams {
-                air_w_m2k: 0.0,
-                ..FingerParams::layered()
-            },
+            Some(AssumedFinger::MeanOnPad) => {
+                FingerParams { air_w_m2k: 0.0, ..FingerParams::layered() }
+            }
         });
         if let Some(share) = self.edge_share {
             params.sensors.skin_sees_contact = share;
@@ -210,9 +206,7 @@ impl Bench {
         seed: u64,
         options: BenchOptions,
     ) -> Result<Self, BenchError> {
-        let observer = options
-            .observer
-            .unwrap_or_else(|| ObserverParams::of_session(session));
+        let observer = options.observer.unwrap_or_else(|| ObserverParams::of_session(session));
         let participant =
             Participant::new(session, code, seed, &options.skin, options.hand, observer);
         let params = options.params(session);
@@ -313,12 +307,7 @@ impl People for BenchPeople {
 
     fn response(&mut self) -> Option<Response> {
         let mut state = self.0.borrow_mut();
-        let State {
-            trial,
-            setting,
-            line,
-            ..
-        } = &mut *state;
+        let State { trial, setting, line, .. } = &mut *state;
         trial.as_mut()?.response(line.ms(), setting)
     }
 
@@ -397,8 +386,7 @@ impl State {
     /// Records what was felt. The fingers are at rest until the next trial.
     fn end_trial(&mut self) {
         if let Some(mut trial) = self.trial.take() {
-            self.observations
-                .push(trial.observation(self.line.ms(), &self.setting));
+            self.observations.push(trial.observation(self.line.ms(), &self.setting));
         }
     }
 
@@ -410,15 +398,13 @@ impl State {
             trial.faults(self.line.ms(), &mut faults);
         }
         let device = &mut self.device;
-        let Ok(()) = self
-            .line
-            .pass_1_ms(|bytes, received| -> Result<(), Infallible> {
-                if let Some(device) = device {
-                    device.run_1_ms(bytes, &inputs, &faults);
-                    device.receive(received);
-                }
-                Ok(())
-            });
+        let Ok(()) = self.line.pass_1_ms(|bytes, received| -> Result<(), Infallible> {
+            if let Some(device) = device {
+                device.run_1_ms(bytes, &inputs, &faults);
+                device.receive(received);
+            }
+            Ok(())
+        });
         if let Some(trial) = &mut self.trial {
             let felt = trial.feel(self.line.ms(), self.device.as_mut(), &self.setting);
             if let Err(error) = felt {
@@ -456,12 +442,7 @@ fn task(
     }
     let stations: Option<Vec<usize>> = words
         .iter()
-        .map(|word| {
-            session
-                .stations
-                .iter()
-                .position(|station| station.name == *word)
-        })
+        .map(|word| session.stations.iter().position(|station| station.name == *word))
         .collect();
     if let Some(stations) = stations {
         return Ok(Some(match stations.len() {

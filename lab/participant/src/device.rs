@@ -79,27 +79,20 @@ impl PreparedDevice {
             .map_err(|error| BenchError::Commissioning(error.to_string()))?;
         let failed = |error: String| BenchError::Commissioning(error);
         let world = |finger| world(&params, room_c, room_c, (seed, seed, finger));
-        let addresses: Vec<Option<u8>> = if fingers > 1 {
-            (0..FINGERS as u8).map(Some).collect()
-        } else {
-            vec![None]
-        };
+        let addresses: Vec<Option<u8>> =
+            if fingers > 1 { (0..FINGERS as u8).map(Some).collect() } else { vec![None] };
         let device = if fingers > 1 {
             RunningDevice::five(world)?
         } else {
             RunningDevice::One(Box::new(NativeEngine::new(world(0)?)))
         };
         let mut client = Client::new(DeviceLink::new(device));
-        client
-            .wait(START)
-            .map_err(|error| failed(error.to_string()))?;
+        client.wait(START).map_err(|error| failed(error.to_string()))?;
         for address in addresses {
             commissioning::restore(&mut client, address, &lines)
                 .map_err(|error| failed(error.to_string()))?;
         }
-        client
-            .command("save")
-            .map_err(|error| failed(error.to_string()))?;
+        client.command("save").map_err(|error| failed(error.to_string()))?;
         let not_saved = || BenchError::Commissioning("the settings were not saved".into());
         let stored = match client.into_link().device {
             RunningDevice::One(engine) => {
@@ -109,12 +102,7 @@ impl PreparedDevice {
                 Stored::Five(Box::new(*engine.stored_settings().ok_or_else(not_saved)?))
             }
         };
-        Ok(Self {
-            params,
-            room_c,
-            seed,
-            stored,
-        })
+        Ok(Self { params, room_c, seed, stored })
     }
 
     /// The device just after power-up, with fingers at rest, deg C, and this seed of its noise.
@@ -122,14 +110,8 @@ impl PreparedDevice {
     /// # Errors
     /// The plant does not accept the temperature.
     pub fn power_up(&self, skin_c: f64, noise_seed: u64) -> Result<RunningDevice, BenchError> {
-        let world = |finger| {
-            world(
-                &self.params,
-                skin_c,
-                self.room_c,
-                (self.seed, noise_seed, finger),
-            )
-        };
+        let world =
+            |finger| world(&self.params, skin_c, self.room_c, (self.seed, noise_seed, finger));
         Ok(match &self.stored {
             Stored::One(stored) => RunningDevice::One(Box::new(
                 NativeEngine::new(world(0)?).with_stored_settings(**stored),
@@ -162,10 +144,7 @@ fn world(
         seed,
         params: params.clone(),
     };
-    Ok(World::from_plant(
-        &config,
-        stream_seed(noise_seed, &format!("converter {finger}")),
-    )?)
+    Ok(World::from_plant(&config, stream_seed(noise_seed, &format!("converter {finger}")))?)
 }
 
 impl RunningDevice {
@@ -232,11 +211,7 @@ pub struct DeviceLink {
 impl DeviceLink {
     /// The line to a device that nobody touches.
     pub fn new(device: RunningDevice) -> Self {
-        Self {
-            device,
-            force_n: 0.0,
-            line: VirtualLine::default(),
-        }
+        Self { device, force_n: 0.0, line: VirtualLine::default() }
     }
 
     /// Presses a finger on the first display, N.
@@ -257,10 +232,7 @@ impl Link for DeviceLink {
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
-        let input = FingerInput {
-            force_n: self.force_n,
-            skin_elsewhere_c: None,
-        };
+        let input = FingerInput { force_n: self.force_n, skin_elsewhere_c: None };
         let device = &mut self.device;
         self.line.receive(timeout, |bytes, received| {
             device.run_1_ms(bytes, &[input], &[]);

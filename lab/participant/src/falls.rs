@@ -61,9 +61,8 @@ impl Exploration {
     /// The exploration with a number: its random draws depend on nothing else.
     pub fn new(setup: &TouchSetup, number: u32) -> Self {
         let mut random = Stream::new(SEED, &format!("exploration {number}"));
-        let decision_s = random
-            .log_normal(setup.decision_median_s, setup.decision_sigma_ln)
-            .min(CONTACT_MAX_S);
+        let decision_s =
+            random.log_normal(setup.decision_median_s, setup.decision_sigma_ln).min(CONTACT_MAX_S);
         let touches = Touches::new(&setup.hand, setup.contact, CONTACT_MAX_S, &mut random);
         Self {
             course: ForceCourse::new(&setup.hand, &touches, None, &mut random),

@@ -102,10 +102,7 @@ impl Touches {
 
     /// Number of touches that begin before a time, s.
     pub fn count_until(&self, until_s: f64) -> usize {
-        self.0
-            .iter()
-            .filter(|(start_s, _)| *start_s < until_s)
-            .count()
+        self.0.iter().filter(|(start_s, _)| *start_s < until_s).count()
     }
 }
 
@@ -173,13 +170,7 @@ impl ForceCourse {
     }
 
     fn pressed_n(&self, press: &Press, t_s: f64) -> f64 {
-        let HandParams {
-            rise_s,
-            rise_s_per_n,
-            tremor_n,
-            follow_settle_s,
-            ..
-        } = self.params;
+        let HandParams { rise_s, rise_s_per_n, tremor_n, follow_settle_s, .. } = self.params;
         let since_s = t_s - press.start_s;
         let rise_s = rise_s + rise_s_per_n * press.target_n;
         let risen = -libm::expm1(-since_s / rise_s);

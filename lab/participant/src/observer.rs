@@ -73,24 +73,13 @@ impl ObserverParams {
     };
 
     /// The same for pulses at the thenar under a large thermode: 0.02 to 0.07 K (section 2.3), of which this is the middle.
-    pub const THERMODE_THENAR: Self = Self {
-        s0_k: 0.047,
-        ..Self::THERMODE_FINGERTIP
-    };
+    pub const THERMODE_THENAR: Self = Self { s0_k: 0.047, ..Self::THERMODE_FINGERTIP };
 
     /// No noise and no lapses: whatever differs is told apart.
-    pub const NOISE_FREE: Self = Self {
-        s0_k: 0.0,
-        w: 0.0,
-        lapse: 0.0,
-        ..Self::TOUCH
-    };
+    pub const NOISE_FREE: Self = Self { s0_k: 0.0, w: 0.0, lapse: 0.0, ..Self::TOUCH };
 
     /// Every answer is drawn at random.
-    pub const RANDOM: Self = Self {
-        lapse: 1.0,
-        ..Self::TOUCH
-    };
+    pub const RANDOM: Self = Self { lapse: 1.0, ..Self::TOUCH };
 
     /// Standard deviation of the noise of a fall, K.
     pub fn sigma_k(&self, fall_k: f64) -> f64 {
@@ -166,33 +155,22 @@ impl Task {
                 };
                 none + (full - none) * share
             };
-            return Some(Judgement::Numbers(
-                felt_k.iter().copied().map(number).collect(),
-            ));
+            return Some(Judgement::Numbers(felt_k.iter().copied().map(number).collect()));
         }
         if is_lapse {
-            return felt_k
-                .iter()
-                .any(Option::is_some)
-                .then_some(Judgement::Choice(random));
+            return felt_k.iter().any(Option::is_some).then_some(Judgement::Choice(random));
         }
         let choice = match self {
             Self::Colder(stations) => {
                 let last = stations.iter().max().copied();
                 argmax(stations.iter().map(|&station| {
-                    let bias_k = if Some(station) == last {
-                        params.right_bias_k
-                    } else {
-                        0.0
-                    };
+                    let bias_k = if Some(station) == last { params.right_bias_k } else { 0.0 };
                     Some(felt(station)? + bias_k)
                 }))
             }
             Self::Different(stations) => {
-                let all: Vec<f64> = stations
-                    .iter()
-                    .map(|&station| felt(station))
-                    .collect::<Option<_>>()?;
+                let all: Vec<f64> =
+                    stations.iter().map(|&station| felt(station)).collect::<Option<_>>()?;
                 let mean = all.iter().sum::<f64>() / all.len() as f64;
                 argmax(all.iter().map(|felt_k| Some((felt_k - mean).abs())))
             }
@@ -213,10 +191,8 @@ impl Task {
                 let mut both = felt_k.iter().copied().flatten();
                 let mut true_k = falls_k.iter().copied().flatten();
                 let off_k = (both.next()? - both.next()?).abs();
-                let noise_k = libm::hypot(
-                    params.sigma_k(true_k.next()?),
-                    params.sigma_k(true_k.next()?),
-                );
+                let noise_k =
+                    libm::hypot(params.sigma_k(true_k.next()?), params.sigma_k(true_k.next()?));
                 let is_different = off_k > params.different_from_sd * factor * noise_k;
                 Some(if is_different { *different } else { *same })
             }

@@ -22,20 +22,10 @@ pub struct SkinParams {
 impl SkinParams {
     /// Section 3.2: 30 to 35.5 °C with a mean of 33 °C, of which this is a normal distribution; section 4.4: a rise of 0.4 K
     /// over the session.
-    pub const TYPICAL: Self = Self {
-        mean_c: None,
-        sd_k: 1.4,
-        within_k: 3.0,
-        drift_k: 0.4,
-    };
+    pub const TYPICAL: Self = Self { mean_c: None, sd_k: 1.4, within_k: 3.0, drift_k: 0.4 };
 
     /// Everybody has the temperature of the session's rest.
-    pub const EQUAL: Self = Self {
-        mean_c: None,
-        sd_k: 0.0,
-        within_k: 0.0,
-        drift_k: 0.0,
-    };
+    pub const EQUAL: Self = Self { mean_c: None, sd_k: 0.0, within_k: 0.0, drift_k: 0.0 };
 }
 
 /// Skin at rest in a session without a rule for it, °C (section 3.2).
@@ -79,14 +69,7 @@ impl Participant {
             Some(rest) if session.measures_skin() => GATE_SHARE * rest.within_k,
             _ => f64::INFINITY,
         };
-        Self {
-            skin_off_k: natural_off_k,
-            rest_c,
-            drift_k: skin.drift_k,
-            off_max_k,
-            hand,
-            observer,
-        }
+        Self { skin_off_k: natural_off_k, rest_c, drift_k: skin.drift_k, off_max_k, hand, observer }
     }
 
     /// Skin before contact, °C, after a fraction of the session.

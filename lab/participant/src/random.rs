@@ -12,9 +12,7 @@ pub struct Stream(Xoshiro256PlusPlus);
 impl Stream {
     /// The stream of a seed for a purpose.
     pub fn new(seed: u64, purpose: &str) -> Self {
-        Self(Xoshiro256PlusPlus::seed_from_u64(stream_seed(
-            seed, purpose,
-        )))
+        Self(Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, purpose)))
     }
 
     /// A draw from the standard normal distribution.

@@ -158,9 +158,7 @@ impl Present {
             return self.cases.first();
         };
         let level = level(by)?;
-        self.cases
-            .iter()
-            .find(|case| case.level.as_ref() == Some(&level))
+        self.cases.iter().find(|case| case.level.as_ref() == Some(&level))
     }
 }
 

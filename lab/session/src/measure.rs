@@ -28,16 +28,12 @@ const SETTLED: f64 = 0.1;
 /// temperatures, °C.
 pub fn skin_fall(samples: &[(f64, f64)], land_s: f64, lift_s: f64) -> (Option<f64>, Option<f64>) {
     let mean_before = |end_s: f64| {
-        let inside = samples
-            .iter()
-            .filter(|(t_s, _)| (end_s - MEAN_S..end_s).contains(t_s));
+        let inside = samples.iter().filter(|(t_s, _)| (end_s - MEAN_S..end_s).contains(t_s));
         mean(inside.map(|(_, skin_c)| *skin_c))
     };
     let before_c = mean_before(land_s);
     // A contact that is shorter than the mean has no end of its own.
-    let after_c = (lift_s - MEAN_S >= land_s)
-        .then(|| mean_before(lift_s))
-        .flatten();
+    let after_c = (lift_s - MEAN_S >= land_s).then(|| mean_before(lift_s)).flatten();
     let fall_k = before_c.zip(after_c).map(|(before, after)| before - after);
     (before_c, fall_k)
 }
@@ -51,10 +47,7 @@ pub fn measure(
     target_force_n: Option<f64>,
 ) -> StationRecord {
     let Some(land_s) = land_s else {
-        return StationRecord {
-            presented,
-            ..StationRecord::default()
-        };
+        return StationRecord { presented, ..StationRecord::default() };
     };
     let within = |from_s: f64, to_s: f64| {
         let inside = move |sample: &&Sample| sample.t_s >= from_s && sample.t_s < to_s;
@@ -70,17 +63,15 @@ pub fn measure(
         let late = within(land_s + FORCE_S, lift_s).filter_map(|sample| sample.force_n);
         let error_rms_n = mean(late.map(|force_n| (force_n - target_n).powi(2))).map(f64::sqrt);
         let is_off = |sample: &&Sample| {
-            sample
-                .force_n
-                .is_none_or(|force_n| (force_n - target_n).abs() > SETTLED * target_n)
+            sample.force_n.is_none_or(|force_n| (force_n - target_n).abs() > SETTLED * target_n)
         };
         let last_off = contact().rfind(is_off).copied();
         let settled = match last_off {
             None => Some(0.0),
             // Off at the very end means that it never settled.
-            Some(off) => contact()
-                .find(|sample| sample.t_s > off.t_s)
-                .map(|sample| sample.t_s - land_s),
+            Some(off) => {
+                contact().find(|sample| sample.t_s > off.t_s).map(|sample| sample.t_s - land_s)
+            }
         };
         // A small force that is near its target only at the very end, between two tremors, has not settled.
         let settled = settled.filter(|settled_s| land_s + settled_s <= lift_s - FORCE_S);
@@ -116,11 +107,7 @@ fn mean_and_sd(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     }
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
-    let square = values
-        .iter()
-        .map(|value| (value - mean).powi(2))
-        .sum::<f64>()
-        / count;
+    let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count;
     Some((mean, square.sqrt()))
 }
 
@@ -147,10 +134,7 @@ mod tests {
     fn near(value: Option<f64>, expected: f64) {
         let value = value.expect("measured");
         // A line of telemetry comes every 10 ms.
-        assert!(
-            (value - expected).abs() < 1.5e-2,
-            "{value} is not {expected}"
-        );
+        assert!((value - expected).abs() < 1.5e-2, "{value} is not {expected}");
     }
 
     #[test]
@@ -210,10 +194,7 @@ mod tests {
     #[test]
     fn nothing_is_known_without_a_landing() {
         let record = measure(&samples(), "copper".into(), None, 11.0, Some(2.0));
-        let nothing = StationRecord {
-            presented: "copper".into(),
-            ..StationRecord::default()
-        };
+        let nothing = StationRecord { presented: "copper".into(), ..StationRecord::default() };
         assert_eq!(record, nothing);
     }
 }

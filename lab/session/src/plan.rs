@@ -93,20 +93,11 @@ impl Presented {
         match self {
             Self::Nothing => "nothing".into(),
             Self::Sample { material } => format!("sample {material}"),
-            Self::Material {
-                device_finger,
-                material,
-            } => format!("display {device_finger} {material}"),
-            Self::Hold {
-                device_finger,
-                celsius,
-            } => format!("hold {device_finger} {celsius}"),
-            Self::Pulses {
-                device_finger,
-                base_c,
-                departures_k,
-                rate_k_s,
-            } => {
+            Self::Material { device_finger, material } => {
+                format!("display {device_finger} {material}")
+            }
+            Self::Hold { device_finger, celsius } => format!("hold {device_finger} {celsius}"),
+            Self::Pulses { device_finger, base_c, departures_k, rate_k_s } => {
                 let [first, second] = departures_k.map(Departure::word);
                 format!("pulses {device_finger} {base_c} {first} {second} {rate_k_s}")
             }
@@ -149,16 +140,8 @@ impl Plan {
         check_participant(participant)?;
         let factors = session.design.factor_names();
         let mut plan = Self {
-            stations: session
-                .stations
-                .iter()
-                .map(|station| station.name.clone())
-                .collect(),
-            staircases: session
-                .staircases
-                .iter()
-                .map(|staircase| staircase.name.clone())
-                .collect(),
+            stations: session.stations.iter().map(|station| station.name.clone()).collect(),
+            staircases: session.staircases.iter().map(|staircase| staircase.name.clone()).collect(),
             factors,
             trials: Vec::new(),
         };
@@ -220,13 +203,8 @@ impl Plan {
 impl PlannedTrial {
     /// Its row in [`Plan::csv`]. No name and no level has a comma.
     fn row(&self, staircases: &[String]) -> String {
-        let mut row = format!(
-            "{},{},{},{}",
-            self.number,
-            self.part,
-            self.block,
-            u8::from(self.break_before)
-        );
+        let mut row =
+            format!("{},{},{},{}", self.number, self.part, self.block, u8::from(self.break_before));
         let presented = self.presented.iter().map(Presented::cell);
         let force_n = self.target_force_n.map(|force_n| force_n.to_string());
         let staircase = self.staircase.and_then(|index| staircases.get(index));
@@ -314,10 +292,8 @@ impl Planner<'_> {
         let rounds = drawn.iter().map(Vec::len).max().unwrap_or_default();
         let mut stream = self.stream("order of staircases");
         let round = |round: usize| {
-            let mut trials: Vec<_> = drawn
-                .iter()
-                .filter_map(|drafts| drafts.get(round).cloned())
-                .collect();
+            let mut trials: Vec<_> =
+                drawn.iter().filter_map(|drafts| drafts.get(round).cloned()).collect();
             stream.shuffle(&mut trials);
             trials
         };
@@ -326,13 +302,10 @@ impl Planner<'_> {
 
     /// The trials of each combination, with the levels of random factors drawn.
     fn repeated(&self, groups: &[(HashMap<String, String>, usize)]) -> Vec<Vec<Draft>> {
-        let draft = |levels: &HashMap<String, String>| Draft {
-            levels: levels.clone(),
-            staircase: None,
-        };
-        let mut drafts: Vec<Vec<_>> = (groups.iter())
-            .map(|(levels, count)| vec![draft(levels); *count])
-            .collect();
+        let draft =
+            |levels: &HashMap<String, String>| Draft { levels: levels.clone(), staircase: None };
+        let mut drafts: Vec<Vec<_>> =
+            (groups.iter()).map(|(levels, count)| vec![draft(levels); *count]).collect();
         for factor in &self.part.random {
             let mut stream = self.stream(&format!("levels of {}", factor.name));
             let balanced = self.part.balance.contains(&factor.name);
@@ -342,11 +315,7 @@ impl Planner<'_> {
                     (0..trials.len()).map(|i| i % factor.levels.len()).collect();
                 stream.shuffle(&mut order);
                 for (trial, equal) in trials.iter_mut().zip(order) {
-                    let index = if balanced {
-                        equal
-                    } else {
-                        stream.below(factor.levels.len())
-                    };
+                    let index = if balanced { equal } else { stream.below(factor.levels.len()) };
                     if let Some(level) = factor.levels.get(index) {
                         trial.levels.insert(factor.name.clone(), level.clone());
                     }
@@ -359,10 +328,7 @@ impl Planner<'_> {
     /// The trials of each block, before their order is drawn.
     fn divided(&self) -> Vec<Vec<Draft>> {
         let owned = |combination: Vec<(&str, &str)>| -> HashMap<String, String> {
-            combination
-                .into_iter()
-                .map(|(name, level)| (name.into(), level.into()))
-                .collect()
+            combination.into_iter().map(|(name, level)| (name.into(), level.into())).collect()
         };
         let groups: Vec<_> = (self.part.combinations().into_iter())
             .map(|combination| (owned(combination), self.part.repeat as usize))
@@ -370,14 +336,9 @@ impl Planner<'_> {
         let drafts = self.repeated(&groups);
         let (repetitions, levels, name) = match &self.part.blocks {
             Blocks::Repetitions(repetitions) => (*repetitions as usize, vec![None], ""),
-            Blocks::OneLevel {
-                factor,
-                repetitions,
-            } => {
+            Blocks::OneLevel { factor, repetitions } => {
                 let of_factor = self.part.factors.iter().find(|known| known.name == *factor);
-                let levels = of_factor
-                    .map(|factor| &factor.levels[..])
-                    .unwrap_or_default();
+                let levels = of_factor.map(|factor| &factor.levels[..]).unwrap_or_default();
                 let mut levels: Vec<_> = levels.iter().map(Some).collect();
                 self.stream(&format!("first {factor}")).shuffle(&mut levels);
                 (*repetitions as usize, levels, &**factor)
@@ -388,9 +349,7 @@ impl Planner<'_> {
             for level in &levels {
                 let of_level = |drafts: &&Vec<Draft>| {
                     level.is_none_or(|level| {
-                        drafts
-                            .first()
-                            .is_some_and(|draft| draft.levels.get(name) == Some(level))
+                        drafts.first().is_some_and(|draft| draft.levels.get(name) == Some(level))
                     })
                 };
                 let of_block = drafts.iter().filter(of_level);
@@ -450,13 +409,8 @@ impl Planner<'_> {
                 Some(failures) => *failures += 1,
             }
         }
-        let constraint = constraints
-            .iter()
-            .zip(&failures)
-            .max_by_key(|(_, failures)| **failures);
-        let (factor, most) = constraint
-            .map(|(worst, _)| worst.clone())
-            .unwrap_or_default();
+        let constraint = constraints.iter().zip(&failures).max_by_key(|(_, failures)| **failures);
+        let (factor, most) = constraint.map(|(worst, _)| worst.clone()).unwrap_or_default();
         Err(PlanError::Order {
             constraint: format!("max_run.{factor} = {most} of the part {:?}", self.part.name),
             attempts: ATTEMPTS,
@@ -468,19 +422,14 @@ impl Planner<'_> {
         let level = |name: &str| draft.levels.get(name).cloned();
         let case = self.session.present.case(level);
         let stimuli = case.map(|case| &case.stations[..]).unwrap_or_default();
-        let presented: Vec<_> = stimuli
-            .iter()
-            .map(|stimulus| self.presented(stimulus, &draft))
-            .collect();
+        let presented: Vec<_> =
+            stimuli.iter().map(|stimulus| self.presented(stimulus, &draft)).collect();
         PlannedTrial {
             number: at.number,
             part: self.part.name.clone(),
             block: at.block,
             break_before: at.break_before,
-            levels: factors
-                .iter()
-                .map(|name| level(name).unwrap_or_default())
-                .collect(),
+            levels: factors.iter().map(|name| level(name).unwrap_or_default()).collect(),
             correct: self.correct(&presented, &draft),
             presented,
             staircase: draft.staircase,
@@ -496,23 +445,13 @@ impl Planner<'_> {
         };
         match stimulus {
             Stimulus::Nothing => Presented::Nothing,
-            Stimulus::Sample(material) => Presented::Sample {
-                material: name(material),
-            },
-            Stimulus::Display {
-                device_finger,
-                material,
-            } => Presented::Material {
-                device_finger: *device_finger,
-                material: name(material),
-            },
-            Stimulus::Hold {
-                device_finger,
-                celsius,
-            } => Presented::Hold {
-                device_finger: *device_finger,
-                celsius: number(celsius, draft),
-            },
+            Stimulus::Sample(material) => Presented::Sample { material: name(material) },
+            Stimulus::Display { device_finger, material } => {
+                Presented::Material { device_finger: *device_finger, material: name(material) }
+            }
+            Stimulus::Hold { device_finger, celsius } => {
+                Presented::Hold { device_finger: *device_finger, celsius: number(celsius, draft) }
+            }
             Stimulus::Pulses(pulses) => presented_pulses(pulses, draft),
         }
     }
@@ -537,12 +476,8 @@ impl Planner<'_> {
                 Some(if same { "same" } else { "different" }.into())
             }
             CorrectAnswer::ColderStation => {
-                let effusivity = |name: &String| {
-                    self.session
-                        .material(name)
-                        .as_ref()
-                        .map(Material::effusivity)
-                };
+                let effusivity =
+                    |name: &String| self.session.material(name).as_ref().map(Material::effusivity);
                 let mut by_effusivity: Vec<_> = materials()
                     .filter_map(|(station, material)| Some((effusivity(material)?, station)))
                     .collect();
@@ -561,24 +496,14 @@ fn presented_pulses(pulses: &Pulses, draft: &Draft) -> Presented {
     let standard_k = number(&pulses.standard_k, draft);
     let changed = match &pulses.change_k {
         Some(change_k) => Departure::Fixed(standard_k + pulses.sign * number(change_k, draft)),
-        None => Departure::Staircase {
-            standard_k,
-            sign: pulses.sign,
-        },
+        None => Departure::Staircase { standard_k, sign: pulses.sign },
     };
     let standard = Departure::Fixed(standard_k);
-    let is_second = draft
-        .levels
-        .get(&pulses.changed)
-        .is_some_and(|level| level == "second");
+    let is_second = draft.levels.get(&pulses.changed).is_some_and(|level| level == "second");
     Presented::Pulses {
         device_finger: pulses.device_finger,
         base_c: pulses.base_c,
-        departures_k: if is_second {
-            [standard, changed]
-        } else {
-            [changed, standard]
-        },
+        departures_k: if is_second { [standard, changed] } else { [changed, standard] },
         rate_k_s: pulses.rate_k_s,
     }
 }
@@ -588,10 +513,7 @@ fn number(quantity: &Quantity, draft: &Draft) -> f64 {
     match quantity {
         Quantity::Fixed(number) => *number,
         Quantity::Factor(factor) => {
-            let level = draft
-                .levels
-                .get(factor)
-                .and_then(|level| level.parse().ok());
+            let level = draft.levels.get(factor).and_then(|level| level.parse().ok());
             level.unwrap_or(f64::NAN)
         }
     }
@@ -601,11 +523,7 @@ fn number(quantity: &Quantity, draft: &Draft) -> f64 {
 fn has_run_above<L: PartialEq>(levels: impl Iterator<Item = L>, most: u32) -> bool {
     let (mut run, mut last) = (0, None);
     for level in levels {
-        run = if last.as_ref() == Some(&level) {
-            run + 1
-        } else {
-            1
-        };
+        run = if last.as_ref() == Some(&level) { run + 1 } else { 1 };
         if run > most {
             return true;
         }

@@ -44,11 +44,7 @@ impl<'a> Schedule<'a> {
             attempts_max: session.voids.attempts_max,
             queue: (0..plan.trials.len()).collect(),
             attempts: vec![0; plan.trials.len()],
-            staircases: session
-                .staircases
-                .iter()
-                .map(|rule| rule.initial.clone())
-                .collect(),
+            staircases: session.staircases.iter().map(|rule| rule.initial.clone()).collect(),
             given_up: Vec::new(),
         }
     }
@@ -70,10 +66,7 @@ impl<'a> Schedule<'a> {
                     && next.trial.levels == record.levels
             });
             if !is_next {
-                return Err(OtherSession {
-                    trial: record.trial,
-                    attempt: record.attempt,
-                });
+                return Err(OtherSession { trial: record.trial, attempt: record.attempt });
             }
             schedule.ended(record);
         }
@@ -103,11 +96,7 @@ impl<'a> Schedule<'a> {
 
     /// Takes note of how the trial that came last has ended.
     pub fn ended(&mut self, record: &TrialRecord) {
-        let Some(index) = self
-            .plan
-            .trials
-            .iter()
-            .position(|trial| trial.number == record.trial)
+        let Some(index) = self.plan.trials.iter().position(|trial| trial.number == record.trial)
         else {
             return;
         };
@@ -118,11 +107,7 @@ impl<'a> Schedule<'a> {
             }
         } else if record.attempt < self.attempts_max {
             let is_later = |other: &usize| self.plan.trials[*other].block != trial.block;
-            let end_of_block = self
-                .queue
-                .iter()
-                .position(is_later)
-                .unwrap_or(self.queue.len());
+            let end_of_block = self.queue.iter().position(is_later).unwrap_or(self.queue.len());
             self.queue.insert(end_of_block, index);
         } else {
             self.given_up.push(trial.number);

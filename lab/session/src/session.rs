@@ -71,9 +71,7 @@ impl Session {
     /// The material of a name: one that the session describes, or one of [`material::MATERIALS`].
     pub fn material(&self, name: &str) -> Option<Material> {
         let described = self.materials.iter().find(|(known, _)| known == name);
-        described
-            .map(|(_, material)| *material)
-            .or_else(|| material::find(name).copied())
+        described.map(|(_, material)| *material).or_else(|| material::find(name).copied())
     }
 
     /// Whether the device has to be told the properties of a material, because it does not know its name.
@@ -318,23 +316,11 @@ pub struct Score {
 /// Words for tables and tests of the analysis, each with what it needs of a session.
 pub const ANALYSES: [(&str, &str); 21] = [
     ("pairs", "correct, and two materials in each trial"),
-    (
-        "pairs-by-mode",
-        "correct, and a sample and a display in each trial",
-    ),
+    ("pairs-by-mode", "correct, and a sample and a display in each trial"),
     ("identical-pairs", "correct = \"colder\""),
-    (
-        "confusion",
-        "correct = { factor = … } whose levels are the answers",
-    ),
-    (
-        "information",
-        "correct = { factor = … } whose levels are the answers",
-    ),
-    (
-        "oddity",
-        "three stations, which are the answers and the levels of the correct factor",
-    ),
+    ("confusion", "correct = { factor = … } whose levels are the answers"),
+    ("information", "correct = { factor = … } whose levels are the answers"),
+    ("oddity", "three stations, which are the answers and the levels of the correct factor"),
     ("same-different", "correct = \"same\""),
     ("falls", "contact = \"hold\" or \"force\""),
     ("exponential-fit", "contact = \"hold\" or \"force\""),
@@ -342,20 +328,11 @@ pub const ANALYSES: [(&str, &str); 21] = [
     ("pearson-with-model", "contact = \"hold\" or \"force\""),
     ("force-matching", "contact = \"force\""),
     ("anova-within", "a factor with two levels or more"),
-    (
-        "anova-split-plot",
-        "two parts or more, and a factor with two levels or more",
-    ),
+    ("anova-split-plot", "two parts or more, and a factor with two levels or more"),
     ("tukey", "anova-within or anova-split-plot"),
     ("ancova", "pairs or confusion"),
-    (
-        "pearson-between-parts",
-        "confusion or falls, and two parts or more",
-    ),
-    (
-        "chi-squared-against",
-        "pairs or pairs-by-mode, and the key against",
-    ),
+    ("pearson-between-parts", "confusion or falls, and two parts or more"),
+    ("chi-squared-against", "pairs or pairs-by-mode, and the key against"),
     ("staircase", "a staircase"),
     ("psychometric-fit", "correct, and pulses"),
     ("magnitudes", "an answer by number_per_station"),

@@ -39,8 +39,7 @@ fn ask<L: AskSurroundings + Link>(
     request: BenchRequest,
 ) -> Result<String, BenchError> {
     let link = client.link();
-    link.ask_surroundings(&SurroundingsRequest::Bench(request))
-        .map_err(BenchError::Failed)
+    link.ask_surroundings(&SurroundingsRequest::Bench(request)).map_err(BenchError::Failed)
 }
 
 fn parse(line: &str) -> Result<BenchRequest, BenchError> {
@@ -68,9 +67,7 @@ impl<L: AskSurroundings + Link> Bench<L> for EmulatedBench<'_> {
         let answer = ask(client, request)?;
         let value = answer.split(' ').next().and_then(|word| word.parse().ok());
         value.ok_or_else(|| {
-            BenchError::Failed(format!(
-                "the surroundings answer '{request}' with '{answer}'"
-            ))
+            BenchError::Failed(format!("the surroundings answer '{request}' with '{answer}'"))
         })
     }
 
@@ -80,11 +77,7 @@ impl<L: AskSurroundings + Link> Bench<L> for EmulatedBench<'_> {
         (from_ohm, to_ohm): (f64, f64),
         tripped: &mut dyn FnMut(&mut Client<L>) -> Result<bool, BenchError>,
     ) -> Result<Option<f64>, BenchError> {
-        let factor = if to_ohm < from_ohm {
-            1.0 - TURN_STEP
-        } else {
-            1.0 + TURN_STEP
-        };
+        let factor = if to_ohm < from_ohm { 1.0 - TURN_STEP } else { 1.0 + TURN_STEP };
         let mut ohm = from_ohm;
         while (ohm - to_ohm) * (from_ohm - to_ohm) > 0.0 {
             let part = Part::Resistor(ThermistorId::Check, ohm);

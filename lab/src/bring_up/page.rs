@@ -84,11 +84,7 @@ fn write_page(html: &mut String, report: &Report) -> std::fmt::Result {
 }
 
 fn write_stage(html: &mut String, report: &Report, name: &str, title: &str) -> std::fmt::Result {
-    let records: Vec<_> = report
-        .records
-        .iter()
-        .filter(|record| record.stage == name)
-        .collect();
+    let records: Vec<_> = report.records.iter().filter(|record| record.stage == name).collect();
     writeln!(html, "<h2 id=\"{name}\">{}</h2>", escaped(title))?;
     if records.is_empty() {
         return html.write_str("<p class=\"not-reached\">Not done.</p>\n");
@@ -115,8 +111,5 @@ fn write_stage(html: &mut String, report: &Report, name: &str, title: &str) -> s
 }
 
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -122,10 +122,7 @@ pub fn bring_up<L: Link, B: Bench<L>>(
                 return Err(refusal);
             }
             let reason = procedure.interrupted(stage, &why);
-            procedure.report.resume = Some(Resume {
-                stage: stage.name.into(),
-                reason,
-            });
+            procedure.report.resume = Some(Resume { stage: stage.name.into(), reason });
             break;
         }
         saved(&procedure.report);
@@ -204,9 +201,9 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             Reading::Raw(read) => Some(read(&self.client.ask(&QueryRaw)?)),
             Reading::Board(read) => Some(read(&self.client.ask(&QueryBoard)?)),
             Reading::Kept => self.kept.get(check.name).copied().map(Value::Number),
-            Reading::Derived(read) => read(&self.kept)
-                .filter(|value| value.is_finite())
-                .map(Value::Number),
+            Reading::Derived(read) => {
+                read(&self.kept).filter(|value| value.is_finite()).map(Value::Number)
+            }
             Reading::SelfTest(read) => self.self_test.as_ref().and_then(read),
         };
         let is_self_test = matches!(check.reading, Reading::SelfTest(_));
@@ -216,10 +213,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             _ => true,
         };
         if value.is_none() && !tells {
-            self.add(
-                record(stage, check, "-".into(), Verdict::NotReached, None),
-                None,
-            );
+            self.add(record(stage, check, "-".into(), Verdict::NotReached, None), None);
             return Ok(());
         }
         let Some(value) = value else {
@@ -247,12 +241,8 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         };
         let why = [Some(broken), why.as_deref()].into_iter().flatten();
         let why: Vec<_> = why.filter(|why| !why.is_empty()).collect();
-        let finding = format!(
-            "{}: {found} in place of {}; {}",
-            check.what,
-            check.expected,
-            why.join(": ")
-        );
+        let finding =
+            format!("{}: {found} in place of {}; {}", check.what, check.expected, why.join(": "));
         self.fail(stage, check, found, finding);
         Ok(())
     }

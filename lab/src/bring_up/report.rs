@@ -42,12 +42,7 @@ pub struct Record {
 
 impl fmt::Display for Record {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            what,
-            expected,
-            found,
-            ..
-        } = self;
+        let Self { what, expected, found, .. } = self;
         match self.verdict {
             Verdict::Passed => write!(f, "  ok      {what}: {found} ({expected})"),
             Verdict::Failed => write!(
@@ -108,8 +103,7 @@ impl Report {
     pub fn keep_before(&mut self, stage: &Stage, image: Option<String>) -> Result<(), OtherImage> {
         let earlier = STAGES.iter().take_while(|known| known.id < stage.id);
         let earlier: Vec<_> = earlier.map(|stage| stage.name).collect();
-        self.records
-            .retain(|record| earlier.contains(&record.stage.as_str()));
+        self.records.retain(|record| earlier.contains(&record.stage.as_str()));
         if self.depends_on_firmware() && self.image != image {
             let known = |image: Option<String>| image.unwrap_or_else(|| "not known".into());
             return Err(OtherImage {
@@ -149,9 +143,7 @@ impl Report {
     /// What is broken, in the order in which it was found.
     pub fn findings(&self) -> Vec<&str> {
         let records = self.records.iter();
-        records
-            .filter_map(|record| record.finding.as_deref())
-            .collect()
+        records.filter_map(|record| record.finding.as_deref()).collect()
     }
 
     /// The result for another program.

@@ -107,10 +107,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     fn identify(&mut self, stage: &Stage) -> Result<(), Interruption> {
         let (identity, text) = self.same_device()?;
         let needed = ["self-test", "raw", "board", "checksum"];
-        let missing: Vec<_> = needed
-            .into_iter()
-            .filter(|one| !identity.can(one))
-            .collect();
+        let missing: Vec<_> = needed.into_iter().filter(|one| !identity.can(one)).collect();
         let finding = (!missing.is_empty() || identity.fingers != 1).then(|| {
             format!(
                 "firmware: found '{text}'; needed is one for one finger with {}: flash that of this repository",
@@ -150,8 +147,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         }
         let mut tripped = |client: &mut thermal_client::client::Client<L>| {
             let raw = client.ask(&QueryRaw);
-            raw.map(|raw| raw.fault_line)
-                .map_err(|error| BenchError::Failed(error.to_string()))
+            raw.map(|raw| raw.fault_line).map_err(|error| BenchError::Failed(error.to_string()))
         };
         if let Some(at_ohm) = self.bench.turn(self.client, ohm, &mut tripped)? {
             self.keep(keep, at_ohm);
@@ -245,9 +241,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     /// Compares all thermistors, by the curve of their class, with the reference thermometer.
     fn thermistors(&mut self) -> Result<(), Interruption> {
         for (index, (thermistor, ..)) in INPUTS.iter().enumerate() {
-            self.bench.notice(&CommissioningEvent::StepStarted(
-                "read the reference thermometer",
-            ));
+            self.bench.notice(&CommissioningEvent::StepStarted("read the reference thermometer"));
             let reference_c = self.reference_c(*thermistor)?;
             let found_c = class_c(counts(&self.client.ask(&QueryRaw)?)[index]);
             let name = format!("{}-at-rest", thermistor_word(*thermistor));
@@ -344,10 +338,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         let start = self.client.link().now();
         for _ in 0..STOP_MS / STOP_POLL_MS {
             let state = self.client.ask(&QueryState)?.state;
-            if state
-                .fault()
-                .is_some_and(|fault| fault.name() == "emergency-stop")
-            {
+            if state.fault().is_some_and(|fault| fault.name() == "emergency-stop") {
                 let after = self.client.link().now() - start;
                 self.keep("stop-driving", after.as_secs_f64() * 1e3);
                 break;
@@ -366,27 +357,16 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
 
 fn is_interrupted(error: &thermal_client::commissioning::CommissionError) -> bool {
     use thermal_client::commissioning::{CommissionError, SurroundingsError};
-    matches!(
-        error,
-        CommissionError::Surroundings(SurroundingsError::Interrupted)
-    )
+    matches!(error, CommissionError::Surroundings(SurroundingsError::Interrupted))
 }
 
 fn described(chip: Option<&str>, device: Option<&str>) -> String {
     let unknown = "not known";
-    format!(
-        "microcontroller {}, firmware {}",
-        chip.unwrap_or(unknown),
-        device.unwrap_or(unknown)
-    )
+    format!("microcontroller {}, firmware {}", chip.unwrap_or(unknown), device.unwrap_or(unknown))
 }
 
 const fn verdict(is_good: bool) -> Verdict {
-    if is_good {
-        Verdict::Passed
-    } else {
-        Verdict::Failed
-    }
+    if is_good { Verdict::Passed } else { Verdict::Failed }
 }
 
 /// Counts of the five thermistors in the order of the converter's channels.

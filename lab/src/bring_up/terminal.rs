@@ -125,22 +125,10 @@ impl<L: Link> Bench<L> for Terminal<'_> {
         client: &mut Client<L>,
         measurement: &Measurement,
     ) -> Result<f64, BenchError> {
-        let Measurement {
-            what,
-            how,
-            unit,
-            allowed,
-            basis,
-            ..
-        } = *measurement;
+        let Measurement { what, how, unit, allowed, basis, .. } = *measurement;
         self.person.tell(&format!("\n{what}: {how}.\n"));
         let expected = range_text(allowed, unit);
-        self.value(
-            client,
-            unit,
-            allowed,
-            &format!("expected: {expected} ({basis})"),
-        )
+        self.value(client, unit, allowed, &format!("expected: {expected} ({basis})"))
     }
 
     fn turn(
@@ -167,9 +155,9 @@ impl<L: Link> Bench<L> for Terminal<'_> {
                 Some(other) => self.person.tell(&format!(
                     "  '{other}' is not expected here: turn on, or type `end` at {to}, or `abort`\n"
                 )),
-                None => client
-                    .wait(TURN_LOOK)
-                    .map_err(|error| BenchError::Failed(error.to_string()))?,
+                None => {
+                    client.wait(TURN_LOOK).map_err(|error| BenchError::Failed(error.to_string()))?
+                }
             }
         }
         self.person.tell(
@@ -177,12 +165,8 @@ impl<L: Link> Bench<L> for Terminal<'_> {
         );
         let allowed = (from_ohm.min(to_ohm), from_ohm.max(to_ohm));
         let expected = range_text(allowed, Unit::Ohm);
-        let at_ohm = self.value(
-            client,
-            Unit::Ohm,
-            allowed,
-            &format!("somewhere on its way: {expected}"),
-        )?;
+        let at_ohm =
+            self.value(client, Unit::Ohm, allowed, &format!("somewhere on its way: {expected}"))?;
         Ok(Some(at_ohm))
     }
 

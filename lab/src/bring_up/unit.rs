@@ -31,14 +31,8 @@ pub enum Unit {
 }
 
 /// Prefixes of a unit and their factors.
-const PREFIXES: [(char, f64); 6] = [
-    ('u', 1e-6),
-    ('µ', 1e-6),
-    ('m', 1e-3),
-    ('k', 1e3),
-    ('M', 1e6),
-    ('G', 1e9),
-];
+const PREFIXES: [(char, f64); 6] =
+    [('u', 1e-6), ('µ', 1e-6), ('m', 1e-3), ('k', 1e3), ('M', 1e6), ('G', 1e9)];
 
 /// Why a typed value is not accepted.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -125,14 +119,9 @@ impl Unit {
             .find(|c: char| !(c.is_ascii_digit() || "+-.,".contains(c)))
             .unwrap_or(typed.len());
         let (number, unit) = typed.split_at(end);
-        let number: f64 =
-            number
-                .replace(',', ".")
-                .parse()
-                .map_err(|_| TypedValueError::NoNumber {
-                    typed: typed.into(),
-                    example: self.example(),
-                })?;
+        let number: f64 = number.replace(',', ".").parse().map_err(|_| {
+            TypedValueError::NoNumber { typed: typed.into(), example: self.example() }
+        })?;
         let unit = unit.trim();
         match self.factor(unit) {
             Some(factor) => Ok(number * factor),
@@ -180,9 +169,7 @@ impl Unit {
         if number == "-0" {
             number = "0".into();
         }
-        format!("{number} {prefix}{}", self.symbol())
-            .trim_end()
-            .into()
+        format!("{number} {prefix}{}", self.symbol()).trim_end().into()
     }
 
     fn scaled(self, value: f64) -> (f64, &'static str) {
@@ -231,15 +218,9 @@ mod tests {
     #[test]
     fn another_unit_or_no_number_is_refused_with_an_example() {
         let other = Unit::Volt.parse("4.7 kohm").unwrap_err().to_string();
-        assert_eq!(
-            other,
-            "'4.7 kohm' has the unit 'kohm'; needed is V, such as '3.31 V'"
-        );
+        assert_eq!(other, "'4.7 kohm' has the unit 'kohm'; needed is V, such as '3.31 V'");
         let none = Unit::Ohm.parse("about 5").unwrap_err().to_string();
-        assert_eq!(
-            none,
-            "'about 5' is no number; type one with its unit, such as '4.68 kohm'"
-        );
+        assert_eq!(none, "'about 5' is no number; type one with its unit, such as '4.68 kohm'");
         for (unit, typed) in [
             (Unit::Ohm, ""),
             (Unit::Ohm, "1..2"),

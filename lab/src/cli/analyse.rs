@@ -36,9 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(Failure::run)?;
     for (name, text) in files {
         let path = arguments.out.join(name);
-        fs::write(&path, text)
-            .with_context(|| path.display().to_string())
-            .map_err(Failure::run)?;
+        fs::write(&path, text).with_context(|| path.display().to_string()).map_err(Failure::run)?;
         eprintln!("thermal-lab: wrote {}", path.display());
     }
     if arguments.json {

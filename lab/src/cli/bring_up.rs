@@ -74,24 +74,9 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     for (name, given, needs, there) in [
-        (
-            "--surroundings",
-            arguments.surroundings.is_some(),
-            "--tcp",
-            target.tcp.is_some(),
-        ),
-        (
-            "--board",
-            arguments.board.is_some(),
-            "--simulated",
-            target.simulated,
-        ),
-        (
-            "--draw",
-            arguments.draw.is_some(),
-            "--simulated",
-            target.simulated,
-        ),
+        ("--surroundings", arguments.surroundings.is_some(), "--tcp", target.tcp.is_some()),
+        ("--board", arguments.board.is_some(), "--simulated", target.simulated),
+        ("--draw", arguments.draw.is_some(), "--simulated", target.simulated),
     ] {
         if given && !there {
             return Err(Failure::input(anyhow!("{name} is for {needs} only")));
@@ -122,11 +107,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     }
     let path = arguments.out.join(PAGE);
     eprintln!("page: {}", path.display());
-    if report.passed() {
-        Ok(())
-    } else {
-        Err(Failure::run(anyhow!("the bring-up has not passed")))
-    }
+    if report.passed() { Ok(()) } else { Err(Failure::run(anyhow!("the bring-up has not passed"))) }
 }
 
 const PAGE: &str = "bring-up.html";
@@ -145,11 +126,7 @@ fn first_report(arguments: &Arguments) -> anyhow::Result<Report> {
     if let Some(from) = arguments.from {
         let path = arguments.out.join(RECORD);
         let text = fs::read_to_string(&path).with_context(|| {
-            format!(
-                "--from {}: {}: the results of the earlier stages",
-                from.name,
-                path.display()
-            )
+            format!("--from {}: {}: the results of the earlier stages", from.name, path.display())
         })?;
         report = serde_json::from_str(&text).with_context(|| path.display().to_string())?;
         report.keep_before(from, image)?;
@@ -177,10 +154,9 @@ fn summary(report: &Report) -> String {
     text += match (&report.resume, report.passed()) {
         (_, true) => "passed: every check of every stage".to_owned(),
         (None, _) => "not passed".to_owned(),
-        (Some(resume), _) => format!(
-            "not finished: {}; go on with --from {}",
-            resume.reason, resume.stage
-        ),
+        (Some(resume), _) => {
+            format!("not finished: {}; go on with --from {}", resume.reason, resume.stage)
+        }
     }
     .as_str();
     text
@@ -194,11 +170,8 @@ fn by_a_person(
     saved: &mut dyn FnMut(&Report),
 ) -> Result<Report, Failure> {
     let mut screen = stderr();
-    let mut terminal = Terminal::new(BenchOperator::new(
-        None,
-        lines(BufReader::new(stdin())),
-        &mut screen,
-    ));
+    let mut terminal =
+        Terminal::new(BenchOperator::new(None, lines(BufReader::new(stdin())), &mut screen));
     target
         .with_late_client(|client| bring_up(client, &mut terminal, report, arguments.from, saved))?
         .map_err(Failure::input)
@@ -217,14 +190,8 @@ fn served(
         .map_err(Failure::input)?;
     report.emulated = true;
     let mut bench = EmulatedBench { watch: &mut watch };
-    bring_up(
-        &mut Client::new(link),
-        &mut bench,
-        report,
-        arguments.from,
-        saved,
-    )
-    .map_err(Failure::input)
+    bring_up(&mut Client::new(link), &mut bench, report, arguments.from, saved)
+        .map_err(Failure::input)
 }
 
 /// On a board that is simulated here.
@@ -242,14 +209,8 @@ fn simulated(
     let mut engine = LossyLine::new(NativeEngine::new(world), interval);
     let link = SimulatedBoard::new(&mut engine, bench);
     let mut bench = EmulatedBench { watch: &mut watch };
-    bring_up(
-        &mut Client::new(link),
-        &mut bench,
-        report,
-        arguments.from,
-        saved,
-    )
-    .map_err(Failure::input)
+    bring_up(&mut Client::new(link), &mut bench, report, arguments.from, saved)
+        .map_err(Failure::input)
 }
 
 /// Prints progress on standard error, which may be closed.

@@ -41,10 +41,7 @@ pub struct Arguments {
 #[serde(untagged)]
 enum Record {
     All(CommissioningRecord),
-    FluxSensor {
-        flux: FluxCalibration,
-        settings: Vec<String>,
-    },
+    FluxSensor { flux: FluxCalibration, settings: Vec<String> },
 }
 
 impl Record {
@@ -97,11 +94,8 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
 /// On a device at a bench.
 fn by_a_person(target: &Target, arguments: &Arguments) -> Result<Record, Failure> {
     let mut screen = stderr();
-    let mut person = BenchOperator::new(
-        arguments.finger,
-        lines(BufReader::new(stdin())),
-        &mut screen,
-    );
+    let mut person =
+        BenchOperator::new(arguments.finger, lines(BufReader::new(stdin())), &mut screen);
     target.with_client(|client| {
         if !arguments.only_flux_sensor {
             clear_calibration(client, arguments.finger).map_err(Failure::run)?;
@@ -118,9 +112,7 @@ fn served(device: &str, surroundings: &str, arguments: &Arguments) -> Result<Rec
         .with_context(|| format!("--tcp {device} --surroundings {surroundings}"))
         .map_err(Failure::input)?;
     let mut client = Client::new(link);
-    let mut operator = ServedOperator {
-        watch: &mut print_event,
-    };
+    let mut operator = ServedOperator { watch: &mut print_event };
     (arguments.commission(&mut client, &mut operator)).map_err(Failure::run)
 }
 

@@ -55,10 +55,7 @@ fn at_device<L: Link>(
     arguments: &Arguments,
     guide: &mut dyn FnMut(&mut Client<L>, &Step),
 ) -> Result<(), Failure> {
-    let options = MeasurementOptions {
-        finger: arguments.finger,
-        takes_zero: arguments.zero,
-    };
+    let options = MeasurementOptions { finger: arguments.finger, takes_zero: arguments.zero };
     let measurement = measure(client, &options, guide).map_err(Failure::run)?;
     let path = match &arguments.out {
         Some(path) => path.clone(),
@@ -68,11 +65,7 @@ fn at_device<L: Link>(
     write(&path, "csv", &csv(&measurement))?;
     let fit = fit(&measurement.recording).map_err(Failure::run)?;
     let report = Report::new(&arguments.code.to_string(), &measurement, &fit);
-    write(
-        &path,
-        "toml",
-        &toml::to_string(&report).map_err(Failure::run)?,
-    )?;
+    write(&path, "toml", &toml::to_string(&report).map_err(Failure::run)?)?;
     let chart = report.chart(&measurement.recording, &fit);
     write(&path, "svg", &chart.map_err(Failure::run)?)?;
     print_text(&report.text())?;
@@ -86,12 +79,7 @@ fn at_device<L: Link>(
 /// The samples as CSV.
 fn csv(measurement: &Measurement) -> String {
     let row = |sample: &Sample| {
-        let Sample {
-            since_s,
-            flux_w_m2,
-            surface_c,
-            force_n: pressed_n,
-        } = sample;
+        let Sample { since_s, flux_w_m2, surface_c, force_n: pressed_n } = sample;
         let target_n = force_n(*since_s).unwrap_or_default();
         format!("{since_s:.3},{flux_w_m2},{surface_c},{pressed_n},{target_n:.4}\n")
     };

@@ -69,10 +69,7 @@ struct PersonFile {
 
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.forget && arguments.restore.is_none() && arguments.objects.len() < 2 {
-        let problem = anyhow!(
-            "--objects has {}; two or more are needed",
-            arguments.objects.len()
-        );
+        let problem = anyhow!("--objects has {}; two or more are needed", arguments.objects.len());
         return Err(Failure::input(problem));
     }
     let mut out = stderr();
@@ -161,18 +158,10 @@ fn read(path: &Path, code: PersonCode) -> anyhow::Result<Person> {
     let text = fs::read_to_string(path).with_context(context)?;
     let file: PersonFile = toml::from_str(&text).with_context(context)?;
     if file.code != code.to_string() {
-        anyhow::bail!(
-            "--restore {}: it is of {:?}, not of {code}",
-            path.display(),
-            file.code
-        );
+        anyhow::bail!("--restore {}: it is of {:?}, not of {code}", path.display(), file.code);
     }
     let finger = Person::read_finger(&file.data).with_context(|| {
-        format!(
-            "--restore {}: data {:?} is not 40 hexadecimal digits",
-            path.display(),
-            file.data
-        )
+        format!("--restore {}: data {:?} is not 40 hexadecimal digits", path.display(), file.data)
     })?;
     Ok(Person { code, finger })
 }

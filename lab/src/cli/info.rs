@@ -25,10 +25,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let info =
         target.with_client(|client| collect(client, arguments.finger).map_err(Failure::run))?;
     if arguments.json {
-        let all: Map<_, _> = info
-            .into_iter()
-            .map(|(what, value)| (what.into(), value))
-            .collect();
+        let all: Map<_, _> = info.into_iter().map(|(what, value)| (what.into(), value)).collect();
         return print(&Value::Object(all).to_string());
     }
     for (what, value) in &info {

@@ -31,9 +31,7 @@ pub struct Arguments {
 
 fn duration(text: &str) -> Result<Duration, String> {
     let seconds = text.parse().ok().filter(|s| (0.0..=1e6).contains(s));
-    seconds
-        .map(Duration::from_secs_f64)
-        .ok_or_else(|| "allowed are 0 to 1e6 s".into())
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| "allowed are 0 to 1e6 s".into())
 }
 
 /// Columns of the log.
@@ -76,9 +74,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             let unix = SystemTime::now().duration_since(UNIX_EPOCH);
             unix.map_err(Failure::run)?.as_secs_f64() - client.link().now().as_secs_f64()
         };
-        client
-            .ask(&PlainCommand::stream(arguments.interval))
-            .map_err(Failure::run)?;
+        client.ask(&PlainCommand::stream(arguments.interval)).map_err(Failure::run)?;
         let end = arguments.duration.map(|time| client.link().now() + time);
         let logged = log(client, end, zero_s, &mut out);
         let counts = client.counts();
@@ -108,8 +104,7 @@ fn log(
         };
         if let Some(line) = line {
             let time = client.clock().time_of(line.telemetry.tick);
-            out.write_record(row(&line, time, zero_s))
-                .map_err(Failure::run)?;
+            out.write_record(row(&line, time, zero_s)).map_err(Failure::run)?;
         }
         out.flush().context("--out").map_err(Failure::run)?;
     }
@@ -125,8 +120,7 @@ fn row(line: &ReceivedTelemetry, time: Option<TickTime>, zero_s: f64) -> Vec<Str
         time.map_or(String::new(), |time| format!("{:.4}", zero_s + time.at_s)),
         time.map_or(String::new(), |time| format!("{:.4}", time.error_s)),
         line.lost_before.to_string(),
-        line.finger
-            .map_or(String::new(), |finger| finger.to_string()),
+        line.finger.map_or(String::new(), |finger| finger.to_string()),
         telemetry.tick.to_string(),
         telemetry.state.name().into(),
         telemetry.fault().map_or("", |fault| fault.name()).into(),
@@ -138,9 +132,7 @@ fn row(line: &ReceivedTelemetry, time: Option<TickTime>, zero_s: f64) -> Vec<Str
         number(telemetry.force_n),
         number(telemetry.demand_a),
         number(telemetry.current_a),
-        telemetry
-            .evaluations
-            .map_or(String::new(), |count| count.to_string()),
+        telemetry.evaluations.map_or(String::new(), |count| count.to_string()),
         u8::from(telemetry.limited).to_string(),
     ]
 }

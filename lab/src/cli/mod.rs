@@ -26,14 +26,10 @@ pub use thermal_sim::Failure;
 
 /// Writes a line to standard output.
 fn print(text: &str) -> Result<(), Failure> {
-    writeln!(stdout(), "{text}")
-        .context("standard output")
-        .map_err(Failure::run)
+    writeln!(stdout(), "{text}").context("standard output").map_err(Failure::run)
 }
 
 /// Writes a text that ends with a line end to standard output.
 fn print_text(text: &str) -> Result<(), Failure> {
-    write!(stdout(), "{text}")
-        .context("standard output")
-        .map_err(Failure::run)
+    write!(stdout(), "{text}").context("standard output").map_err(Failure::run)
 }

@@ -34,9 +34,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
         let mut people = TerminalPeople::of_monitor(input, &mut screen, stop.clone());
         return watch(target, arguments, &stop, &mut people);
     }
-    window::show("Monitor", None, &stop, |people| {
-        watch(target, arguments, &stop, people)
-    })
+    window::show("Monitor", None, &stop, |people| watch(target, arguments, &stop, people))
 }
 
 fn watch(

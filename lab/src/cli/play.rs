@@ -57,9 +57,7 @@ fn start(word: &str) -> Result<CourseStart, String> {
 
 /// Uploads the course to a device that is armed, and starts it.
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
-    let selection = Selection {
-        column: arguments.column.as_deref(),
-    };
+    let selection = Selection { column: arguments.column.as_deref() };
     let course = read_course(&arguments.course, selection).map_err(Failure::input)?;
     let played = Prepared::new(course)
         .fine_enough(arguments.coarse)
@@ -95,16 +93,12 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
 fn arm(client: &mut AnyClient<'_>, finger: Option<u8>) -> Result<(), Failure> {
     (client.ask_finger(finger, &PlainCommand::Arm)).map_err(Failure::run)?;
     for _ in 0..STATE_POLLS_MAX {
-        let status = client
-            .ask_finger(finger, &QueryState)
-            .map_err(Failure::run)?;
+        let status = client.ask_finger(finger, &QueryState).map_err(Failure::run)?;
         match status.state {
             StateName::Armed => return Ok(()),
             StateName::Tripped(_) => break,
             _ => client.wait(STATE_POLL_INTERVAL).map_err(Failure::run)?,
         }
     }
-    Err(Failure::run(anyhow!(
-        "the device is not armed; `thermal-lab info` says why"
-    )))
+    Err(Failure::run(anyhow!("the device is not armed; `thermal-lab info` says why")))
 }

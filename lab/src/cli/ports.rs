@@ -27,14 +27,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return print("no serial ports; is the board's USB cable plugged in?");
     }
     for port in &ports {
-        let usb = port.usb.map_or(String::new(), |usb| {
-            format!("  USB {:04x}:{:04x}", usb.vendor, usb.product)
-        });
-        let probe = if is_probe(port) {
-            "  ST-LINK: probably the device"
-        } else {
-            ""
-        };
+        let usb = port
+            .usb
+            .map_or(String::new(), |usb| format!("  USB {:04x}:{:04x}", usb.vendor, usb.product));
+        let probe = if is_probe(port) { "  ST-LINK: probably the device" } else { "" };
         print(&format!("{}{usb}{probe}", port.name.display()))?;
     }
     Ok(())

@@ -50,12 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     stop_on_signals(&stop)?;
     if arguments.headless {
         let mut screen = stderr();
-        return show(
-            &session,
-            arguments,
-            &stop,
-            &mut Progress::new(&mut screen, &stop),
-        );
+        return show(&session, arguments, &stop, &mut Progress::new(&mut screen, &stop));
     }
     let session_view = SessionView::from(&session.session);
     let title = format!("{} (recorded)", session.info.title);
@@ -84,11 +79,7 @@ fn chosen(arguments: &Arguments) -> Result<RecordedSession, Failure> {
                 )
             });
             let names: Vec<_> = names.collect();
-            let which = if names.is_empty() {
-                "none"
-            } else {
-                &names.join(", ")
-            };
+            let which = if names.is_empty() { "none" } else { &names.join(", ") };
             Err(Failure::input(anyhow!(
                 "{}: one session can be replayed; these match: {which}",
                 arguments.folder.display()
@@ -113,10 +104,7 @@ fn show(
             continue;
         }
         let due = Duration::from_secs_f64((t_s - from_s) / arguments.speed);
-        while let Some(rest) = due
-            .checked_sub(began.elapsed())
-            .filter(|rest| !rest.is_zero())
-        {
+        while let Some(rest) = due.checked_sub(began.elapsed()).filter(|rest| !rest.is_zero()) {
             if stop.is_pressed() {
                 return Ok(());
             }

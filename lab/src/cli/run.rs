@@ -74,23 +74,14 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let mut recorder = recorder.map_err(refused)?;
     let stop = StopFlag::default();
     stop_on_signals(&stop)?;
-    let all = Run {
-        arguments,
-        session: &session,
-        plan: &plan,
-    };
+    let all = Run { arguments, session: &session, plan: &plan };
     if arguments.headless {
         let tones = (!target.simulated).then(Tones::start);
         let mut screen = stderr();
         let input = lines(BufReader::new(stdin()));
         let stations = session.stations.len();
         if target.simulated {
-            all.run(
-                target,
-                &mut recorder,
-                &stop,
-                &mut Progress::new(&mut screen, &stop),
-            )
+            all.run(target, &mut recorder, &stop, &mut Progress::new(&mut screen, &stop))
         } else {
             let mut people =
                 TerminalPeople::of_session(input, &mut screen, stop.clone(), tones, stations);

@@ -65,9 +65,5 @@ fn send(client: &mut AnyClient<'_>, line: &str, json: bool) -> Result<(), Failur
     } else {
         print(&answer)?;
     }
-    if ok {
-        Ok(())
-    } else {
-        Err(Failure::run(anyhow!("the device refuses '{line}'")))
-    }
+    if ok { Ok(()) } else { Err(Failure::run(anyhow!("the device refuses '{line}'"))) }
 }

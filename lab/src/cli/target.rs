@@ -132,11 +132,7 @@ impl Target {
             return Ok(CommissioningSetup::new(&Params::nominal(), ROOM_C, SEED));
         };
         let scene = Scene::read(path).map_err(Failure::input)?;
-        Ok(CommissioningSetup::new(
-            &scene.params,
-            scene.room_c,
-            scene.seed,
-        ))
+        Ok(CommissioningSetup::new(&scene.params, scene.room_c, scene.seed))
     }
 }
 

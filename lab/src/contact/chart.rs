@@ -38,9 +38,8 @@ impl Report {
         let ends = self.resistance.iter().flat_map(|one| one.m2k_w_95);
         let values = fitted.iter().chain(&equation).map(|(_, value)| *value);
         let values = values.chain(ends.map(|end| 1e6 * end));
-        let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| {
-            (low.min(value), high.max(value))
-        });
+        let (low, high) = values
+            .fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
         let mut svg = String::new();
         {
             let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
@@ -62,12 +61,7 @@ impl Report {
                 .label_style(FONT)
                 .draw()?;
             chart
-                .draw_series(DashedLineSeries::new(
-                    equation,
-                    7,
-                    5,
-                    EQUATION.stroke_width(2),
-                ))?
+                .draw_series(DashedLineSeries::new(equation, 7, 5, EQUATION.stroke_width(2)))?
                 .label("Eq. 6-8")
                 .legend(|(x, y)| PathElement::new([(x, y), (x + 20, y)], EQUATION.stroke_width(2)));
             chart
@@ -100,9 +94,5 @@ impl Report {
 fn label(value: f64, decimals: usize) -> String {
     let decade = 10_f64.powf(value.log10().floor());
     let digit = (value / decade).round() as u32;
-    if matches!(digit, 1 | 2 | 5 | 10) {
-        format!("{value:.decimals$}")
-    } else {
-        String::new()
-    }
+    if matches!(digit, 1 | 2 | 5 | 10) { format!("{value:.decimals$}") } else { String::new() }
 }

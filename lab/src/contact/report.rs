@@ -103,10 +103,7 @@ impl Report {
         text += &format!("exponent {:.3}, {low:.3} to {high:.3}\n", self.exponent);
         let [low, high] = self.gap_95_w_m2k;
         text += &if self.gap_w_m2k > 0.0 {
-            format!(
-                "gap {:.0} W/(m2 K), {low:.0} to {high:.0}\n",
-                self.gap_w_m2k
-            )
+            format!("gap {:.0} W/(m2 K), {low:.0} to {high:.0}\n", self.gap_w_m2k)
         } else {
             "no gap\n".into()
         };

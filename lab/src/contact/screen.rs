@@ -77,10 +77,8 @@ mod tests {
             screen.show(&Step::Lift);
         }
         for call in 0..10 {
-            screen.show(&Step::Follow {
-                since_s: 3.0 + 0.01 * f64::from(call),
-                force_n: Some(0.5),
-            });
+            screen
+                .show(&Step::Follow { since_s: 3.0 + 0.01 * f64::from(call), force_n: Some(0.5) });
         }
         let text = String::from_utf8(out).expect("text");
         assert_eq!(text.matches("Take the finger off").count(), 1);

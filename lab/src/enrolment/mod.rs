@@ -120,12 +120,7 @@ pub fn enrol<L: Link>(
     guide: &mut dyn FnMut(&mut Client<L>, &Step),
 ) -> Result<PersonReport, EnrolmentError> {
     let finger = options.finger;
-    let done = Session {
-        client,
-        finger,
-        guide,
-    }
-    .enrol(options);
+    let done = Session { client, finger, guide }.enrol(options);
     // Also after a failure: the bridge may be driven.
     let ended = client.abort_and_end_stream(finger);
     let report = done?;
@@ -191,9 +186,7 @@ impl<L: Link> Session<'_, L> {
                 return Ok(());
             }
             if now > begun + WAIT_MAX {
-                return Err(EnrolmentError::TooLong {
-                    what: "stay lifted",
-                });
+                return Err(EnrolmentError::TooLong { what: "stay lifted" });
             }
             let line = self.next(&Step::Rest(REST_S - rested_s))?;
             let is_lifted = line.telemetry.is_lifted() == Some(true);
@@ -213,12 +206,7 @@ impl<L: Link> Session<'_, L> {
         let landed = self.client.link().now();
         let mut force_n = None;
         loop {
-            let since_s = self
-                .client
-                .link()
-                .now()
-                .saturating_sub(landed)
-                .as_secs_f64();
+            let since_s = self.client.link().now().saturating_sub(landed).as_secs_f64();
             let line = self.next(&Step::Press(CONTACT_S - since_s, force_n))?;
             force_n = line.telemetry.force_n;
             if line.telemetry.is_lifted() == Some(true) {

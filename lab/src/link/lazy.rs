@@ -21,11 +21,7 @@ struct Opened {
 impl<F: FnMut() -> Result<Box<dyn Link>, String>> LazyLink<F> {
     /// A line that `open` opens, or says why it cannot.
     pub fn new(open: F) -> Self {
-        Self {
-            open,
-            link: None,
-            created: Instant::now(),
-        }
+        Self { open, link: None, created: Instant::now() }
     }
 }
 
@@ -50,10 +46,7 @@ impl<F: FnMut() -> Result<Box<dyn Link>, String>> Link for LazyLink<F> {
             return Ok(None);
         };
         let line = opened.link.receive(timeout)?;
-        Ok(line.map(|line| ReceivedLine {
-            at: line.at + opened.since,
-            ..line
-        }))
+        Ok(line.map(|line| ReceivedLine { at: line.at + opened.since, ..line }))
     }
 
     fn now(&self) -> Duration {
@@ -81,10 +74,7 @@ mod tests {
         }
 
         fn receive(&mut self, _timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
-            Ok(Some(ReceivedLine {
-                text: "ok".into(),
-                at: Duration::ZERO,
-            }))
+            Ok(Some(ReceivedLine { text: "ok".into(), at: Duration::ZERO }))
         }
 
         fn now(&self) -> Duration {

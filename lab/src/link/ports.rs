@@ -46,10 +46,7 @@ pub fn ports() -> io::Result<Vec<PortInfo>> {
     names.sort();
     Ok(names
         .into_iter()
-        .map(|name| PortInfo {
-            usb: usb_id(Path::new("/sys/class/tty"), &name),
-            name,
-        })
+        .map(|name| PortInfo { usb: usb_id(Path::new("/sys/class/tty"), &name), name })
         .collect())
 }
 
@@ -62,10 +59,7 @@ fn usb_id(class: &Path, port: &Path) -> Option<UsbId> {
         u16::from_str_radix(text.trim(), 16).ok()
     };
     device.ancestors().find_map(|folder| {
-        Some(UsbId {
-            vendor: number(folder, "idVendor")?,
-            product: number(folder, "idProduct")?,
-        })
+        Some(UsbId { vendor: number(folder, "idVendor")?, product: number(folder, "idProduct")? })
     })
 }
 

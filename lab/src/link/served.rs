@@ -38,10 +38,8 @@ impl ServedLink {
         device: impl ToSocketAddrs,
         surroundings: impl ToSocketAddrs,
     ) -> io::Result<Self> {
-        let (device, surroundings) = (
-            TcpStream::connect(device)?,
-            TcpStream::connect(surroundings)?,
-        );
+        let (device, surroundings) =
+            (TcpStream::connect(device)?, TcpStream::connect(surroundings)?);
         for stream in [&device, &surroundings] {
             stream.set_nodelay(true)?;
             stream.set_read_timeout(Some(TIMEOUT))?;
@@ -78,24 +76,17 @@ impl ServedLink {
 
     /// Lets a millisecond pass, and fetches what the device has sent in it.
     fn step(&mut self) -> Result<(), LinkError> {
-        let wait = SurroundingsRequest::Wait {
-            ms: 1,
-            sent: self.sent,
-        };
+        let wait = SurroundingsRequest::Wait { ms: 1, sent: self.sent };
         let answer = self.request(&wait)?;
         let numbers = answer.split_once(' ');
         let numbers = numbers.and_then(|(ms, written)| {
             Some((ms.parse::<u64>().ok()?, written.parse::<u64>().ok()?))
         });
         let (ms, written) = numbers.ok_or_else(|| {
-            LinkError::Gone(format!(
-                "the surroundings answer '{wait}' with 'ok {answer}'"
-            ))
+            LinkError::Gone(format!("the surroundings answer '{wait}' with 'ok {answer}'"))
         })?;
         let new = written.saturating_sub(self.read);
-        let fetched = (&mut self.device)
-            .take(new)
-            .read_to_end(self.splitter.received());
+        let fetched = (&mut self.device).take(new).read_to_end(self.splitter.received());
         match fetched {
             Ok(count) if count as u64 == new => {}
             Ok(_) => return Err(LinkError::Gone("the other end has closed it".into())),
@@ -104,17 +95,14 @@ impl ServedLink {
         (self.ms, self.read) = (ms, self.read + new);
         let at = self.now();
         let lines = self.splitter.complete().into_iter();
-        self.received
-            .extend(lines.map(|text| ReceivedLine { text, at }));
+        self.received.extend(lines.map(|text| ReceivedLine { text, at }));
         Ok(())
     }
 }
 
 impl Link for ServedLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
-        self.device
-            .write_all(bytes)
-            .map_err(|error| LinkError::Gone(error.to_string()))?;
+        self.device.write_all(bytes).map_err(|error| LinkError::Gone(error.to_string()))?;
         self.sent += bytes.len() as u64;
         Ok(())
     }

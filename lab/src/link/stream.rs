@@ -83,9 +83,7 @@ impl<S: Stream> StreamLink<S> {
     /// Waits for bytes, at most `timeout`.
     fn read(&mut self, timeout: Duration) -> Result<(), LinkError> {
         let gone = |error: io::Error| LinkError::Gone(error.to_string());
-        self.stream
-            .set_timeout(timeout.max(READ_TIMEOUT_MIN))
-            .map_err(gone)?;
+        self.stream.set_timeout(timeout.max(READ_TIMEOUT_MIN)).map_err(gone)?;
         let mut bytes = [0; 4096];
         match self.stream.read(&mut bytes) {
             Ok(0) => return Err(LinkError::Gone("the other end has closed it".into())),
@@ -97,8 +95,7 @@ impl<S: Stream> StreamLink<S> {
         }
         let at = self.now();
         let lines = self.splitter.complete().into_iter();
-        self.received
-            .extend(lines.map(|text| ReceivedLine { text, at }));
+        self.received.extend(lines.map(|text| ReceivedLine { text, at }));
         Ok(())
     }
 }
@@ -106,8 +103,7 @@ impl<S: Stream> StreamLink<S> {
 impl<S: Stream> Link for StreamLink<S> {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         let sent = self.stream.write_all(bytes);
-        sent.and_then(|()| self.stream.flush())
-            .map_err(|error| LinkError::Gone(error.to_string()))
+        sent.and_then(|()| self.stream.flush()).map_err(|error| LinkError::Gone(error.to_string()))
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {

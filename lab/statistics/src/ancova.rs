@@ -53,9 +53,7 @@ pub fn ancova(groups: &[Group]) -> Result<Ancova> {
 
     let (x_within, y_within) = (centred_by_group(&covariates), centred_by_group(&ys));
     if !varies(square(&x_within), x.iter().copied()) {
-        return Err(StatisticsError::NoVariation {
-            what: "the covariate within the groups",
-        });
+        return Err(StatisticsError::NoVariation { what: "the covariate within the groups" });
     }
     let (slope, residual) = regress(&x_within, &y_within);
     if !varies(residual, y.iter().copied()) {
@@ -71,10 +69,7 @@ pub fn ancova(groups: &[Group]) -> Result<Ancova> {
         covariate: Effect::new((explained, 1.0), error, None)?,
         factor: Effect::new(
             // Rounding may make it negative where the groups do not differ.
-            (
-                (without_factor - residual).max(0.0),
-                (groups.len() - 1) as f64,
-            ),
+            ((without_factor - residual).max(0.0), (groups.len() - 1) as f64),
             error,
             None,
         )?,

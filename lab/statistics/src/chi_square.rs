@@ -34,9 +34,7 @@ pub fn contingency<R: AsRef<[u32]>>(table: &[R]) -> Result<ChiSquare> {
     let of_column = |column: usize| sum(&mut table.iter().map(|row| row.as_ref()[column]));
     let of_columns: Vec<f64> = (0..columns).map(of_column).collect();
     if of_rows.iter().chain(&of_columns).any(|&sum| sum == 0.0) {
-        return Err(StatisticsError::NoVariation {
-            what: "a row or a column that has no counts",
-        });
+        return Err(StatisticsError::NoVariation { what: "a row or a column that has no counts" });
     }
     let total: f64 = of_rows.iter().sum();
     let cells = table.iter().zip(&of_rows).flat_map(|(row, of_row)| {
@@ -63,9 +61,7 @@ pub fn goodness_of_fit(observed: &[u32], proportions: &[f64]) -> Result<ChiSquar
     check_row("proportions", 0, proportions)?;
     let smallest = proportions.iter().copied().fold(f64::MAX, f64::min);
     // Of a smaller one the statistic can be beyond the largest number.
-    checked("smallest proportion", smallest, "at least 1e-100", |p| {
-        p >= 1e-100
-    })?;
+    checked("smallest proportion", smallest, "at least 1e-100", |p| p >= 1e-100)?;
     let total: f64 = observed.iter().copied().map(f64::from).sum();
     at_least("counts", total as usize, 1)?;
     let parts: f64 = proportions.iter().sum();
@@ -83,11 +79,6 @@ impl ChiSquare {
                 let term = (observed - expected) * (observed - expected) / expected;
                 (sum + term, expected.min(smallest))
             });
-        Ok(Self {
-            statistic,
-            df,
-            p: chi_square_tail(statistic, df)?,
-            smallest_expected,
-        })
+        Ok(Self { statistic, df, p: chi_square_tail(statistic, df)?, smallest_expected })
     }
 }

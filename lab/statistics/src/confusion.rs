@@ -32,15 +32,9 @@ impl ConfusionMatrix {
         at_least("labels", labels.len(), 2)?;
         let mut numbered = labels.iter().enumerate();
         if let Some((_, label)) = numbered.find(|(i, label)| labels[..*i].contains(label)) {
-            return Err(StatisticsError::Label {
-                label: label.clone(),
-                why: "is there twice",
-            });
+            return Err(StatisticsError::Label { label: label.clone(), why: "is there twice" });
         }
-        Ok(Self {
-            counts: vec![0; labels.len() * labels.len()],
-            labels,
-        })
+        Ok(Self { counts: vec![0; labels.len() * labels.len()], labels })
     }
 
     /// The labels, in the order of rows and columns.
@@ -120,9 +114,8 @@ impl ConfusionMatrix {
         at_least("answers", total as usize, 1)?;
         let total = f64::from(total);
         let presented: Vec<u32> = self.rows().map(|row| row.iter().sum()).collect();
-        let answered: Vec<u32> = (0..size)
-            .map(|column| self.rows().map(|row| row[column]).sum())
-            .collect();
+        let answered: Vec<u32> =
+            (0..size).map(|column| self.rows().map(|row| row[column]).sum()).collect();
         let cells = self.counts.iter().enumerate().filter(|&(_, &n)| n > 0);
         let observed_bits: f64 = cells
             .map(|(cell, &n)| {

@@ -26,19 +26,13 @@ pub fn pearson(x: &[f64], y: &[f64]) -> Result<Correlation> {
     at_least("pairs", x.len(), 3)?;
     let (of_x, of_y) = (sum_of_squares(x), sum_of_squares(y));
     if !varies(of_x, x.iter().copied()) || !varies(of_y, y.iter().copied()) {
-        return Err(StatisticsError::NoVariation {
-            what: "one of the two variables",
-        });
+        return Err(StatisticsError::NoVariation { what: "one of the two variables" });
     }
     let (mean_x, mean_y) = (mean_of(x), mean_of(y));
     let products = x.iter().zip(y).map(|(x, y)| (x - mean_x) * (y - mean_y));
     // Rounding may exceed 1 in the last bit.
     let r = (products.sum::<f64>() / (of_x.sqrt() * of_y.sqrt())).clamp(-1.0, 1.0);
-    Ok(Correlation {
-        r,
-        pairs: x.len(),
-        p: correlation_tail(r, x.len())?,
-    })
+    Ok(Correlation { r, pairs: x.len(), p: correlation_tail(r, x.len())? })
 }
 
 impl Correlation {
@@ -52,9 +46,6 @@ impl Correlation {
         let z = normal_quantile(0.5 + 0.5 * confidence)?;
         let half = z / ((self.pairs - 3) as f64).sqrt();
         let transformed = self.r.atanh();
-        Ok(Interval {
-            low: (transformed - half).tanh(),
-            high: (transformed + half).tanh(),
-        })
+        Ok(Interval { low: (transformed - half).tanh(), high: (transformed + half).tanh() })
     }
 }

@@ -65,11 +65,7 @@ pub fn f_tail(f: f64, effect_df: f64, error_df: f64) -> Result<f64> {
 /// # Errors
 /// `t` is no number, or degrees of freedom are not above 0 and up to 1e5.
 pub fn t_tail(t: f64, df: f64) -> Result<f64> {
-    f_tail(
-        checked("t", t, "a number", |t| !t.is_nan())?.powi(2),
-        1.0,
-        df,
-    )
+    f_tail(checked("t", t, "a number", |t| !t.is_nan())?.powi(2), 1.0, df)
 }
 
 /// `t` that is exceeded, with either sign, with a probability.
@@ -117,9 +113,7 @@ pub fn chi_square_tail(chi_square: f64, df: f64) -> Result<f64> {
 /// # Errors
 /// A chance that is not from 0 to 1.
 pub fn binomial_tail(total: u32, least: u32, chance: f64) -> Result<f64> {
-    let chance = checked("chance", chance, "from 0 to 1", |c| {
-        (0.0..=1.0).contains(&c)
-    })?;
+    let chance = checked("chance", chance, "from 0 to 1", |c| (0.0..=1.0).contains(&c))?;
     Ok(if least == 0 {
         1.0
     } else if least > total {
@@ -135,7 +129,5 @@ fn not_negative(what: &'static str, value: f64) -> Result<f64> {
 
 pub(crate) fn degrees(df: f64) -> Result<f64> {
     // The fraction of the incomplete beta function is cut after 140 terms, which do not suffice far above.
-    checked("degrees of freedom", df, "above 0, up to 1e5", |df| {
-        df > 0.0 && df <= 1e5
-    })
+    checked("degrees of freedom", df, "above 0, up to 1e5", |df| df > 0.0 && df <= 1e5)
 }

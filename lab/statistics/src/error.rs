@@ -85,19 +85,13 @@ pub(crate) fn checked(
     if is_allowed(value) {
         Ok(value)
     } else {
-        Err(StatisticsError::OutOfRange {
-            what,
-            value,
-            allowed,
-        })
+        Err(StatisticsError::OutOfRange { what, value, allowed })
     }
 }
 
 /// A probability between 0 and 1, both excluded.
 pub(crate) fn inner_probability(what: &'static str, value: f64) -> Result<f64> {
-    checked(what, value, "between 0 and 1, both excluded", |p| {
-        p > 0.0 && p < 1.0
-    })
+    checked(what, value, "between 0 and 1, both excluded", |p| p > 0.0 && p < 1.0)
 }
 
 /// A finite number whose square is one, too.

@@ -37,9 +37,7 @@ pub fn fit_exponential(t: &[f64], y: &[f64]) -> Result<ExponentialFit> {
     checked("earliest time", first, "0 or more", |t| t >= 0.0)?;
     let total = sum_of_squares(y);
     if last <= first || !varies(total, y.iter().copied()) {
-        return Err(StatisticsError::NoVariation {
-            what: "the time or the fitted quantity",
-        });
+        return Err(StatisticsError::NoVariation { what: "the time or the fitted quantity" });
     }
     let line = |ln_tau: f64| Line::fit(t, y, first, ln_tau.exp());
     let low = (0.2 * (last - first) / (t.len() - 1) as f64).ln();
@@ -54,9 +52,7 @@ pub fn fit_exponential(t: &[f64], y: &[f64]) -> Result<ExponentialFit> {
             best = (i, residual);
         }
     }
-    let undetermined = StatisticsError::NotDetermined {
-        what: "the time constant",
-    };
+    let undetermined = StatisticsError::NotDetermined { what: "the time constant" };
     if best.0 == 0.0 || best.0 == steps {
         return Err(undetermined);
     }

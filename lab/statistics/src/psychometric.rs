@@ -130,11 +130,7 @@ impl Model {
             line,
             covariance: [bb / determinant, aa / determinant, -ab / determinant],
         };
-        if fit.location.is_finite() && fit.slope.is_finite() {
-            Ok(fit)
-        } else {
-            Err(undetermined)
-        }
+        if fit.location.is_finite() && fit.slope.is_finite() { Ok(fit) } else { Err(undetermined) }
     }
 
     /// As [`fit`](Self::fit), with the lapse rate from 0 to `lapse_max` that makes the answers most likely, to 1e-9; the
@@ -152,9 +148,7 @@ impl Model {
         };
         let inner = golden_section(unlikely, 0.0, lapse_max);
         let candidates = [0.0, inner, lapse_max];
-        let best = candidates
-            .into_iter()
-            .min_by(|a, b| unlikely(*a).total_cmp(&unlikely(*b)));
+        let best = candidates.into_iter().min_by(|a, b| unlikely(*a).total_cmp(&unlikely(*b)));
         with(best.unwrap_or(inner)).fit(levels)
     }
 
@@ -162,12 +156,9 @@ impl Model {
         checked("guess rate", self.guess, "from 0 to below 1", |guess| {
             (0.0..1.0).contains(&guess)
         })?;
-        checked(
-            "lapse rate",
-            self.lapse,
-            "from 0, and below 1 with the guess rate",
-            |lapse| lapse >= 0.0 && lapse + self.guess < 1.0,
-        )?;
+        checked("lapse rate", self.lapse, "from 0, and below 1 with the guess rate", |lapse| {
+            lapse >= 0.0 && lapse + self.guess < 1.0
+        })?;
         Ok(())
     }
 
@@ -196,12 +187,7 @@ impl Model {
         for point in &mut of_levels {
             point.0 = (point.0 - centre) / spread;
         }
-        let line = Line {
-            centre,
-            spread,
-            intercept: 0.0,
-            slope: 1.0,
-        };
+        let line = Line { centre, spread, intercept: 0.0, slope: 1.0 };
         Ok((line, of_levels))
     }
 
@@ -209,11 +195,7 @@ impl Model {
     fn maximise(&self, start: Line, points: &[Point]) -> Result<Line> {
         const ITERATIONS_MAX: u32 = 500;
         const HALVINGS_MAX: u32 = 40;
-        let with = |intercept, slope| Line {
-            intercept,
-            slope,
-            ..start
-        };
+        let with = |intercept, slope| Line { intercept, slope, ..start };
         let slopes = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
         // Locations from two spreads below the mean of the levels to two above it.
         let locations = (-8..=8).map(|i| 0.25 * f64::from(i));
@@ -266,11 +248,7 @@ impl Model {
             }
             Shape::CumulativeNormal => (normal_cdf(z), normal_cdf(-z), normal_density(z)),
         };
-        (
-            self.guess + rise * below,
-            self.lapse + rise * above,
-            rise * density,
-        )
+        (self.guess + rise * below, self.lapse + rise * above, rise * density)
     }
 
     fn log_likelihood(&self, line: &Line, points: &[Point]) -> f64 {
@@ -344,14 +322,9 @@ impl Fit {
             Shape::CumulativeNormal => of_u,
         };
         if level.is_finite() && standard_error.is_finite() {
-            Ok(Threshold {
-                level,
-                standard_error,
-            })
+            Ok(Threshold { level, standard_error })
         } else {
-            Err(StatisticsError::NotDetermined {
-                what: "the threshold",
-            })
+            Err(StatisticsError::NotDetermined { what: "the threshold" })
         }
     }
 
@@ -383,10 +356,7 @@ impl Fit {
                 level.answers = Proportion::new(correct as u32, total)?;
             }
             let fit = self.model.fit(&drawn);
-            thresholds.extend(
-                fit.and_then(|fit| fit.threshold(proportion))
-                    .map(|t| t.level),
-            );
+            thresholds.extend(fit.and_then(|fit| fit.threshold(proportion)).map(|t| t.level));
         }
         let failed = samples - thresholds.len();
         if failed * 10 > samples {
@@ -439,11 +409,7 @@ impl Line {
 
 /// `n ln p`, 0 without answers.
 fn term(count: f64, probability: f64) -> f64 {
-    if count == 0.0 {
-        0.0
-    } else {
-        count * probability.ln()
-    }
+    if count == 0.0 { 0.0 } else { count * probability.ln() }
 }
 
 /// Quantile of sorted values, with linear interpolation.

@@ -31,9 +31,5 @@ pub fn through_origin(x: &[f64], y: &[f64]) -> Result<ThroughOrigin> {
     let slope = x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>() / squares;
     let residuals = x.iter().zip(y).map(|(x, y)| (y - slope * x).powi(2));
     let residual_sd = (residuals.sum::<f64>() / (x.len() - 1) as f64).sqrt();
-    Ok(ThroughOrigin {
-        slope,
-        standard_error: residual_sd / squares.sqrt(),
-        residual_sd,
-    })
+    Ok(ThroughOrigin { slope, standard_error: residual_sd / squares.sqrt(), residual_sd })
 }

@@ -79,12 +79,7 @@ pub(crate) fn check_equal_lengths<T, R: AsRef<[T]>>(what: &'static str, rows: &[
     for (row, values) in rows.iter().enumerate() {
         let count = values.as_ref().len();
         if count != expected {
-            return Err(StatisticsError::Unbalanced {
-                what,
-                row,
-                count,
-                expected,
-            });
+            return Err(StatisticsError::Unbalanced { what, row, count, expected });
         }
     }
     Ok(())

@@ -19,12 +19,7 @@ const LARGEST: f64 = 12.0;
 /// Fewer than 2 or more than 100 alternatives, or a proportion that is not from 0 to 1.
 pub fn d_prime(alternatives: u32, proportion: f64) -> Result<f64> {
     check_alternatives(alternatives)?;
-    Ok(bisect(
-        |d| correct(alternatives, d),
-        check_proportion(proportion)?,
-        -LARGEST,
-        LARGEST,
-    ))
+    Ok(bisect(|d| correct(alternatives, d), check_proportion(proportion)?, -LARGEST, LARGEST))
 }
 
 /// Proportion correct at `d'` with a number of alternatives, from 0 to 1. Error below 1e-14.
@@ -95,19 +90,11 @@ fn correct_oddity(d: f64) -> f64 {
 
 fn check_alternatives(alternatives: u32) -> Result<()> {
     let allowed = |_| (2..=100).contains(&alternatives);
-    checked(
-        "alternatives",
-        f64::from(alternatives),
-        "from 2 to 100",
-        allowed,
-    )
-    .map(|_| ())
+    checked("alternatives", f64::from(alternatives), "from 2 to 100", allowed).map(|_| ())
 }
 
 fn check_proportion(proportion: f64) -> Result<f64> {
-    checked("proportion", proportion, "from 0 to 1", |p| {
-        (0.0..=1.0).contains(&p)
-    })
+    checked("proportion", proportion, "from 0 to 1", |p| (0.0..=1.0).contains(&p))
 }
 
 fn check_d_prime(d_prime: f64) -> Result<f64> {

@@ -53,33 +53,20 @@ impl Staircase {
     /// or no reversals to average, or more than the staircase has after the coarse ones.
     pub fn new(rule: StaircaseRule) -> Result<Self> {
         checked("least level", rule.least, "positive", |least| least > 0.0)?;
-        checked(
-            "largest level",
-            rule.most,
-            "finite, and at least the least",
-            |most| most.is_finite() && most >= rule.least,
-        )?;
-        checked(
-            "first level",
-            rule.start,
-            "between the least and the largest",
-            |start| (rule.least..=rule.most).contains(&start),
-        )?;
-        for (what, factor) in [
-            ("factor", rule.factor),
-            ("coarse factor", rule.coarse_factor),
-        ] {
+        checked("largest level", rule.most, "finite, and at least the least", |most| {
+            most.is_finite() && most >= rule.least
+        })?;
+        checked("first level", rule.start, "between the least and the largest", |start| {
+            (rule.least..=rule.most).contains(&start)
+        })?;
+        for (what, factor) in [("factor", rule.factor), ("coarse factor", rule.coarse_factor)] {
             checked(what, factor, "finite and above 1", |factor| {
                 factor > 1.0 && factor.is_finite()
             })?;
         }
         let to_fall = f64::from(rule.correct_to_fall);
-        checked("correct answers to fall", to_fall, "at least 1", |n| {
-            n >= 1.0
-        })?;
-        checked("trials", f64::from(rule.trials_max), "at least 1", |n| {
-            n >= 1.0
-        })?;
+        checked("correct answers to fall", to_fall, "at least 1", |n| n >= 1.0)?;
+        checked("trials", f64::from(rule.trials_max), "at least 1", |n| n >= 1.0)?;
         let fine = rule.reversals.saturating_sub(rule.coarse_reversals);
         let allowed = "from 1 to the reversals less the coarse ones";
         checked("averaged reversals", rule.averaged as f64, allowed, |_| {

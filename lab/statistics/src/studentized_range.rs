@@ -21,9 +21,7 @@ pub fn studentized_range_tail(q: f64, means: u32, df: f64) -> Result<f64> {
         (2..=MEANS_MAX).contains(&means)
     })?;
     // With fewer than 1 the density has no end.
-    let df = checked("degrees of freedom", degrees(df)?, "1 or more", |df| {
-        df >= 1.0
-    })?;
+    let df = checked("degrees of freedom", degrees(df)?, "1 or more", |df| df >= 1.0)?;
     if q == 0.0 || q.is_infinite() {
         return Ok(if q == 0.0 { 1.0 } else { 0.0 });
     }

@@ -37,13 +37,7 @@ pub fn one_sample(values: &[f64], expected: f64) -> Result<TTest> {
     let difference = mean_of(values) - expected;
     let standard_error = (squares / df / count).sqrt();
     let t = difference / standard_error;
-    Ok(TTest {
-        difference,
-        standard_error,
-        t,
-        df,
-        p: t_tail(t, df)?,
-    })
+    Ok(TTest { difference, standard_error, t, df, p: t_tail(t, df)? })
 }
 
 /// Whether two observations of each subject differ, first less second.
@@ -56,13 +50,8 @@ pub fn paired(first: &[f64], second: &[f64]) -> Result<TTest> {
     at_least("pairs", first.len(), 2)?;
     let differences: Vec<f64> = first.iter().zip(second).map(|(a, b)| a - b).collect();
     // Rounding of the differences is that of the observations.
-    if !varies(
-        sum_of_squares(&differences),
-        first.iter().chain(second).copied(),
-    ) {
-        return Err(StatisticsError::NoVariation {
-            what: "the difference of the pairs",
-        });
+    if !varies(sum_of_squares(&differences), first.iter().chain(second).copied()) {
+        return Err(StatisticsError::NoVariation { what: "the difference of the pairs" });
     }
     one_sample(&differences, 0.0)
 }
@@ -75,9 +64,6 @@ impl TTest {
     pub fn interval(&self, confidence: f64) -> Result<Interval> {
         let confidence = inner_probability("confidence", confidence)?;
         let half = t_quantile(1.0 - confidence, self.df)? * self.standard_error;
-        Ok(Interval {
-            low: self.difference - half,
-            high: self.difference + half,
-        })
+        Ok(Interval { low: self.difference - half, high: self.difference + half })
     }
 }

@@ -52,12 +52,7 @@ pub fn tukey_groups<R: AsRef<[f64]>>(groups: &[R]) -> Result<Tukey> {
     let analysis = one_way(groups)?;
     let sizes: Vec<usize> = groups.iter().map(|group| group.as_ref().len()).collect();
     let error = analysis.effect;
-    tukey_of(
-        &analysis.means,
-        &sizes,
-        error.mean_square_error(),
-        error.error_df,
-    )
+    tukey_of(&analysis.means, &sizes, error.mean_square_error(), error.error_df)
 }
 
 fn tukey_of(
@@ -68,17 +63,10 @@ fn tukey_of(
 ) -> Result<Tukey> {
     at_least("means", means.len(), 2)?;
     check_row("means", 0, means)?;
-    at_least(
-        "observations of a mean",
-        sizes.iter().copied().min().unwrap_or(0),
-        1,
-    )?;
-    checked(
-        "mean square of the error",
-        mean_square_error,
-        "positive and finite",
-        |ms| ms > 0.0 && ms.is_finite(),
-    )?;
+    at_least("observations of a mean", sizes.iter().copied().min().unwrap_or(0), 1)?;
+    checked("mean square of the error", mean_square_error, "positive and finite", |ms| {
+        ms > 0.0 && ms.is_finite()
+    })?;
     let df = degrees(error_df)?;
     let count = u32::try_from(means.len()).unwrap_or(u32::MAX);
     let pair = |first: usize, second: usize| {
@@ -96,11 +84,7 @@ fn tukey_of(
         })
     };
     let pairs = (0..means.len()).flat_map(|i| (i + 1..means.len()).map(move |j| (i, j)));
-    Ok(Tukey {
-        pairs: pairs.map(|(i, j)| pair(i, j)).collect::<Result<_>>()?,
-        means: count,
-        df,
-    })
+    Ok(Tukey { pairs: pairs.map(|(i, j)| pair(i, j)).collect::<Result<_>>()?, means: count, df })
 }
 
 impl Tukey {
@@ -113,10 +97,7 @@ impl Tukey {
         let q = studentized_range_quantile(1.0 - confidence, self.means, self.df)?;
         let of_pair = |pair: &Pair| {
             let half = q * pair.standard_error;
-            Interval {
-                low: pair.difference - half,
-                high: pair.difference + half,
-            }
+            Interval { low: pair.difference - half, high: pair.difference + half }
         };
         Ok(self.pairs.iter().map(of_pair).collect())
     }

@@ -16,86 +16,30 @@ const TOLERANCES: [Option<u64>; 3] = [None, Some(3), Some(4)];
 
 /// Broken board, the stage in which it must be found, and words of a finding that names what is broken.
 const FOUND: &[(&str, &str, &[&str])] = &[
-    (
-        "swapped-wires",
-        "sensors",
-        &["sink", "room", "swapped", "PA4"],
-    ),
+    ("swapped-wires", "sensors", &["sink", "room", "swapped", "PA4"]),
     ("ladder-resistor", "rails", &["R1 (3.4 kΩ)", "ladder"]),
-    (
-        "divider-resistor",
-        "sensors",
-        &["sink", "as of a pull-up of 1", "R1 (10 kΩ 0.1 %"],
-    ),
+    ("divider-resistor", "sensors", &["sink", "as of a pull-up of 1", "R1 (10 kΩ 0.1 %"]),
     ("missing-pull-down", "bare-board", &["pull-down R3", "PB10"]),
-    (
-        "dead-comparator",
-        "latch",
-        &["comparator does not cut", "hot side X3"],
-    ),
-    (
-        "dead-cold-side",
-        "latch",
-        &["comparator does not cut", "cold side X4"],
-    ),
-    (
-        "side-stuck",
-        "latch",
-        &["PB2 (CN10-22)", "low", "destroyed"],
-    ),
-    (
-        "latch-not-set",
-        "supply",
-        &["latch X6", "not set at power-on"],
-    ),
-    (
-        "reset-not-latched",
-        "latch",
-        &["reset does not cut the bridge supply", "NRST"],
-    ),
-    (
-        "shorted-switch",
-        "supply",
-        &["high-side switch M1", "shorted"],
-    ),
-    (
-        "open-switch",
-        "latch",
-        &["does not come back", "high-side switch M1"],
-    ),
+    ("dead-comparator", "latch", &["comparator does not cut", "hot side X3"]),
+    ("dead-cold-side", "latch", &["comparator does not cut", "cold side X4"]),
+    ("side-stuck", "latch", &["PB2 (CN10-22)", "low", "destroyed"]),
+    ("latch-not-set", "supply", &["latch X6", "not set at power-on"]),
+    ("reset-not-latched", "latch", &["reset does not cut the bridge supply", "NRST"]),
+    ("shorted-switch", "supply", &["high-side switch M1", "shorted"]),
+    ("open-switch", "latch", &["does not come back", "high-side switch M1"]),
     ("missing-bleeder", "latch", &["bleeder R7"]),
     ("wrong-inductors", "load", &["inductors L1, L2 (4.7 µH"]),
-    (
-        "reversed-tile",
-        "tile",
-        &["tile's wires P and N are swapped"],
-    ),
+    ("reversed-tile", "tile", &["tile's wires P and N are swapped"]),
     ("brown-out-not-set", "chip", &["BOR_LEV"]),
-    (
-        "mirror-without-rc",
-        "load",
-        &["current measurement has no filter", "68 nF"],
-    ),
-    (
-        "other-thermistor",
-        "tile",
-        &["second display thermistor", "another type", "beta"],
-    ),
-    (
-        "stop-bypassed",
-        "bare-board",
-        &["emergency stop does not open", "S1"],
-    ),
+    ("mirror-without-rc", "load", &["current measurement has no filter", "68 nF"]),
+    ("other-thermistor", "tile", &["second display thermistor", "another type", "beta"]),
+    ("stop-bypassed", "bare-board", &["emergency stop does not open", "S1"]),
     ("stop-sense-open", "supply", &["second contact S2", "PC13"]),
     ("no-usb-clock", "chip", &["8 MHz", "SB50"]),
     ("force-wires-swapped", "sensors", &["load cell are swapped"]),
     ("sense-resistors", "load", &["sense resistors R5, R6 (5 mΩ"]),
     ("lossy-line", "line", &["serial line loses lines"]),
-    (
-        "plate-not-bonded",
-        "bare-board",
-        &["plate is not bonded", "R1 (1 kΩ"],
-    ),
+    ("plate-not-bonded", "bare-board", &["plate is not bonded", "R1 (1 kΩ"]),
 ];
 
 /// Stages in which the bridge drives a current.
@@ -150,10 +94,7 @@ fn each_broken_board_is_found_in_its_stage_and_named() {
             let report = brought_up(board(name, *seed), Report::default(), None);
             assert!(!report.passed(), "{name}");
             let findings = report.findings();
-            let first = report
-                .records
-                .iter()
-                .find(|record| record.verdict == Verdict::Failed);
+            let first = report.records.iter().find(|record| record.verdict == Verdict::Failed);
             assert_eq!(
                 first.map(|record| record.stage.as_str()),
                 Some(*stage),
@@ -161,10 +102,7 @@ fn each_broken_board_is_found_in_its_stage_and_named() {
             );
             let is_named = |finding: &&str| words.iter().all(|word| finding.contains(word));
             assert!(findings.iter().any(is_named), "{name}: {findings:#?}");
-            assert_eq!(
-                report.resume.map(|resume| resume.stage).as_deref(),
-                Some(*stage)
-            );
+            assert_eq!(report.resume.map(|resume| resume.stage).as_deref(), Some(*stage));
         }
     }
 }
@@ -173,10 +111,7 @@ fn each_broken_board_is_found_in_its_stage_and_named() {
 fn no_stage_with_a_current_is_started_with_a_failed_comparator() {
     for name in WITHOUT_COMPARATOR {
         let report = brought_up(board(name, None), Report::default(), None);
-        let driven = report
-            .records
-            .iter()
-            .find(|record| DRIVEN.contains(&record.stage.as_str()));
+        let driven = report.records.iter().find(|record| DRIVEN.contains(&record.stage.as_str()));
         assert!(driven.is_none(), "{name}: {driven:?}");
     }
 }
@@ -185,9 +120,7 @@ fn no_stage_with_a_current_is_started_with_a_failed_comparator() {
 fn the_document_lists_every_broken_board_with_its_stage() {
     let document = include_str!("../../../docs/bring-up.md");
     for (name, stage, _) in FOUND {
-        let row = document
-            .lines()
-            .find(|line| line.starts_with(&format!("| `{name}` |")));
+        let row = document.lines().find(|line| line.starts_with(&format!("| `{name}` |")));
         let row = row.unwrap_or_else(|| panic!("no row of {name}"));
         assert!(row.ends_with(&format!("| `{stage}` |")), "{row}");
     }

@@ -27,10 +27,7 @@ fn ending_while_the_display_is_driven_switches_the_bridge_off() {
 #[test]
 fn an_ended_bring_up_goes_on_at_its_stage_and_can_pass() {
     let mut report = typed(Some(End::Task("load"))).report;
-    assert_eq!(
-        report.resume.as_ref().map(|resume| resume.stage.as_str()),
-        Some("load")
-    );
+    assert_eq!(report.resume.as_ref().map(|resume| resume.stage.as_str()), Some("load"));
     assert!(!report.passed());
     let from = stage("load");
     report.keep_before(from, None).expect("the same image");
@@ -94,9 +91,7 @@ fn gone_on_with(seed: u64, mut report: Report, from: &str) -> Result<Report, Str
     let mut client = Client::new(SimulatedBoard::new(&mut engine, bench));
     let mut hands = EmulatedBench { watch: &mut |_| () };
     let mut saved = 0;
-    let ended = bring_up(&mut client, &mut hands, report, Some(from), &mut |_| {
-        saved += 1
-    });
+    let ended = bring_up(&mut client, &mut hands, report, Some(from), &mut |_| saved += 1);
     assert_eq!(ended.is_err(), saved == 0, "the earlier results are kept");
     ended.map_err(|refusal| refusal.to_string())
 }
@@ -123,10 +118,7 @@ fn results_of_another_microcontroller_are_not_continued() {
 /// Results of firmware that does not report the identifier may be those of any board.
 #[test]
 fn results_of_an_unknown_microcontroller_are_not_continued() {
-    let unknown = Report {
-        chip: None,
-        ..ended_at_load()
-    };
+    let unknown = Report { chip: None, ..ended_at_load() };
     let refusal = gone_on_with(5, unknown, "load").expect_err("another one");
     assert!(refusal.contains("microcontroller not known,"), "{refusal}");
 }

@@ -57,10 +57,7 @@ fn an_emulated_board_understands_every_line_and_every_point() {
 fn lines_of_the_bench_are_refused_with_what_is_allowed() {
     for (line, part) in [
         ("meter volt 6v", "known: ohm plate, "),
-        (
-            "fit resistor nose 10",
-            "known: display check sink skin room",
-        ),
+        ("fit resistor nose 10", "known: display check sink skin room"),
         ("fit resistor sink -1", "'-1' ohm; allowed is 0 to 1000000"),
         ("fit load 0", "'0' ohm; allowed is 0.5 to 100"),
         ("press nothing", "known: stop, reset"),
@@ -75,14 +72,7 @@ fn lines_of_the_bench_are_refused_with_what_is_allowed() {
 #[test]
 fn every_check_has_words_for_its_finding() {
     for check in checks() {
-        let Check {
-            name,
-            low,
-            high,
-            basis,
-            expected,
-            ..
-        } = check;
+        let Check { name, low, high, basis, expected, .. } = check;
         assert!(!basis.is_empty(), "{name}");
         match expected {
             Expected::Range(least, most, _) => {
@@ -110,11 +100,7 @@ fn nominal_values_are_those_of_the_netlists() {
         ("nfault-pull-up", n.nfault_ohm, param("r_fault")),
         ("fuse", n.fuse_ohm, param("r_fuse")),
         ("stop-released", n.stop_ohm, param("r_stop_contact")),
-        (
-            "bridge-supply-to-ground",
-            n.sense_ohm,
-            param("r_vbr_top") + param("r_vbr_bottom"),
-        ),
+        ("bridge-supply-to-ground", n.sense_ohm, param("r_vbr_top") + param("r_vbr_bottom")),
     ] {
         assert_eq!(ohm, value, "{check}");
         let found = checks().find(|known| known.name == check).expect(check);

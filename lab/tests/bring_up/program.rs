@@ -100,40 +100,22 @@ fn a_person_begins_without_a_device_and_ends_with_abort() {
     let folder = folder("bring-up-abort");
     let out = folder.to_str().expect("a path");
     // Everything is off, the first reading has the wrong unit, then the person ends.
-    let output = run(
-        &["--port", "/nowhere/at/all", "--out", out],
-        "\n1 V\n1 kohm\nabort\n",
-    );
+    let output = run(&["--port", "/nowhere/at/all", "--out", out], "\n1 V\n1 kohm\nabort\n");
     assert_eq!(output.status.code(), Some(1));
     let (shown, result) = (text(&output.stderr), text(&output.stdout));
-    assert!(
-        shown.contains("'1 V' has the unit 'V'; needed is Ω"),
-        "{shown}"
-    );
+    assert!(shown.contains("'1 V' has the unit 'V'; needed is Ω"), "{shown}");
     assert!(shown.contains("ok      touched plate"), "{shown}");
-    assert_eq!(
-        result,
-        "not finished: ended by the person; go on with --from bare-board\n"
-    );
+    assert_eq!(result, "not finished: ended by the person; go on with --from bare-board\n");
     assert!(folder.join("bring-up.json").exists());
 }
 
 #[test]
 fn wrong_arguments_are_answered_with_what_is_allowed() {
     for (arguments, part) in [
-        (
-            &["--simulated", "--from", "nowhere"][..],
-            "known: bare-board, rails",
-        ),
-        (
-            &["--simulated", "--board", "cat"],
-            "known: sound swapped-wires",
-        ),
+        (&["--simulated", "--from", "nowhere"][..], "known: bare-board, rails"),
+        (&["--simulated", "--board", "cat"], "known: sound swapped-wires"),
         (&["--board", "sound"], "--board is for --simulated only"),
-        (
-            &["--surroundings", "127.0.0.1:1"],
-            "--surroundings is for --tcp only",
-        ),
+        (&["--surroundings", "127.0.0.1:1"], "--surroundings is for --tcp only"),
         (&[], "which device? --port NAME"),
     ] {
         let output = run(arguments, "");

@@ -48,20 +48,14 @@ fn typed(text: &'static str) -> (Result<f64, BenchError>, String) {
 fn an_expected_value_is_taken_at_once() {
     let (value, screen) = typed("4.68 kohm\n");
     assert_eq!(value, Ok(4680.0));
-    assert!(
-        screen.contains("bridge enable, PB10 (D6): ohm meter to ground"),
-        "{screen}"
-    );
+    assert!(screen.contains("bridge enable, PB10 (D6): ohm meter to ground"), "{screen}");
 }
 
 #[test]
 fn a_wrong_unit_and_no_number_are_asked_for_again() {
     let (value, screen) = typed("4.68 V\nhigh\n\n4.68k\n");
     assert_eq!(value, Ok(4680.0));
-    assert!(
-        screen.contains("'4.68 V' has the unit 'V'; needed is Ω"),
-        "{screen}"
-    );
+    assert!(screen.contains("'4.68 V' has the unit 'V'; needed is Ω"), "{screen}");
     assert!(screen.contains("'high' is no number"), "{screen}");
 }
 
@@ -82,10 +76,7 @@ fn an_unexpected_value_counts_if_it_is_typed_again() {
 fn a_question_mark_says_what_is_expected_and_why() {
     let (value, screen) = typed("?\n4.7k\n");
     assert_eq!(value, Ok(4700.0));
-    assert!(
-        screen.contains("expected: 4.465 kΩ to 4.935 kΩ (4.7 kΩ, 1 %)"),
-        "{screen}"
-    );
+    assert!(screen.contains("expected: 4.465 kΩ to 4.935 kΩ (4.7 kΩ, 1 %)"), "{screen}");
 }
 
 #[test]

@@ -163,11 +163,7 @@ pub struct Typed {
 pub fn typed(end: Option<End>) -> Typed {
     let (keys, lines) = mpsc::channel();
     let (answer, shown) = <(Rc<RefCell<String>>, Rc<RefCell<String>>)>::default();
-    let mut screen = Screen {
-        answer: Rc::clone(&answer),
-        keys,
-        shown: Rc::clone(&shown),
-    };
+    let mut screen = Screen { answer: Rc::clone(&answer), keys, shown: Rc::clone(&shown) };
     let mut typist = Typist {
         terminal: Terminal::new(BenchOperator::new(None, lines, &mut screen)),
         hands: EmulatedBench { watch: &mut |_| () },

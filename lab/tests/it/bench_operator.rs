@@ -126,13 +126,8 @@ fn commissioned(
     }
     let (keys, lines) = mpsc::channel();
     let shown = Rc::new(RefCell::new(String::new()));
-    let mut screen = Screen {
-        text: String::new(),
-        keys,
-        shown: Rc::clone(&shown),
-        slips,
-        questions: 0,
-    };
+    let mut screen =
+        Screen { text: String::new(), keys, shown: Rc::clone(&shown), slips, questions: 0 };
     let mut bench = AtTheBench {
         person: BenchOperator::new(None, lines, &mut screen),
         surroundings: SimulatedSurroundings::new(setup),
@@ -185,10 +180,7 @@ fn a_thermistor_whose_points_are_all_refused_is_named() {
     let setup = CommissioningSetup::new(&Params::nominal(), 24.0, 1);
     let mut engine = NativeEngine::new(setup.in_use().unwrap());
     let mut client = Client::new(SimulatedLink::new(&mut engine));
-    let mut bath = WrongBath {
-        surroundings: SimulatedSurroundings::new(&setup),
-        tries: 0,
-    };
+    let mut bath = WrongBath { surroundings: SimulatedSurroundings::new(&setup), tries: 0 };
     let error = commission(&mut client, None, &mut bath).unwrap_err();
     let CommissionError::FewPoints { sensor, points, .. } = &error else {
         panic!("{error}");
@@ -199,9 +191,7 @@ fn a_thermistor_whose_points_are_all_refused_is_named() {
 /// The numbers of a line of settings.
 fn numbers(line: &str) -> Vec<f64> {
     line.parse::<SettingsLine>().expect("a line of settings");
-    line.split(' ')
-        .filter_map(|word| word.parse().ok())
-        .collect()
+    line.split(' ').filter_map(|word| word.parse().ok()).collect()
 }
 
 #[test]
@@ -237,29 +227,18 @@ fn a_person_who_mistypes_is_asked_again_and_gets_the_operators_result() {
     assert_eq!(done.settings.len(), operators.len());
     for (one, other) in done.settings.iter().zip(&operators) {
         // Offsets, slopes and curvatures in K, K/K and 1/K; steps in counts; the tile in its units.
-        let bound = if one.starts_with("set correction") {
-            0.01
-        } else {
-            0.3
-        };
+        let bound = if one.starts_with("set correction") { 0.01 } else { 0.3 };
         for (a, b) in numbers(one).into_iter().zip(numbers(other)) {
             assert!((a - b).abs() < bound, "{one}\n{other}");
         }
     }
-    assert!(
-        done.points.iter().all(|point| point.worst_mk < 10.0),
-        "{:?}",
-        done.points
-    );
+    assert!(done.points.iter().all(|point| point.worst_mk < 10.0), "{:?}", done.points);
 }
 
 #[test]
 fn a_heat_flux_sensor_is_calibrated_by_a_person_with_a_phantom() {
     let mut params = Params {
-        flux: Some(FluxParams {
-            gain_error: 0.08,
-            ..FluxParams::NOMINAL
-        }),
+        flux: Some(FluxParams { gain_error: 0.08, ..FluxParams::NOMINAL }),
         ..Params::nominal()
     };
     let setup = CommissioningSetup::new(&params, 24.0, 1);
@@ -288,10 +267,7 @@ fn a_heat_flux_sensor_is_calibrated_by_a_person_with_a_phantom() {
     let setup = CommissioningSetup::new(&params, 24.0, 1);
     let (failed, screen) = commissioned(&setup, Vec::new());
     let error = failed.unwrap_err().to_string();
-    assert!(
-        error.contains("the gain is 0.50 of the designed one"),
-        "{error}"
-    );
+    assert!(error.contains("the gain is 0.50 of the designed one"), "{error}");
     let saved = screen.find("save what was found").unwrap();
     assert!(saved < screen.find("with a phantom").unwrap(), "{screen}");
 }
@@ -302,10 +278,7 @@ fn a_number_that_is_insisted_on_is_refused_by_the_device_and_asked_for_again() {
     let setup = CommissioningSetup::new(&Params::nominal(), 24.0, 1);
     let (done, screen) = commissioned(&setup, vec![(2, "38.5"), (3, "38.5")]);
     assert!(screen.contains("If 38.500 C is right"), "{screen}");
-    assert!(
-        screen.contains("display  not taken: the device reads 40."),
-        "{screen}"
-    );
+    assert!(screen.contains("display  not taken: the device reads 40."), "{screen}");
     assert!(done.is_ok());
 }
 
@@ -319,10 +292,7 @@ fn without_anybody_at_the_keys_the_procedure_ends_and_the_bridge_is_off() {
     let mut screen = Vec::new();
     let mut person = BenchOperator::new(None, lines, &mut screen);
     let error = commission(&mut client, None, &mut person).unwrap_err();
-    assert!(
-        error.to_string().contains("standard input has ended"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("standard input has ended"), "{error}");
     assert_eq!(client.ask(&QueryState).unwrap().state, StateName::Ready);
 }
 
@@ -339,11 +309,7 @@ fn an_interruption_at_any_moment_ends_the_procedure_with_the_bridge_off() {
         for _ in 0..readings {
             keys.send(Ok("40.0".to_owned())).unwrap();
         }
-        let mut screen = InterruptingScreen {
-            requested,
-            questions: 0,
-            allowed: readings,
-        };
+        let mut screen = InterruptingScreen { requested, questions: 0, allowed: readings };
         let mut person = BenchOperator::new(None, lines, &mut screen);
         let error = commission(&mut client, None, &mut person).unwrap_err();
         let interrupted = matches!(
@@ -355,10 +321,7 @@ fn an_interruption_at_any_moment_ends_the_procedure_with_the_bridge_off() {
         );
         assert!(interrupted, "{readings}: {error}");
         let state = client.ask(&QueryState).unwrap().state;
-        assert!(
-            matches!(state, StateName::Ready | StateName::Off),
-            "{readings}: {state:?}"
-        );
+        assert!(matches!(state, StateName::Ready | StateName::Off), "{readings}: {state:?}");
     }
 }
 

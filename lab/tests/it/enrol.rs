@@ -32,21 +32,13 @@ fn a_simulated_person_is_enrolled_and_restored() {
     assert!(done.status.success(), "{}", text(&done.stderr));
     assert!(text(&done.stdout).starts_with("P7 is enrolled from 2 contacts, in "));
     let shown = text(&done.stderr);
-    for said in [
-        "still air",
-        "Touch copper, with 1 to 3 N",
-        "Touch abs",
-        "2.00 N",
-    ] {
+    for said in ["still air", "Touch copper, with 1 to 3 N", "Touch abs", "2.00 N"] {
         assert!(shown.contains(said), "{said}: {shown}");
     }
     let written: toml::Table = fs::read_to_string(out).unwrap().parse().unwrap();
     assert_eq!(written["code"].as_str(), Some("P7"));
     let data = written["data"].as_str().unwrap();
-    assert!(
-        data.len() == 40 && data.bytes().all(|byte| byte.is_ascii_hexdigit()),
-        "{data}"
-    );
+    assert!(data.len() == 40 && data.bytes().all(|byte| byte.is_ascii_hexdigit()), "{data}");
     assert_eq!(written["display_surface"].as_str(), Some("36 1 0.138"));
 
     let restored = enrol(&[&simulated[..], &["--restore", out]].concat());
@@ -69,11 +61,7 @@ fn names_single_objects_and_devices_without_a_sensor_are_refused() {
     ] {
         let refused = enrol(&[words, &scene[..]].concat());
         assert_eq!(refused.status.code(), Some(status), "{words:?}");
-        assert!(
-            text(&refused.stderr).contains(why),
-            "{}",
-            text(&refused.stderr)
-        );
+        assert!(text(&refused.stderr).contains(why), "{}", text(&refused.stderr));
     }
 }
 

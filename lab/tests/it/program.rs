@@ -39,10 +39,7 @@ fn a_course_is_loaded_and_waits_for_the_landing() {
     let played = run(&format!("{play} --arm --repeats 3"));
     assert!(played.status.success(), "{}", text(&played.stderr));
     let played = json(&played.stdout);
-    assert_eq!(
-        (&played["points"], &played["at"]),
-        (&2.into(), &"landing".into())
-    );
+    assert_eq!((&played["points"], &played["at"]), (&2.into(), &"landing".into()));
     let refused = run(&play);
     assert_eq!(refused.status.code(), Some(1));
     assert!(
@@ -53,11 +50,7 @@ fn a_course_is_loaded_and_waits_for_the_landing() {
     std::fs::write(&path, "0,30\n2,99\n").unwrap();
     let wrong = run(&play);
     assert_eq!(wrong.status.code(), Some(2));
-    assert!(
-        text(&wrong.stderr).contains("course.csv:2: celsius 99"),
-        "{}",
-        text(&wrong.stderr)
-    );
+    assert!(text(&wrong.stderr).contains("course.csv:2: celsius 99"), "{}", text(&wrong.stderr));
 }
 
 #[test]
@@ -67,10 +60,8 @@ fn answers_are_printed_and_a_refusal_is_a_failure() {
     assert!(sent.status.success());
     let refused = run("send --simulated --json law start state");
     assert_eq!(refused.status.code(), Some(1));
-    let lines: Vec<Value> = text(&refused.stdout)
-        .lines()
-        .map(|line| serde_json::from_str(line).unwrap())
-        .collect();
+    let lines: Vec<Value> =
+        text(&refused.stdout).lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!(lines.len(), 2);
     assert_eq!(lines[1]["answer"], "err start needs arm first");
     assert_eq!(lines[1]["ok"], false);
@@ -84,12 +75,7 @@ fn lines_of_standard_input_are_sent() {
         .stdout(Stdio::piped())
         .spawn()
         .unwrap();
-    sender
-        .stdin
-        .take()
-        .unwrap()
-        .write_all(b"law\n\n  finger\n")
-        .unwrap();
+    sender.stdin.take().unwrap().write_all(b"law\n\n  finger\n").unwrap();
     let output = sender.wait_with_output().unwrap();
     assert_eq!(text(&output.stdout), "ok law=model\nok finger=mean\n");
 }
@@ -128,10 +114,7 @@ fn a_simulated_device_is_commissioned_as_by_the_simulated_operator() {
 #[test]
 fn wrong_arguments_say_what_is_allowed() {
     for (line, says) in [
-        (
-            "info",
-            "--port NAME (`thermal-lab ports` lists them), --tcp ADDR or --simulated",
-        ),
+        ("info", "--port NAME (`thermal-lab ports` lists them), --tcp ADDR or --simulated"),
         ("info --port /dev/no-such-port", "thermal-lab ports"),
         ("info --tcp 127.0.0.1:1", "--tcp 127.0.0.1:1"),
         ("info --simulated --tcp 127.0.0.1:1", "cannot be used with"),
@@ -142,11 +125,7 @@ fn wrong_arguments_say_what_is_allowed() {
     ] {
         let output = run(line);
         assert_eq!(output.status.code(), Some(2), "{line}");
-        assert!(
-            text(&output.stderr).contains(says),
-            "{line}: {}",
-            text(&output.stderr)
-        );
+        assert!(text(&output.stderr).contains(says), "{line}: {}", text(&output.stderr));
     }
 }
 
@@ -186,9 +165,7 @@ fn ctrl_c_ends_a_log_with_abort() {
     // Columns and the first row.
     out.read_line(&mut line).unwrap();
     out.read_line(&mut line).unwrap();
-    let signalled = Command::new("kill")
-        .args(["-INT", &logger.id().to_string()])
-        .status();
+    let signalled = Command::new("kill").args(["-INT", &logger.id().to_string()]).status();
     assert!(signalled.unwrap().success());
     assert!(logger.wait().unwrap().success());
     let lines = server.join().unwrap();

@@ -35,14 +35,8 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     client.wait(Duration::from_millis(600)).unwrap();
     let (_, copper) = MATERIALS[0];
     let setting = client.ask(&QuerySettings(3)).unwrap();
-    let relaxations = [Relaxation {
-        rate_1_s: 2.0,
-        gain_m2k_j: 4e-5,
-    }];
-    let object = Impedance {
-        direct_m2k_w: 5e-7,
-        relaxations: &relaxations,
-    };
+    let relaxations = [Relaxation { rate_1_s: 2.0, gain_m2k_j: 4e-5 }];
+    let object = Impedance { direct_m2k_w: 5e-7, relaxations: &relaxations };
     let mut orders = vec![
         PlainCommand::Material("oak".into()),
         PlainCommand::Material("granite".into()),
@@ -50,18 +44,9 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
         PlainCommand::ObjectTemperature(Some(-3.25)),
         PlainCommand::ObjectTemperature(None),
         PlainCommand::HalfSpace,
-        PlainCommand::Slab {
-            thickness_mm: 2.5,
-            back: Back::Film(12.5),
-        },
-        PlainCommand::Slab {
-            thickness_mm: 3.0,
-            back: Back::Held,
-        },
-        PlainCommand::Slab {
-            thickness_mm: 4.0,
-            back: Back::Insulated,
-        },
+        PlainCommand::Slab { thickness_mm: 2.5, back: Back::Film(12.5) },
+        PlainCommand::Slab { thickness_mm: 3.0, back: Back::Held },
+        PlainCommand::Slab { thickness_mm: 4.0, back: Back::Insulated },
         PlainCommand::AssumedFinger(AssumedFinger::MeanOnPad),
         PlainCommand::Mode(ContactModel::SemiInfinite),
         PlainCommand::Law(Law::Pi10Hz),
@@ -80,25 +65,13 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
         .collect();
     // The only one that no device knows.
     assert_eq!(refused.len(), 1, "{refused:?}");
-    assert!(
-        refused[0]
-            .1
-            .refusal()
-            .unwrap()
-            .starts_with("unknown material 'oak'")
-    );
+    assert!(refused[0].1.refusal().unwrap().starts_with("unknown material 'oak'"));
     let status = client.ask(&QueryState).unwrap();
     assert_eq!(status.state, StateName::Off);
     assert_eq!(status.material.as_deref(), Some("custom"));
-    assert_eq!(
-        (status.mode, status.body.as_str()),
-        (ContactModel::SemiInfinite, "upload")
-    );
+    assert_eq!((status.mode, status.body.as_str()), (ContactModel::SemiInfinite, "upload"));
     assert_eq!(client.ask(&QueryLaw).unwrap(), Law::Pi10Hz);
-    assert_eq!(
-        client.ask(&QueryAssumedFinger).unwrap(),
-        AssumedFinger::MeanOnPad
-    );
+    assert_eq!(client.ask(&QueryAssumedFinger).unwrap(), AssumedFinger::MeanOnPad);
     assert_eq!(client.ask(&QueryCause).unwrap(), None);
     // The board has no sensor.
     client.wait(Duration::from_millis(600)).unwrap();
@@ -115,29 +88,18 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     client.ask(&PlainCommand::Abort).unwrap();
     let refused = client.ask(&PlainCommand::Clear).unwrap_err();
     assert_eq!(refused.refusal(), Some("no fault to clear"));
-    let point = Calibrate {
-        thermistor: ThermistorId::Room,
-        reference_c: 24.0,
-    };
+    let point = Calibrate { thermistor: ThermistorId::Room, reference_c: 24.0 };
     client.wait(Duration::from_millis(600)).unwrap();
     let fit = client.ask(&point).unwrap();
     assert_eq!(fit.points, 1);
     clear_calibration(&mut client, None).unwrap();
     assert_eq!(client.ask(&point).unwrap().points, 1);
     let lines = client.ask(&CountSettings).unwrap();
-    let before: Vec<_> = (1..=lines)
-        .map(|n| client.ask(&QuerySettings(n)).unwrap())
-        .collect();
-    client
-        .ask(&PlainCommand::Store(StorageOrder::Save))
-        .unwrap();
-    let after: Vec<_> = (1..=lines)
-        .map(|n| client.ask(&QuerySettings(n)).unwrap())
-        .collect();
+    let before: Vec<_> = (1..=lines).map(|n| client.ask(&QuerySettings(n)).unwrap()).collect();
+    client.ask(&PlainCommand::Store(StorageOrder::Save)).unwrap();
+    let after: Vec<_> = (1..=lines).map(|n| client.ask(&QuerySettings(n)).unwrap()).collect();
     assert_eq!(before, after);
-    client
-        .ask(&PlainCommand::Store(StorageOrder::Forget))
-        .unwrap();
+    client.ask(&PlainCommand::Store(StorageOrder::Forget)).unwrap();
     assert!((client.ask(&QueryMargins).unwrap().gain_k_s_a - 2.957).abs() < 1e-9);
 }
 
@@ -178,17 +140,9 @@ fn telemetry_comes_at_its_interval_and_a_device_that_restarts_is_noticed() {
         last = Some(tick);
     }
     let time = client.clock().time_of(last.unwrap()).unwrap();
-    assert!(
-        (time.at_s - client.link().now().as_secs_f64()).abs() < 0.01,
-        "{time:?}"
-    );
-    assert!(
-        time.error_s < 1.1e-3 && time.drift_ppm.abs() < 1.0,
-        "{time:?}"
-    );
-    client
-        .ask(&PlainCommand::Store(StorageOrder::Forget))
-        .unwrap();
+    assert!((time.at_s - client.link().now().as_secs_f64()).abs() < 0.01, "{time:?}");
+    assert!(time.error_s < 1.1e-3 && time.drift_ppm.abs() < 1.0, "{time:?}");
+    client.ask(&PlainCommand::Store(StorageOrder::Forget)).unwrap();
     client.ask(&PlainCommand::stream(5)).unwrap();
     client.wait(Duration::from_millis(50)).unwrap();
     let line = client.next_telemetry(Duration::ZERO).unwrap().unwrap();

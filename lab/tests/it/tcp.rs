@@ -37,15 +37,7 @@ fn an_answer_that_comes_in_parts_is_one_line() {
     });
     let mut client = Client::new(tcp(address).unwrap());
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
-    assert_eq!(
-        client
-            .next_telemetry(Duration::ZERO)
-            .unwrap()
-            .unwrap()
-            .telemetry
-            .tick,
-        1
-    );
+    assert_eq!(client.next_telemetry(Duration::ZERO).unwrap().unwrap().telemetry.tick, 1);
     server.join().unwrap();
 }
 
@@ -63,19 +55,15 @@ fn a_link_that_vanishes_ends_a_wait_at_once() {
     assert!(matches!(gone, LinkError::Gone(_)), "{gone}");
     assert!(began.elapsed() < Duration::from_secs(5));
     let error = client.ask(&PlainCommand::Abort).unwrap_err();
-    assert!(
-        matches!(error, ClientError::Link(LinkError::Gone(_))),
-        "{error}"
-    );
+    assert!(matches!(error, ClientError::Link(LinkError::Gone(_))), "{error}");
 }
 
 #[test]
 fn a_flood_of_garbage_neither_hides_the_answer_nor_holds_up_the_client() {
     let (address, server) = serve(|mut stream| {
         assert_eq!(line(&mut stream), "law");
-        let mut garbage: Vec<u8> = (0..1_000_000u32)
-            .map(|i| (i.wrapping_mul(i) % 251) as u8)
-            .collect();
+        let mut garbage: Vec<u8> =
+            (0..1_000_000u32).map(|i| (i.wrapping_mul(i) % 251) as u8).collect();
         garbage.push(b'\n');
         stream.write_all(&garbage).unwrap();
         stream.write_all(b"ok law=pi\n").unwrap();
@@ -94,10 +82,7 @@ fn a_silent_device_is_given_up_after_two_seconds_of_real_time() {
     });
     let mut client = Client::new(tcp(address).unwrap());
     let began = client.link().now();
-    assert!(matches!(
-        client.ask(&PlainCommand::Arm).unwrap_err(),
-        ClientError::TimedOut { .. }
-    ));
+    assert!(matches!(client.ask(&PlainCommand::Arm).unwrap_err(), ClientError::TimedOut { .. }));
     let waited = client.link().now() - began;
     assert!((1.9..2.4).contains(&waited.as_secs_f64()), "{waited:?}");
     server.join().unwrap();

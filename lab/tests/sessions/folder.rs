@@ -10,10 +10,7 @@ const CLOCK: &str = "clock.json";
 /// A new folder with this name, and in it a short session: section 4.3 with two materials, two trials a pair.
 pub fn with_session(name: &str) -> (PathBuf, PathBuf) {
     let materials = r#"["copper", "stainless-steel", "granite", "abs"]"#;
-    let short = [
-        (materials, r#"["copper", "abs"]"#),
-        ("repeat = 4", "repeat = 2"),
-    ];
+    let short = [(materials, r#"["copper", "abs"]"#), ("repeat = 4", "repeat = 2")];
     with_ready(name, "p5-real-and-simulated", &short)
 }
 

@@ -34,18 +34,13 @@ fn kill_and_resume(folder: &Path, session: &Path, task: &str) {
     let began = Instant::now();
     assert!(run(&line(session, &whole)).status.success());
     let took = began.elapsed();
-    let kills = std::env::var(KILLS_VARIABLE)
-        .ok()
-        .and_then(|count| count.parse().ok());
+    let kills = std::env::var(KILLS_VARIABLE).ok().and_then(|count| count.parse().ok());
     let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
     let (mut in_the_middle, mut trials_kept) = (0, 0);
     for _ in 0..kills.unwrap_or(KILLS) {
         let _ignored = fs::remove_dir_all(&killed);
         let after = took.mul_f64(random.random_range(0.05..1.0));
-        let mut child = thermal_lab(&line(session, &killed))
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut child = thermal_lab(&line(session, &killed)).stderr(Stdio::null()).spawn().unwrap();
         sleep(after);
         in_the_middle += u32::from(child.try_wait().unwrap().is_none());
         child.kill().unwrap();
@@ -54,11 +49,7 @@ fn kill_and_resume(folder: &Path, session: &Path, task: &str) {
             trials_kept +=
                 recorded_sessions(&killed).map_or(0, |sessions| sessions[0].records.len());
             let resumed = run(&(line(session, &killed) + " --resume"));
-            assert!(
-                resumed.status.success(),
-                "{}",
-                String::from_utf8_lossy(&resumed.stderr)
-            );
+            assert!(resumed.status.success(), "{}", String::from_utf8_lossy(&resumed.stderr));
         } else {
             // Killed before it had begun: nothing is there that could be resumed.
             assert!(run(&line(session, &killed)).status.success());
@@ -82,15 +73,8 @@ fn a_full_disk_ends_the_session_with_a_message_and_loses_no_recorded_trial() {
     assert!(run(&line(&session, &whole)).status.success());
     // No file may become longer than 300 KB, and the program is told so by an error of its writes.
     let program = env!("CARGO_BIN_EXE_thermal-lab");
-    let script = format!(
-        "trap '' XFSZ; ulimit -f 600; exec {program} {}",
-        line(&session, &full)
-    );
-    let output = Command::new("sh")
-        .args(["-c", &script])
-        .stdin(Stdio::null())
-        .output()
-        .unwrap();
+    let script = format!("trap '' XFSZ; ulimit -f 600; exec {program} {}", line(&session, &full));
+    let output = Command::new("sh").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{stderr}");
     assert!(
@@ -100,10 +84,7 @@ fn a_full_disk_ends_the_session_with_a_message_and_loses_no_recorded_trial() {
     );
     let sessions = recorded_sessions(&full).unwrap();
     let trials = sessions[0].records.len();
-    assert!(
-        (1..8).contains(&trials),
-        "{trials} trials before the disk was full"
-    );
+    assert!((1..8).contains(&trials), "{trials} trials before the disk was full");
     assert!(run(&(line(&session, &full) + " --resume")).status.success());
     assert_equal(&whole, &full);
 }
@@ -125,8 +106,5 @@ fn two_programs_do_not_record_into_the_same_session() {
     first.wait().unwrap();
     let stderr = String::from_utf8_lossy(&second.stderr);
     assert_eq!(second.status.code(), Some(1), "{stderr}");
-    assert!(
-        stderr.contains("another program records this session"),
-        "{stderr}"
-    );
+    assert!(stderr.contains("another program records this session"), "{stderr}");
 }

@@ -49,10 +49,7 @@ impl<L: Link> Link for DefectiveLink<L> {
         if let (Defect::Garbage(interval), Some(line)) = (self.defect, &received) {
             self.lines += 1;
             if self.lines.is_multiple_of(interval) {
-                let garbage = ReceivedLine {
-                    text: "\u{fffd}T 12\u{0}3 arm".into(),
-                    at: line.at,
-                };
+                let garbage = ReceivedLine { text: "\u{fffd}T 12\u{0}3 arm".into(), at: line.at };
                 self.waiting = received;
                 return Ok(Some(garbage));
             }
@@ -77,12 +74,7 @@ fn run(session: &Path, out: &Path, resumes: bool, defect: Defect) -> Result<(), 
     let records = recorder.records().to_vec();
     let schedule = Schedule::after(&session, &plan, &records).unwrap();
     let bench = Bench::new(&session, &plan, WHO.0, WHO.1, BenchOptions::default()).unwrap();
-    let link = DefectiveLink {
-        link: bench.link(),
-        defect,
-        lines: 0,
-        waiting: None,
-    };
+    let link = DefectiveLink { link: bench.link(), defect, lines: 0, waiting: None };
     let mut people = bench.people();
     Executor::new(&session, Client::new(link), &mut people, &mut recorder).run(&plan, schedule)
 }
@@ -97,19 +89,10 @@ fn a_pulled_cable_ends_the_session_and_loses_the_running_trial_only() {
 fn pull_and_resume(folder: &Path, session: &Path) {
     let [whole, pulled] = ["whole", "pulled"].map(|name| folder.join(name));
     run(session, &whole, false, Defect::None).unwrap();
-    let end = run(
-        session,
-        &pulled,
-        false,
-        Defect::Pulled(Duration::from_secs(30)),
-    )
-    .unwrap_err();
+    let end = run(session, &pulled, false, Defect::Pulled(Duration::from_secs(30))).unwrap_err();
     let words = end.to_string();
     assert!(matches!(end, SessionEnd::Gone(_)), "{words}");
-    assert!(
-        words.contains("Check cable and power") && words.contains("--resume"),
-        "{words}"
-    );
+    assert!(words.contains("Check cable and power") && words.contains("--resume"), "{words}");
     run(session, &pulled, true, Defect::None).unwrap();
     assert_equal(&whole, &pulled);
 }
@@ -126,12 +109,7 @@ fn garbage_between_the_lines_changes_no_answer() {
         let records = sessions[0].records.iter();
         records
             .map(|record| {
-                (
-                    record.trial,
-                    record.void.clone(),
-                    record.levels.clone(),
-                    record.answer.clone(),
-                )
+                (record.trial, record.void.clone(), record.levels.clone(), record.answer.clone())
             })
             .collect()
     };

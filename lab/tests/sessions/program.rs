@@ -64,26 +64,15 @@ fn the_data_set_has_the_structure_of_bids() {
     assert_eq!(header[..2], ["onset", "duration"]);
     let about = json("sub-01/beh/sub-01_task-p5_events.json");
     for column in &header {
-        assert!(
-            about[column]["Description"].is_string(),
-            "{column} has no description"
-        );
+        assert!(about[column]["Description"].is_string(), "{column} has no description");
     }
-    let rows: Vec<Vec<_>> = events
-        .lines()
-        .skip(1)
-        .map(|row| row.split('\t').collect())
-        .collect();
+    let rows: Vec<Vec<_>> = events.lines().skip(1).map(|row| row.split('\t').collect()).collect();
     assert_eq!(rows.len(), 8);
     let onset = |row: &Vec<&str>| row[0].parse::<f64>().unwrap();
     assert!(
-        rows.iter()
-            .all(|row| row.len() == header.len() && row.iter().all(|cell| !cell.is_empty()))
+        rows.iter().all(|row| row.len() == header.len() && row.iter().all(|cell| !cell.is_empty()))
     );
-    assert!(
-        rows.windows(2)
-            .all(|pair| onset(&pair[0]) < onset(&pair[1]))
-    );
+    assert!(rows.windows(2).all(|pair| onset(&pair[0]) < onset(&pair[1])));
 
     let physio = json("sub-01/beh/sub-01_task-p5_recording-finger0_physio.json");
     let columns = physio["Columns"].as_array().unwrap().len();
@@ -94,11 +83,8 @@ fn the_data_set_has_the_structure_of_bids() {
     assert_eq!(packed[..2], [0x1f, 0x8b]);
     assert_eq!(packed[4..8], [0; 4]);
     let mut unpacked = String::new();
-    std::io::Read::read_to_string(
-        &mut flate2::read::GzDecoder::new(&packed[..]),
-        &mut unpacked,
-    )
-    .unwrap();
+    std::io::Read::read_to_string(&mut flate2::read::GzDecoder::new(&packed[..]), &mut unpacked)
+        .unwrap();
     let is_number = |cell: &str| cell == "n/a" || cell.parse::<f64>().is_ok();
     assert!(
         unpacked
@@ -108,19 +94,13 @@ fn the_data_set_has_the_structure_of_bids() {
     // A row every 10 ms from the begin of the session to the end of the last trial.
     let end_s = onset(&rows[7]) + rows[7][1].parse::<f64>().unwrap();
     let length_s = unpacked.lines().count() as f64 / 100.0;
-    assert!(
-        (length_s - end_s).abs() < 0.1,
-        "{length_s} s of telemetry, {end_s} s of session"
-    );
+    assert!((length_s - end_s).abs() < 0.1, "{length_s} s of telemetry, {end_s} s of session");
 }
 
 #[test]
 fn a_plan_is_printed_without_a_device() {
     let (_, session) = with_session("plan");
-    let plan = run(&format!(
-        "run {} --participant 01 --plan",
-        session.display()
-    ));
+    let plan = run(&format!("run {} --participant 01 --plan", session.display()));
     assert!(plan.status.success());
     let text = String::from_utf8(plan.stdout).unwrap();
     let header = text.lines().next().unwrap();
@@ -134,31 +114,14 @@ fn wrong_arguments_are_answered_with_status_2() {
     let out = folder.join("data");
     let expect = |line: &str, status: i32, words: &str| {
         let output = run(line);
-        assert_eq!(
-            output.status.code(),
-            Some(status),
-            "{line}: {}",
-            stderr(&output)
-        );
-        assert!(
-            stderr(&output).contains(words),
-            "{line}: {}",
-            stderr(&output)
-        );
+        assert_eq!(output.status.code(), Some(status), "{line}: {}", stderr(&output));
+        assert!(stderr(&output).contains(words), "{line}: {}", stderr(&output));
     };
     let resume = line(&session, &out) + " --resume";
     expect(&resume, 2, "there is no session to resume");
     assert!(run(&line(&session, &out)).status.success());
-    expect(
-        &line(&session, &out),
-        2,
-        "this participant has done this task",
-    );
-    expect(
-        &resume.replace("--seed 1", "--seed 2"),
-        2,
-        "recorded with the seed 1; given is 2",
-    );
+    expect(&line(&session, &out), 2, "this participant has done this task");
+    expect(&resume.replace("--seed 1", "--seed 2"), 2, "recorded with the seed 1; given is 2");
     expect(&line(&session, &out).replace("01", "Anna"), 2, "Anna");
     let text = fs::read_to_string(&session).unwrap();
     fs::write(&session, text.replace("repeat = 2", "repeat = 0")).unwrap();
@@ -171,23 +134,12 @@ fn a_recorded_session_is_analysed_and_replayed() {
     let (folder, session) = with_session("analysed");
     let [data, page] = ["data", "page"].map(|name| folder.join(name));
     assert!(run(&line(&session, &data)).status.success());
-    let analysed = run(&format!(
-        "analyse {} --json --out {}",
-        data.display(),
-        page.display()
-    ));
+    let analysed = run(&format!("analyse {} --json --out {}", data.display(), page.display()));
     assert!(analysed.status.success(), "{}", stderr(&analysed));
     let json: Value = serde_json::from_slice(&analysed.stdout).unwrap();
     assert_eq!(json["tasks"][0]["task"], "p5");
-    assert!(
-        fs::read_to_string(page.join("analysis.html"))
-            .unwrap()
-            .contains("<svg")
-    );
-    let replayed = run(&format!(
-        "replay {} --headless --speed 10000",
-        data.display()
-    ));
+    assert!(fs::read_to_string(page.join("analysis.html")).unwrap().contains("<svg"));
+    let replayed = run(&format!("replay {} --headless --speed 10000", data.display()));
     assert!(replayed.status.success(), "{}", stderr(&replayed));
     assert_eq!(stderr(&replayed).matches(" of 8, block").count(), 8);
 }

@@ -78,11 +78,7 @@ fn session_view() -> SessionView {
             timeout_s: 120.0,
         }),
         rules: TrialRules {
-            procedure: Procedure::Touch {
-                reach_s: 5.0,
-                contact: ContactRule::Free,
-                max_s: 10.0,
-            },
+            procedure: Procedure::Touch { reach_s: 5.0, contact: ContactRule::Free, max_s: 10.0 },
             land_s: 3.0,
             answer_s: 20.0,
             feedback: false,
@@ -100,13 +96,8 @@ fn trial() -> Update {
             break_before: false,
             levels: vec!["copper".into(), "granite".into()],
             presented: vec![
-                Presented::Sample {
-                    material: "copper".into(),
-                },
-                Presented::Material {
-                    device_finger: 0,
-                    material: "granite".into(),
-                },
+                Presented::Sample { material: "copper".into() },
+                Presented::Material { device_finger: 0, material: "granite".into() },
             ],
             staircase: None,
             target_force_n: Some(1.0),
@@ -118,12 +109,7 @@ fn trial() -> Update {
 }
 
 fn begin(people: &mut WindowPeople, screen: &str) {
-    let question = |ask: &str, kind| {
-        Update::Ask(Question {
-            ask: ask.into(),
-            kind,
-        })
-    };
+    let question = |ask: &str, kind| Update::Ask(Question { ask: ask.into(), kind });
     let words = |words: &[&str]| AnswerKind::OneOf(words.iter().map(ToString::to_string).collect());
     people.inform(&Update::Notice(
         "connected: thermal-display 0.2.0, 1 finger (demonstration)".into(),
@@ -205,11 +191,7 @@ fn script(people: &mut WindowPeople, screen: &str) {
 fn line(tick: u32, t_s: f64, screen: &str) -> ReceivedTelemetry {
     let cycle_s = t_s % 12.0;
     let touches = (4.0..9.0).contains(&cycle_s);
-    let fall_k = if touches {
-        6.0 * (1.0 - (-(cycle_s - 4.0) / 1.2).exp())
-    } else {
-        0.0
-    };
+    let fall_k = if touches { 6.0 * (1.0 - (-(cycle_s - 4.0) / 1.2).exp()) } else { 0.0 };
     let wobble = 0.05 * (7.0 * t_s).sin();
     let state = match (screen, touches) {
         ("tripped", _) => StateName::Tripped(Fault::SinkHot),

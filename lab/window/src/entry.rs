@@ -21,12 +21,7 @@ pub struct NumberEntry {
 impl NumberEntry {
     /// Nothing is entered yet.
     pub fn new((least, most): (f64, f64), stations: usize) -> Self {
-        Self {
-            least,
-            most,
-            texts: vec![String::new(); stations],
-            at: 0,
-        }
+        Self { least, most, texts: vec![String::new(); stations], at: 0 }
     }
 
     /// The range.
@@ -122,10 +117,7 @@ mod tests {
         assert_eq!(press(&mut entry, &keys), None);
         assert_eq!(entry.station(), 1);
         let keys = [Key::Digit(7), Key::Point, Key::Digit(5), Key::Enter];
-        assert_eq!(
-            press(&mut entry, &keys),
-            Some(Response::Numbers(vec![42.0, 7.5]))
-        );
+        assert_eq!(press(&mut entry, &keys), Some(Response::Numbers(vec![42.0, 7.5])));
     }
 
     #[test]

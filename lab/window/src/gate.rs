@@ -35,15 +35,10 @@ impl SkinGate {
         now: Duration,
     ) {
         let distance = |mean: Option<f64>| mean.map_or(f64::INFINITY, |c| (c - rest.skin_c).abs());
-        let farthest = means
-            .max_by(|a, b| distance(*a).total_cmp(&distance(*b)))
-            .flatten();
+        let farthest = means.max_by(|a, b| distance(*a).total_cmp(&distance(*b))).flatten();
         self.skin_c = farthest;
-        self.holds_since = if distance(farthest) <= rest.within_k {
-            self.holds_since.or(Some(now))
-        } else {
-            None
-        };
+        self.holds_since =
+            if distance(farthest) <= rest.within_k { self.holds_since.or(Some(now)) } else { None };
     }
 }
 
@@ -80,14 +75,8 @@ impl Waiting<'_> {
 
     fn skin_gate(&self, now: Duration) -> Option<Gate> {
         let rest = self.rest?;
-        let mean = self
-            .skin
-            .skin_c
-            .map_or("not known".into(), |c| format!("{c:.2} °C"));
-        let held = self
-            .skin
-            .holds_since
-            .map_or(Duration::ZERO, |at| now.saturating_sub(at));
+        let mean = self.skin.skin_c.map_or("not known".into(), |c| format!("{c:.2} °C"));
+        let held = self.skin.holds_since.map_or(Duration::ZERO, |at| now.saturating_sub(at));
         let for_s = rest.for_s.max(f64::EPSILON);
         Some(Gate {
             what: "skin at rest",
@@ -105,12 +94,9 @@ impl Waiting<'_> {
 
     fn contact_gate(&self, now: Duration) -> Gate {
         match self.rules.procedure {
-            Procedure::Intervals { interval_s, gap_s } => self.timer(
-                "two intervals",
-                2.0 * interval_s + gap_s,
-                "then the answer",
-                now,
-            ),
+            Procedure::Intervals { interval_s, gap_s } => {
+                self.timer("two intervals", 2.0 * interval_s + gap_s, "then the answer", now)
+            }
             Procedure::Touch { max_s, .. } => match self.landed_at {
                 Some(since) => timer("contact", since, max_s, "then the tone to lift", now),
                 None => self.timer("landing", self.rules.land_s, "then the trial is void", now),
@@ -132,12 +118,7 @@ fn timer(
 ) -> Gate {
     let left = left(since, length_s, now);
     let reached = 1.0 - left.as_secs_f64() / length_s.max(f64::EPSILON);
-    Gate {
-        what,
-        value: None,
-        reached: reached.clamp(0.0, 1.0) as f32,
-        left: Some((left, then)),
-    }
+    Gate { what, value: None, reached: reached.clamp(0.0, 1.0) as f32, left: Some((left, then)) }
 }
 
 fn left(since: Duration, length_s: f64, now: Duration) -> Duration {

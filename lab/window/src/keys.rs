@@ -84,10 +84,7 @@ fn letter_action(letter: char, window: WindowKind, model: &Model) -> Option<Acti
         let mut choices = choices(question).iter();
         let decision = choices.find(|choice| choice.key == letter);
         // A participant who leans on the keyboard must not go on after a trip or without the skin's gate.
-        let harmless = matches!(
-            question,
-            OperatorQuestion::Ready(_) | OperatorQuestion::BreakOver
-        );
+        let harmless = matches!(question, OperatorQuestion::Ready(_) | OperatorQuestion::BreakOver);
         if let Some(choice) = decision.filter(|_| is_operator || harmless) {
             return Some(Action::Decide(choice.decision));
         }
@@ -124,8 +121,6 @@ fn answer(key: Key, model: &Model) -> Option<Action> {
 
 /// The answer of an arrow: the one with its word, or with two answers the one on its side of the screen.
 fn sideways(words: &[String], word: &str, of_two: usize) -> Option<usize> {
-    let named = words
-        .iter()
-        .position(|answer| answer.eq_ignore_ascii_case(word));
+    let named = words.iter().position(|answer| answer.eq_ignore_ascii_case(word));
     named.or_else(|| (words.len() == 2).then_some(of_two))
 }

@@ -46,10 +46,7 @@ impl ScreenLatency {
     /// Takes note of a frame.
     pub fn add(&mut self, latency: Duration) {
         let ms = latency.as_secs_f64() * 1e3;
-        let class = CLASSES_MS
-            .iter()
-            .take_while(|end| ms > f64::from(**end))
-            .count();
+        let class = CLASSES_MS.iter().take_while(|end| ms > f64::from(**end)).count();
         self.classes[class] += 1;
         self.longest = self.longest.max(latency);
     }

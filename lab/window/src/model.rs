@@ -121,11 +121,7 @@ impl Model {
     pub fn fold(&mut self, update: &Update, at: Duration) {
         match update {
             Update::Trial { trial, attempt, of } => {
-                self.trial = Some(TrialView {
-                    trial: trial.clone(),
-                    attempt: *attempt,
-                    of: *of,
-                });
+                self.trial = Some(TrialView { trial: trial.clone(), attempt: *attempt, of: *of });
                 self.set_question(None);
                 (self.participant.cue, self.participant.question) = (None, None);
                 self.participant.follow = None;
@@ -195,17 +191,13 @@ impl Model {
         }
         self.link.add(received.lost_before, at);
         let telemetry = &received.telemetry;
-        let view = self.fingers.entry(finger).or_insert_with(|| FingerView {
-            last: *telemetry,
-            trace: Trace::default(),
-        });
+        let view = self
+            .fingers
+            .entry(finger)
+            .or_insert_with(|| FingerView { last: *telemetry, trace: Trace::default() });
         view.last = *telemetry;
         view.trace.push(telemetry);
-        if let Some(rest) = self
-            .session
-            .as_ref()
-            .and_then(|session| session.rest.as_ref())
-        {
+        if let Some(rest) = self.session.as_ref().and_then(|session| session.rest.as_ref()) {
             // As the executor: by the thermistors of the running trial only, whatever other fingers have reported before.
             let running = self.session.iter().zip(&self.trial);
             let sensors = running

@@ -122,14 +122,8 @@ fn watch<L: Link>(
 }
 
 fn event_text(received: &ReceivedEvent) -> String {
-    let finger = received
-        .finger
-        .map_or(String::new(), |finger| format!("finger {finger}: "));
-    format!(
-        "{finger}{} at tick {}",
-        received.event.kind.name(),
-        received.event.tick
-    )
+    let finger = received.finger.map_or(String::new(), |finger| format!("finger {finger}: "));
+    format!("{finger}{} at tick {}", received.event.kind.name(), received.event.tick)
 }
 
 /// Carries an order out, and says what the device answered. A refusal is no error.

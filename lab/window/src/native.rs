@@ -65,12 +65,7 @@ pub fn run_window<T: Send, E: Display + Send>(
     options: WindowOptions,
     worker: impl FnOnce(&mut WindowPeople) -> Result<T, E> + Send,
 ) -> Result<Shown<T, E>, WindowError> {
-    let WindowOptions {
-        title,
-        session,
-        stop,
-        tones,
-    } = options;
+    let WindowOptions { title, session, stop, tones } = options;
     let with_participant = session.is_some();
     let (mut people, window_side) = WindowPeople::new(session, stop.clone(), tones);
     let running = AtomicBool::new(false);
@@ -81,10 +76,7 @@ pub fn run_window<T: Send, E: Display + Send>(
             .with_title(&title)
             .with_inner_size([1280.0, 860.0])
             .with_min_inner_size([1000.0, 700.0]);
-        let mut native = eframe::NativeOptions {
-            viewport,
-            ..eframe::NativeOptions::default()
-        };
+        let mut native = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
         // Two windows that wait for the monitor one after the other would have half its rate.
         native.glow_options.vsync = false;
         let gone = WindowGone(&stop);
@@ -94,10 +86,7 @@ pub fn run_window<T: Send, E: Display + Send>(
             &title,
             native,
             Box::new(|context| {
-                let state = views::OperatorState {
-                    dark: false,
-                    ..views::OperatorState::default()
-                };
+                let state = views::OperatorState { dark: false, ..views::OperatorState::default() };
                 views::apply(&context.egui_ctx, state.dark);
                 running.store(true, Ordering::SeqCst);
                 let spawned = scope.spawn(move || {
@@ -126,9 +115,7 @@ pub fn run_window<T: Send, E: Display + Send>(
                 latency: lock(latency).clone(),
             }),
             (None, Err(error)) => Err(WindowError::NoDisplay(error.to_string())),
-            (None, Ok(())) => Err(WindowError::NoDisplay(
-                "it was closed before it opened".into(),
-            )),
+            (None, Ok(())) => Err(WindowError::NoDisplay("it was closed before it opened".into())),
         }
     })
 }
@@ -181,12 +168,7 @@ impl eframe::App for App<'_> {
         }
         self.keep_entry(&model);
         let mut actions = keys(&ctx, WindowKind::Operator, &model);
-        actions.extend(views::operator(
-            ui,
-            &model,
-            &mut self.state,
-            self.window_side.now(),
-        ));
+        actions.extend(views::operator(ui, &model, &mut self.state, self.window_side.now()));
         if self.with_participant {
             actions.extend(self.participant(&ctx, &model));
         }
@@ -230,9 +212,7 @@ impl App<'_> {
         ctx.show_viewport_immediate(ViewportId::from_hash_of("participant"), builder, |ui, _| {
             let mut actions = keys(ui.ctx(), WindowKind::Participant, model);
             views::participant_style(ui.style_mut());
-            let frame = egui::Frame::new()
-                .fill(ui.visuals().panel_fill)
-                .inner_margin(24.0);
+            let frame = egui::Frame::new().fill(ui.visuals().panel_fill).inner_margin(24.0);
             egui::CentralPanel::default().frame(frame).show(ui, |ui| {
                 let entry = entry.as_mut().map(|(_, entry)| entry);
                 let response = views::participant(ui, model.participant(), entry, now);

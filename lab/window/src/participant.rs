@@ -58,11 +58,7 @@ pub struct Follow {
 
 impl Follow {
     pub(crate) fn new(target_n: f64, since: Duration) -> Self {
-        Self {
-            target_n,
-            since,
-            forces: VecDeque::new(),
-        }
+        Self { target_n, since, forces: VecDeque::new() }
     }
 
     pub(crate) fn add(&mut self, force_n: f64, at: Duration) {

@@ -53,18 +53,9 @@ impl WindowPeople {
             order: None,
             undrawn_since: None,
         };
-        let window_side = WindowSide {
-            shared: Arc::new(Mutex::new(shared)),
-            stop,
-            zero: Instant::now(),
-        };
-        (
-            Self {
-                window_side: window_side.clone(),
-                tones,
-            },
-            window_side,
-        )
+        let window_side =
+            WindowSide { shared: Arc::new(Mutex::new(shared)), stop, zero: Instant::now() };
+        (Self { window_side: window_side.clone(), tones }, window_side)
     }
 
     /// The operator's stop.

@@ -19,11 +19,7 @@ pub struct Choice {
 }
 
 const fn choice(decision: Decision, key: char, label: &'static str) -> Choice {
-    Choice {
-        decision,
-        key,
-        label,
-    }
+    Choice { decision, key, label }
 }
 
 /// What the operator can decide; the stop is always there besides.
@@ -34,16 +30,8 @@ pub const fn choices(question: &OperatorQuestion) -> &'static [Choice] {
         choice(Decision::Continue, 'c', "Continue in spite of the skin"),
         choice(Decision::Void, 'v', "Void: this trial does not count"),
     ];
-    const TRIPPED: [Choice; 1] = [choice(
-        Decision::Continue,
-        'c',
-        "Clear the fault and continue",
-    )];
-    const BREAK: [Choice; 1] = [choice(
-        Decision::Continue,
-        'c',
-        "Continue: the break is over",
-    )];
+    const TRIPPED: [Choice; 1] = [choice(Decision::Continue, 'c', "Clear the fault and continue")];
+    const BREAK: [Choice; 1] = [choice(Decision::Continue, 'c', "Continue: the break is over")];
     match question {
         OperatorQuestion::Ready(_) => &READY,
         OperatorQuestion::SkinNotReady { .. } => &SKIN,
@@ -79,34 +67,24 @@ pub fn question(question: &OperatorQuestion) -> (&'static str, String) {
 pub const fn state(state: StateName) -> (&'static str, &'static str) {
     match state {
         StateName::Off => ("OFF", "The bridge is off. `arm` begins with the self-test."),
-        StateName::SelfTest => (
-            "SELF-TEST",
-            "The device tests itself: keep all fingers off the display.",
-        ),
+        StateName::SelfTest => {
+            ("SELF-TEST", "The device tests itself: keep all fingers off the display.")
+        }
         StateName::Ready => (
             "READY",
             "The bridge is off. The self-test was passed; `arm` drives the display at once.",
         ),
-        StateName::Armed => (
-            "ARMED",
-            "The bridge drives the display to the temperature of the skin.",
-        ),
-        StateName::Preset => (
-            "PRESET",
-            "The bridge drives the display, which waits for a finger.",
-        ),
-        StateName::Contact => (
-            "CONTACT",
-            "A finger is on the display, which follows the object.",
-        ),
-        StateName::Stimulus => (
-            "STIMULUS",
-            "The display follows temperatures that this computer prescribes.",
-        ),
-        StateName::Tripped(_) => (
-            "TRIPPED",
-            "The bridge is off because of a fault, until it is cleared.",
-        ),
+        StateName::Armed => {
+            ("ARMED", "The bridge drives the display to the temperature of the skin.")
+        }
+        StateName::Preset => ("PRESET", "The bridge drives the display, which waits for a finger."),
+        StateName::Contact => ("CONTACT", "A finger is on the display, which follows the object."),
+        StateName::Stimulus => {
+            ("STIMULUS", "The display follows temperatures that this computer prescribes.")
+        }
+        StateName::Tripped(_) => {
+            ("TRIPPED", "The bridge is off because of a fault, until it is cleared.")
+        }
     }
 }
 
@@ -139,11 +117,7 @@ pub const fn phase(phase: Phase) -> &'static str {
 
 /// What the participant is told of an answer.
 pub const fn feedback(is_correct: bool) -> &'static str {
-    if is_correct {
-        "Correct."
-    } else {
-        "Not correct."
-    }
+    if is_correct { "Correct." } else { "Not correct." }
 }
 
 /// What a tone asks of the participant.
@@ -174,32 +148,18 @@ pub fn placement(stations: &[Station], trial: &PlannedTrial) -> Vec<String> {
         let what = match presented {
             Presented::Nothing => "nothing".into(),
             Presented::Sample { material } => format!("sample of {material}"),
-            Presented::Material {
-                device_finger,
-                material,
-            } => {
+            Presented::Material { device_finger, material } => {
                 format!("display {device_finger} as {material}")
             }
-            Presented::Hold {
-                device_finger,
-                celsius,
-            } => {
+            Presented::Hold { device_finger, celsius } => {
                 format!("display {device_finger} at {celsius:.2} °C")
             }
-            Presented::Pulses {
-                device_finger,
-                base_c,
-                ..
-            } => {
+            Presented::Pulses { device_finger, base_c, .. } => {
                 format!("display {device_finger}, two intervals from {base_c:.2} °C")
             }
         };
         match stations.get(index) {
-            Some(Station {
-                name,
-                finger,
-                skin_sensor,
-            }) => {
+            Some(Station { name, finger, skin_sensor }) => {
                 // Where nothing is presented, nothing is measured.
                 let sensor = skin_sensor.filter(|_| *presented != Presented::Nothing);
                 let sensor = sensor.map(|sensor| format!(" with skin thermistor {sensor}"));
@@ -224,14 +184,8 @@ mod tests {
     fn questions() -> [OperatorQuestion; 4] {
         [
             OperatorQuestion::Ready("left: copper".into()),
-            OperatorQuestion::SkinNotReady {
-                skin_c: None,
-                wanted_c: 33.0,
-            },
-            OperatorQuestion::Tripped {
-                fault: "sink-hot".into(),
-                explanation: "too warm".into(),
-            },
+            OperatorQuestion::SkinNotReady { skin_c: None, wanted_c: 33.0 },
+            OperatorQuestion::Tripped { fault: "sink-hot".into(), explanation: "too warm".into() },
             OperatorQuestion::BreakOver,
         ]
     }
@@ -241,11 +195,7 @@ mod tests {
         for question in questions() {
             let mut keys: Vec<_> = choices(&question).iter().map(|choice| choice.key).collect();
             for choice in choices(&question) {
-                assert!(
-                    choice.label.to_lowercase().starts_with(choice.key),
-                    "{}",
-                    choice.label
-                );
+                assert!(choice.label.to_lowercase().starts_with(choice.key), "{}", choice.label);
             }
             keys.dedup();
             assert_eq!(keys.len(), choices(&question).len());
@@ -267,11 +217,7 @@ mod tests {
         for one in all {
             let (word, meaning) = state(one);
             assert_eq!(word.to_lowercase(), one.name());
-            assert_eq!(
-                meaning.contains("bridge is off"),
-                !is_driven(one),
-                "{meaning}"
-            );
+            assert_eq!(meaning.contains("bridge is off"), !is_driven(one), "{meaning}");
         }
     }
 }

@@ -23,12 +23,8 @@ const AMPLITUDE: f64 = 16_000.0;
 /// Tones that wait for the player; more are left out.
 const WAITING_MAX: usize = 4;
 /// Players, the first that is there is taken; each takes the file as its last argument.
-const PLAYERS: [(&str, &[&str]); 4] = [
-    ("pw-play", &[]),
-    ("paplay", &[]),
-    ("aplay", &["-q"]),
-    ("afplay", &[]),
-];
+const PLAYERS: [(&str, &[&str]); 4] =
+    [("pw-play", &[]), ("paplay", &[]), ("aplay", &["-q"]), ("afplay", &[])];
 
 /// A tone as a WAV file: mono, 16 bits.
 pub fn wav(frequency_hz: u32) -> Vec<u8> {
@@ -70,10 +66,7 @@ impl Tones {
         let (sender, receiver) = sync_channel(WAITING_MAX);
         // Ends when nobody can send any more.
         thread::spawn(move || play_all(&receiver, player));
-        Self {
-            sender,
-            player: player.map(|(name, _)| name),
-        }
+        Self { sender, player: player.map(|(name, _)| name) }
     }
 
     /// Name of the player; `None` if there is none.
@@ -138,15 +131,9 @@ mod tests {
             let (pairs, _) = data.as_chunks::<2>();
             let samples: Vec<_> = pairs.iter().map(|pair| i16::from_le_bytes(*pair)).collect();
             assert_eq!(samples.len(), 8820);
-            let crossings = samples
-                .windows(2)
-                .filter(|pair| pair[0] < 0 && pair[1] >= 0)
-                .count();
+            let crossings = samples.windows(2).filter(|pair| pair[0] < 0 && pair[1] >= 0).count();
             let wanted = 0.2 * f64::from(cue.frequency_hz());
-            assert!(
-                (crossings as f64 - wanted).abs() <= 1.5,
-                "{crossings} {wanted}"
-            );
+            assert!((crossings as f64 - wanted).abs() <= 1.5, "{crossings} {wanted}");
             assert!(samples[0].abs() < 100 && samples[8819].abs() < 200);
         }
     }
@@ -154,10 +141,7 @@ mod tests {
     #[test]
     fn a_flood_of_tones_does_not_wait() {
         let (sender, _receiver) = sync_channel(WAITING_MAX);
-        let tones = Tones {
-            sender,
-            player: None,
-        };
+        let tones = Tones { sender, player: None };
         for _ in 0..100 {
             tones.play(Cue::Touch);
         }

@@ -66,11 +66,7 @@ impl Trace {
             }
         }
         self.samples.push_back(Sample::of(telemetry));
-        while self
-            .samples
-            .front()
-            .is_some_and(|first| self.age_s(first) > TRACE_S)
-        {
+        while self.samples.front().is_some_and(|first| self.age_s(first) > TRACE_S) {
             self.samples.pop_front();
         }
     }
@@ -91,9 +87,8 @@ impl Trace {
         let last = self.samples.iter().rev();
         let last = last.take_while(|sample| self.age_s(sample) <= 1.0);
         let known = last.filter(|sample| !sample.skin_c.is_nan());
-        let (sum, count) = known.fold((0.0, 0), |(sum, count), sample| {
-            (sum + f64::from(sample.skin_c), count + 1)
-        });
+        let (sum, count) = known
+            .fold((0.0, 0), |(sum, count), sample| (sum + f64::from(sample.skin_c), count + 1));
         (count > 0).then(|| sum / f64::from(count))
     }
 }

@@ -51,11 +51,7 @@ fn all_situations() -> Vec<Model> {
     all.push(after(&[numbers()]));
     all.push(after(&[Update::Cue(Cue::Touch)]));
     all.push(after(&[Update::TargetForce(Some(1.0))]));
-    all.push(after(&[telemetry(
-        1,
-        StateName::Tripped(Fault::Dose),
-        33.0,
-    )]));
+    all.push(after(&[telemetry(1, StateName::Tripped(Fault::Dose), 33.0)]));
     all.push(after(&[Update::Ended(None)]));
     all
 }
@@ -87,9 +83,8 @@ fn participant_keys() -> impl Iterator<Item = Key> {
 #[test]
 fn the_participants_keys_never_stop_or_decide() {
     for model in all_situations() {
-        for (window, key) in WINDOWS
-            .into_iter()
-            .flat_map(|window| participant_keys().map(move |key| (window, key)))
+        for (window, key) in
+            WINDOWS.into_iter().flat_map(|window| participant_keys().map(move |key| (window, key)))
         {
             let action = action(key, window, &model);
             let is_answer = matches!(action, None | Some(Action::Respond(_) | Action::Enter(_)));
@@ -101,9 +96,8 @@ fn the_participants_keys_never_stop_or_decide() {
 #[test]
 fn the_operators_keys_never_answer() {
     let letters = ('a'..='z').map(Key::Letter).chain([Key::Escape, Key::F11]);
-    for (model, key) in all_situations()
-        .iter()
-        .flat_map(|model| letters.clone().map(move |key| (model, key)))
+    for (model, key) in
+        all_situations().iter().flat_map(|model| letters.clone().map(move |key| (model, key)))
     {
         for window in WINDOWS {
             let action = action(key, window, model);
@@ -116,10 +110,8 @@ fn the_operators_keys_never_answer() {
 #[test]
 fn in_the_participants_window_no_key_goes_on_after_a_trip_or_without_the_skin() {
     for question in operator_questions() {
-        let is_harmless = matches!(
-            question,
-            OperatorQuestion::Ready(_) | OperatorQuestion::BreakOver
-        );
+        let is_harmless =
+            matches!(question, OperatorQuestion::Ready(_) | OperatorQuestion::BreakOver);
         let model = after(&[Update::Decide(question)]);
         let go_on = Some(Action::Decide(Decision::Continue));
         let key = Key::Letter('c');
@@ -133,14 +125,8 @@ fn in_the_participants_window_no_key_goes_on_after_a_trip_or_without_the_skin() 
 fn orders_are_given_to_a_monitored_device_only() {
     let key = Key::Letter('a');
     let monitored = Model::new(None);
-    assert_eq!(
-        action(key, WindowKind::Operator, &monitored),
-        Some(Action::Order(Order::Arm))
-    );
-    for model in all_situations()
-        .iter()
-        .filter(|model| model.session().is_some())
-    {
+    assert_eq!(action(key, WindowKind::Operator, &monitored), Some(Action::Order(Order::Arm)));
+    for model in all_situations().iter().filter(|model| model.session().is_some()) {
         assert_eq!(action(key, WindowKind::Operator, model), None);
     }
 }
@@ -163,18 +149,11 @@ fn arrows_and_digits_choose_the_answers() {
 fn the_gate_of_the_skin_counts_how_long_it_holds() {
     let mut model = after(&[Update::Phase(Phase::Rest)]);
     for (tick, skin_c) in [(0, 30.0), (2000, 34.1), (4000, 34.1), (6000, 34.0)] {
-        model.fold(
-            &telemetry(tick, StateName::Armed, skin_c),
-            s(f64::from(tick) * 1e-3),
-        );
+        model.fold(&telemetry(tick, StateName::Armed, skin_c), s(f64::from(tick) * 1e-3));
     }
     let gate = model.gate(s(6.0)).unwrap();
     assert!((gate.reached - 0.8).abs() < 1e-3, "{gate:?}");
-    assert!(
-        gate.value
-            .unwrap()
-            .starts_with("34.00 °C; wanted 34.00 ± 0.30")
-    );
+    assert!(gate.value.unwrap().starts_with("34.00 °C; wanted 34.00 ± 0.30"));
     model.fold(&telemetry(8000, StateName::Armed, 33.0), s(8.0));
     assert!(model.gate(s(8.0)).unwrap().reached < 1e-6);
 }
@@ -194,14 +173,7 @@ fn the_gate_of_the_skin_is_by_the_thermistors_of_the_running_trial() {
     // The display of the right station is finger 0, and measures by its own thermistor.
     session.stations[0].skin_sensor = Some(1);
     let mut model = Model::new(Some(session));
-    let Update::Trial {
-        mut trial,
-        attempt,
-        of,
-    } = trial()
-    else {
-        unreachable!()
-    };
+    let Update::Trial { mut trial, attempt, of } = trial() else { unreachable!() };
     let reached = |model: &mut Model, from_s: u32, skins_c: &[(u8, f64)]| {
         model.fold(&Update::Phase(Phase::Rest), s(f64::from(from_s)));
         for second in from_s..=from_s + 4 {
@@ -212,11 +184,7 @@ fn the_gate_of_the_skin_is_by_the_thermistors_of_the_running_trial() {
         }
         model.gate(s(f64::from(from_s + 4))).unwrap().reached
     };
-    let begin = |trial: &_| Update::Trial {
-        trial: Clone::clone(trial),
-        attempt,
-        of,
-    };
+    let begin = |trial: &_| Update::Trial { trial: Clone::clone(trial), attempt, of };
     model.fold(&begin(&trial), s(0.0));
     // A third finger that has reported is on nobody; each of the two others counts.
     let of_both = reached(&mut model, 0, &[(2, 24.0), (1, 34.0), (0, 34.0)]);
@@ -228,10 +196,7 @@ fn the_gate_of_the_skin_is_by_the_thermistors_of_the_running_trial() {
     model.fold(&begin(&trial), s(20.0));
     let of_display = reached(&mut model, 20, &[(1, 24.0), (0, 34.0)]);
     assert!(of_display > 0.7, "{of_display}");
-    assert_eq!(
-        model.placement()[0],
-        "left: nothing, under the left index finger"
-    );
+    assert_eq!(model.placement()[0], "left: nothing, under the left index finger");
 }
 
 #[test]
@@ -240,11 +205,7 @@ fn after_the_landing_the_gate_is_the_end_of_the_contact() {
     assert_eq!(model.gate(s(2.0)).unwrap().what, "landing");
     let event = ReceivedEvent {
         finger: None,
-        event: DeviceEvent {
-            tick: 0,
-            microseconds: 0,
-            kind: DeviceEventKind::Land,
-        },
+        event: DeviceEvent { tick: 0, microseconds: 0, kind: DeviceEventKind::Land },
         at: s(2.5),
     };
     model.fold(&Update::Event(event), s(2.5));
@@ -265,13 +226,8 @@ fn a_trial_says_what_is_placed_where() {
 
 #[test]
 fn a_void_trial_and_the_end_are_in_the_log() {
-    let mut model = after(&[Update::TrialEnded {
-        void: Some("too late".into()),
-    }]);
-    assert_eq!(
-        model.notices().back().unwrap().text,
-        "trial 23 is void: too late"
-    );
+    let mut model = after(&[Update::TrialEnded { void: Some("too late".into()) }]);
+    assert_eq!(model.notices().back().unwrap().text, "trial 23 is void: too late");
     model.fold(&Update::Ended(Some("stopped".into())), s(3.0));
     assert_eq!(model.end(), Some(&End::Broken("stopped".into())));
     assert!(model.participant().ended && model.question().is_none());
@@ -280,9 +236,7 @@ fn a_void_trial_and_the_end_are_in_the_log() {
 #[test]
 fn lost_lines_and_silence_are_counted() {
     let mut model = Model::new(None);
-    let Update::Telemetry(mut line) = telemetry(5, StateName::Armed, 33.0) else {
-        unreachable!()
-    };
+    let Update::Telemetry(mut line) = telemetry(5, StateName::Armed, 33.0) else { unreachable!() };
     line.lost_before = 3;
     model.fold(&Update::Telemetry(line), s(1.0));
     assert_eq!((model.link().received, model.link().lost), (1, 3));
@@ -293,10 +247,7 @@ fn lost_lines_and_silence_are_counted() {
 fn the_trace_is_twenty_seconds_and_begins_anew_when_the_device_restarts() {
     let mut model = Model::new(None);
     for tick in 0..60_000 {
-        model.fold(
-            &telemetry(tick, StateName::Armed, 33.0),
-            s(f64::from(tick) * 1e-3),
-        );
+        model.fold(&telemetry(tick, StateName::Armed, 33.0), s(f64::from(tick) * 1e-3));
     }
     let trace = &model.fingers()[&0].trace;
     assert_eq!(trace.samples().count(), 4001);
@@ -341,10 +292,7 @@ fn without_a_window_that_looks_nothing_waits() {
     for tick in 0..10_000 {
         people.inform(&telemetry(tick, StateName::Armed, 33.0));
     }
-    assert_eq!(
-        (people.response(), people.decision(), people.order()),
-        (None, None, None)
-    );
+    assert_eq!((people.response(), people.decision(), people.order()), (None, None, None));
 }
 
 #[test]
@@ -382,10 +330,7 @@ fn the_stop_ends_a_session_and_interrupts_the_link() {
     window_side.press_stop();
     assert_eq!(people.decision(), Some(Decision::Stop));
     assert_eq!(people.decision(), Some(Decision::Stop));
-    assert!(
-        stop.interrupts_link()
-            .load(std::sync::atomic::Ordering::SeqCst)
-    );
+    assert!(stop.interrupts_link().load(std::sync::atomic::Ordering::SeqCst));
 }
 
 #[test]

@@ -22,11 +22,7 @@ struct ScriptedLink {
 
 impl Link for ScriptedLink {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
-        for line in std::str::from_utf8(bytes)
-            .unwrap()
-            .lines()
-            .filter(|line| !line.is_empty())
-        {
+        for line in std::str::from_utf8(bytes).unwrap().lines().filter(|line| !line.is_empty()) {
             self.sent.push(line.into());
             let answer = match line {
                 "id" => "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000 protocol=2 capabilities=course".into(),
@@ -43,10 +39,7 @@ impl Link for ScriptedLink {
     }
 
     fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
-        if self
-            .ends_after
-            .is_some_and(|lines| self.sent.len() >= lines)
-        {
+        if self.ends_after.is_some_and(|lines| self.sent.len() >= lines) {
             return Err(LinkError::Gone("cable".into()));
         }
         let line = |text, at| Ok(Some(ReceivedLine { text, at }));
@@ -103,11 +96,8 @@ impl MonitorPeople for Operator {
 }
 
 fn watch(link: ScriptedLink, orders: &[Order]) -> (Result<(), ClientError>, Vec<String>, Operator) {
-    let mut operator = Operator {
-        orders: orders.iter().copied().collect(),
-        lines: 0,
-        notices: Vec::new(),
-    };
+    let mut operator =
+        Operator { orders: orders.iter().copied().collect(), lines: 0, notices: Vec::new() };
     let mut client = Client::new(link);
     let done = monitor(&mut client, &mut operator, 10);
     (done, client.into_link().sent, operator)
@@ -115,25 +105,13 @@ fn watch(link: ScriptedLink, orders: &[Order]) -> (Result<(), ClientError>, Vec<
 
 #[test]
 fn orders_are_sent_and_the_bridge_is_off_at_the_end() {
-    let link = ScriptedLink {
-        answers_abort: true,
-        ..ScriptedLink::default()
-    };
+    let link = ScriptedLink { answers_abort: true, ..ScriptedLink::default() };
     let (done, sent, operator) = watch(link, &[Order::Clear, Order::Arm, Order::Off]);
     done.unwrap();
     let orders: Vec<_> = sent.iter().map(String::as_str).collect();
     assert_eq!(
         orders,
-        [
-            "id",
-            "events on",
-            "stream 10",
-            "clear",
-            "arm",
-            "abort",
-            "abort",
-            "stream 0"
-        ]
+        ["id", "events on", "stream 10", "clear", "arm", "abort", "abort", "stream 0"]
     );
     assert!(operator.lines >= 3);
     assert!(operator.notices.contains(&"bridge off".to_owned()));
@@ -142,26 +120,13 @@ fn orders_are_sent_and_the_bridge_is_off_at_the_end() {
 #[test]
 fn an_abort_that_is_not_confirmed_is_repeated_and_then_said() {
     let (_, sent, operator) = watch(ScriptedLink::default(), &[Order::Off]);
-    assert!(
-        sent.iter().filter(|line| *line == "abort").count() >= 3,
-        "{sent:?}"
-    );
-    assert!(
-        operator.notices[1].contains("PRESS THE EMERGENCY STOP"),
-        "{:?}",
-        operator.notices
-    );
+    assert!(sent.iter().filter(|line| *line == "abort").count() >= 3, "{sent:?}");
+    assert!(operator.notices[1].contains("PRESS THE EMERGENCY STOP"), "{:?}", operator.notices);
 }
 
 #[test]
 fn a_pulled_cable_is_reported() {
-    let link = ScriptedLink {
-        ends_after: Some(4),
-        ..ScriptedLink::default()
-    };
+    let link = ScriptedLink { ends_after: Some(4), ..ScriptedLink::default() };
     let (done, ..) = watch(link, &[Order::Arm, Order::Arm]);
-    assert!(
-        matches!(done, Err(ClientError::Link(LinkError::Gone(_)))),
-        "{done:?}"
-    );
+    assert!(matches!(done, Err(ClientError::Link(LinkError::Gone(_)))), "{done:?}");
 }

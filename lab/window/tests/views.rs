@@ -23,10 +23,7 @@ struct Screen {
 
 impl Screen {
     fn new() -> Self {
-        Self {
-            ctx: Context::default(),
-            texts: Vec::new(),
-        }
+        Self { ctx: Context::default(), texts: Vec::new() }
     }
 
     /// Draws a frame with these events, and keeps its texts.
@@ -63,10 +60,7 @@ impl Screen {
 
     fn place(&self, part: &str) -> Pos2 {
         let found = self.texts.iter().find(|(text, _)| text.contains(part));
-        found
-            .unwrap_or_else(|| panic!("no '{part}' in\n{}", self.all()))
-            .1
-            .center()
+        found.unwrap_or_else(|| panic!("no '{part}' in\n{}", self.all())).1.center()
     }
 
     /// Draws until the layout rests, clicks on a text, and returns what that does.
@@ -103,19 +97,9 @@ fn draw_operator(model: &Model) -> impl FnMut(&mut egui::Ui) -> Vec<Action> {
 fn situations() -> Vec<Model> {
     let mut all = vec![Model::new(None), after(&[])];
     all.extend(operator_questions().map(|question| after(&[Update::Decide(question)])));
-    all.push(after(&[
-        telemetry(1, StateName::Contact, 33.0),
-        Update::Phase(Phase::Contact),
-    ]));
-    all.push(after(&[telemetry(
-        1,
-        StateName::Tripped(Fault::SinkHot),
-        33.0,
-    )]));
-    all.push(after(&[
-        Update::TargetForce(Some(1.0)),
-        telemetry(1, StateName::Contact, 33.0),
-    ]));
+    all.push(after(&[telemetry(1, StateName::Contact, 33.0), Update::Phase(Phase::Contact)]));
+    all.push(after(&[telemetry(1, StateName::Tripped(Fault::SinkHot), 33.0)]));
+    all.push(after(&[Update::TargetForce(Some(1.0)), telemetry(1, StateName::Contact, 33.0)]));
     all.push(after(&[Update::Ended(Some("stopped".into()))]));
     all
 }
@@ -179,10 +163,7 @@ fn a_silent_device_has_no_state_on_the_screen() {
 fn a_click_on_an_answer_is_the_response() {
     let model = after(&[choice()]);
     let draw = |ui: &mut egui::Ui| participant(ui, model.participant(), None, NOW);
-    assert_eq!(
-        Screen::new().click("right", draw),
-        Some(Response::Choice(1))
-    );
+    assert_eq!(Screen::new().click("right", draw), Some(Response::Choice(1)));
 }
 
 #[test]
@@ -203,15 +184,13 @@ fn a_number_for_each_station_is_confirmed_by_a_click() {
 #[test]
 fn the_participant_sees_nothing_that_tells_what_is_presented() {
     let telemetry = telemetry(1, StateName::Contact, 33.5);
-    let tripped = Update::Telemetry(
-        match common::telemetry(2, StateName::Tripped(Fault::SinkHot), 33.5) {
+    let tripped =
+        Update::Telemetry(match common::telemetry(2, StateName::Tripped(Fault::SinkHot), 33.5) {
             Update::Telemetry(line) => line,
             _ => unreachable!(),
-        },
-    );
-    let mut all: Vec<Vec<Update>> = operator_questions()
-        .map(|question| vec![Update::Decide(question)])
-        .into();
+        });
+    let mut all: Vec<Vec<Update>> =
+        operator_questions().map(|question| vec![Update::Decide(question)]).into();
     all.extend([
         vec![choice()],
         vec![numbers()],
@@ -219,9 +198,7 @@ fn the_participant_sees_nothing_that_tells_what_is_presented() {
         vec![Update::Cue(Cue::Interval(1))],
         vec![Update::TargetForce(Some(1.0))],
         vec![Update::Notice("granite at 28 °C".into())],
-        vec![Update::TrialEnded {
-            void: Some("granite".into()),
-        }],
+        vec![Update::TrialEnded { void: Some("granite".into()) }],
         vec![Update::Ended(Some("sink-hot".into()))],
         vec![tripped],
     ]);
@@ -232,9 +209,7 @@ fn the_participant_sees_nothing_that_tells_what_is_presented() {
         let mut entry = NumberEntry::new((0.0, 100.0), 2);
         let mut screen = Screen::new();
         for _ in 0..2 {
-            screen.frame(vec![], |ui| {
-                participant(ui, model.participant(), Some(&mut entry), NOW)
-            });
+            screen.frame(vec![], |ui| participant(ui, model.participant(), Some(&mut entry), NOW));
         }
         let shown = screen.all();
         for secret in [
@@ -295,15 +270,12 @@ fn the_stop_is_inside_of_the_smallest_window() {
         ..RawInput::default()
     };
     let output = ctx.run_ui(input, |ui| drop(operator(ui, &model, &mut state, NOW)));
-    let stop = output
-        .shapes
-        .iter()
-        .find_map(|clipped| match &clipped.shape {
-            Shape::Text(text) if text.galley.text().contains("STOP") => {
-                Some(text.galley.rect.translate(text.pos.to_vec2()))
-            }
-            _ => None,
-        });
+    let stop = output.shapes.iter().find_map(|clipped| match &clipped.shape {
+        Shape::Text(text) if text.galley.text().contains("STOP") => {
+            Some(text.galley.rect.translate(text.pos.to_vec2()))
+        }
+        _ => None,
+    });
     let inside = Rect::from_min_size(Pos2::ZERO, size);
     assert!(inside.contains_rect(stop.unwrap()));
 }

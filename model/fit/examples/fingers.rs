@@ -8,10 +8,7 @@ fn print(name: &str, fit: &Fit) {
         fit.direct_m2k_w, fit.weighted_error
     );
     for one in &fit.relaxations {
-        println!(
-            "    relaxation({:.5e}, {:.5e}),",
-            one.rate_1_s, one.gain_m2k_j
-        );
+        println!("    relaxation({:.5e}, {:.5e}),", one.rate_1_s, one.gain_m2k_j);
     }
 }
 

@@ -34,10 +34,7 @@ pub struct Fit {
 impl Fit {
     /// The fitted impedance.
     pub fn impedance(&self) -> Impedance<'_> {
-        Impedance {
-            direct_m2k_w: self.direct_m2k_w,
-            relaxations: &self.relaxations,
-        }
+        Impedance { direct_m2k_w: self.direct_m2k_w, relaxations: &self.relaxations }
     }
 }
 
@@ -52,10 +49,7 @@ struct Samples(Vec<(f64, f64, f64)>);
 impl Samples {
     /// Weighted values of `term` at the samples: one column of the least-squares problem.
     fn column(&self, term: impl Fn(f64) -> f64) -> Vec<f64> {
-        self.0
-            .iter()
-            .map(|(s, _, weight)| weight * term(*s))
-            .collect()
+        self.0.iter().map(|(s, _, weight)| weight * term(*s)).collect()
     }
 
     /// Least-squares fit of relaxations of these rates, without those that are negligible.
@@ -77,17 +71,10 @@ impl Samples {
             .filter_map(|(&rate_1_s, ((scaled_gain, column), norm))| {
                 let gain_m2k_j = scaled_gain / norm;
                 let largest = column.iter().fold(0.0f64, |largest, x| largest.max(*x));
-                (gain_m2k_j * largest > NEGLIGIBLE).then_some(Relaxation {
-                    rate_1_s,
-                    gain_m2k_j,
-                })
+                (gain_m2k_j * largest > NEGLIGIBLE).then_some(Relaxation { rate_1_s, gain_m2k_j })
             })
             .collect();
-        Fit {
-            direct_m2k_w: x[0] / norms[0],
-            relaxations,
-            weighted_error: (&a * &x - &b).amax(),
-        }
+        Fit { direct_m2k_w: x[0] / norms[0], relaxations, weighted_error: (&a * &x - &b).amax() }
     }
 }
 
@@ -99,11 +86,7 @@ fn merge(relaxations: &mut Vec<Relaxation>, i: usize) {
     let part = |one: Relaxation| one.gain_m2k_j / (one.rate_1_s + S_MIN_1_S);
     let rate = gain / (part(a) + part(b)) - S_MIN_1_S;
     relaxations[i] = Relaxation {
-        rate_1_s: if a.rate_1_s == 0.0 && rate < RATE_MIN_1_S {
-            0.0
-        } else {
-            rate
-        },
+        rate_1_s: if a.rate_1_s == 0.0 && rate < RATE_MIN_1_S { 0.0 } else { rate },
         gain_m2k_j: gain,
     };
 }

@@ -9,14 +9,8 @@ fn assert_same(committed: &FingerProperties, fit: &Fit) {
     assert!(close(ours.direct_m2k_w, fitted.direct_m2k_w));
     assert_eq!(ours.relaxations.len(), fitted.relaxations.len());
     for (ours, fitted) in ours.relaxations.iter().zip(fitted.relaxations) {
-        assert!(
-            close(ours.rate_1_s, fitted.rate_1_s),
-            "{ours:?}, not {fitted:?}"
-        );
-        assert!(
-            close(ours.gain_m2k_j, fitted.gain_m2k_j),
-            "{ours:?}, not {fitted:?}"
-        );
+        assert!(close(ours.rate_1_s, fitted.rate_1_s), "{ours:?}, not {fitted:?}");
+        assert!(close(ours.gain_m2k_j, fitted.gain_m2k_j), "{ours:?}, not {fitted:?}");
     }
 }
 

@@ -13,23 +13,12 @@ fn closed_form_of_slabs_gives_their_impedance() {
     for (name, material) in MATERIALS {
         for thickness_m in [0.5e-3, 1e-3, 2e-3, 3e-3, 5e-3, 10e-3, 20e-3, 50e-3] {
             for back in [Back::Insulated, Back::Held, Back::Film(10.0)] {
-                let (conductivity_w_mk, capacity_j_m3k) = (
-                    material.surface.conductivity_w_mk,
-                    material.volumetric_heat_j_m3k(),
-                );
-                let layer = Layer {
-                    thickness_m,
-                    conductivity_w_mk,
-                    capacity_j_m3k,
-                    perfusion_w_m3k: 0.0,
-                };
-                let slab = Slab {
-                    thickness_m,
-                    conductivity_w_mk,
-                    capacity_j_m3k,
-                    back,
-                }
-                .relaxations();
+                let (conductivity_w_mk, capacity_j_m3k) =
+                    (material.surface.conductivity_w_mk, material.volumetric_heat_j_m3k());
+                let layer =
+                    Layer { thickness_m, conductivity_w_mk, capacity_j_m3k, perfusion_w_m3k: 0.0 };
+                let slab =
+                    Slab { thickness_m, conductivity_w_mk, capacity_j_m3k, back }.relaxations();
                 Body::new(&slab.impedance(), SKIN.effusivity(), 1e-3)
                     .unwrap_or_else(|error| panic!("{name} {thickness_m} {back:?}: {error}"));
                 let resistance = contact_model::reference::contact_resistance(
@@ -49,11 +38,8 @@ fn closed_form_of_slabs_gives_their_impedance() {
                     }
                 }
                 let relaxations = slab.impedance();
-                let count = relaxations
-                    .relaxations
-                    .iter()
-                    .filter(|one| one.rate_1_s >= 12.5)
-                    .count();
+                let count =
+                    relaxations.relaxations.iter().filter(|one| one.rate_1_s >= 12.5).count();
                 fast = fast.max(count);
                 slow = slow.max(relaxations.relaxations.len() - count);
             }

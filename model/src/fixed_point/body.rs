@@ -76,33 +76,20 @@ impl fmt::Display for BodyError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::TooManyFast(count) => {
-                write!(
-                    f,
-                    "{count} rates of 12.5 1/s or more; at most {FAST_MAX} are allowed"
-                )
+                write!(f, "{count} rates of 12.5 1/s or more; at most {FAST_MAX} are allowed")
             }
             Self::TooManySlow(count) => {
-                write!(
-                    f,
-                    "{count} rates below 12.5 1/s; at most {SLOW_MAX} are allowed"
-                )
+                write!(f, "{count} rates below 12.5 1/s; at most {SLOW_MAX} are allowed")
             }
             Self::Rate(value) => {
                 write!(f, "rate {} 1/s; it must be 0 to 690", Shortest(*value))
             }
-            Self::Direct {
-                direct_m2k_w,
-                max_m2k_w,
-            } => {
+            Self::Direct { direct_m2k_w, max_m2k_w } => {
                 let value = Shortest(in_mm2(*direct_m2k_w));
                 let max = Shortest(floor_in_mm2(*max_m2k_w));
                 write!(f, "direct {value} mm2K/W; it must be 0 to {max}")
             }
-            Self::Gain {
-                gain_m2k_j,
-                max_m2k_j,
-                index,
-            } => {
+            Self::Gain { gain_m2k_j, max_m2k_j, index } => {
                 let value = Shortest(in_mm2(*gain_m2k_j));
                 let max = Shortest(floor_in_mm2(*max_m2k_j));
                 write!(
@@ -174,10 +161,7 @@ pub struct ScaledBody {
 impl ScaledBody {
     /// The half-space whose impedance is that of the thesis's skin times `factor`, for ticks of 1 ms.
     pub const fn half_space(factor: U16F16) -> Self {
-        Self {
-            body: FingerBody::THESIS.tissue,
-            factor,
-        }
+        Self { body: FingerBody::THESIS.tissue, factor }
     }
 
     /// Response of the surface to a scaled flux of 1 at the end of its tick.
@@ -258,10 +242,7 @@ impl FingerBody {
         air: Fraction::from_bits(1160802),
     };
     /// The mean finger on a pad before contact, for ticks of 1 ms.
-    pub const MEAN_ON_PAD: Self = Self {
-        air: Fraction::from_bits(203140),
-        ..Self::MEAN
-    };
+    pub const MEAN_ON_PAD: Self = Self { air: Fraction::from_bits(203140), ..Self::MEAN };
 }
 
 /// State of a body.
@@ -275,11 +256,8 @@ const TISSUE_FAST: usize = 3;
 /// Slow relaxations of a finger's tissue.
 const TISSUE_SLOW: usize = 6;
 const _: () = {
-    let tissues = [
-        &FingerBody::THESIS.tissue,
-        &FingerBody::MEAN.tissue,
-        &FingerBody::MEAN_ON_PAD.tissue,
-    ];
+    let tissues =
+        [&FingerBody::THESIS.tissue, &FingerBody::MEAN.tissue, &FingerBody::MEAN_ON_PAD.tissue];
     let mut i = 0;
     while i < tissues.len() {
         assert!(tissues[i].fast_count <= TISSUE_FAST && tissues[i].slow_count <= TISSUE_SLOW);
@@ -292,11 +270,7 @@ const _: () = {
 #[inline(never)]
 fn expm1(x: f64) -> f64 {
     let exponential = libm::exp(x);
-    if exponential == 1.0 {
-        x
-    } else {
-        (exponential - 1.0) * x / libm::log(exponential)
-    }
+    if exponential == 1.0 { x } else { (exponential - 1.0) * x / libm::log(exponential) }
 }
 
 /// Response of a relaxation of rate `r` per tick to a unit flux of one tick, over its gain: `(1 - e^-r) / r`.
@@ -339,10 +313,7 @@ impl Body {
             };
             let needed = (2.0 * (all_gains + gain)).max(gain * fast_factor);
             if !(gain > 0.0 && needed < GAIN_BOUND) {
-                let unit = Relaxation {
-                    gain_m2k_j: 1.0,
-                    ..*one
-                };
+                let unit = Relaxation { gain_m2k_j: 1.0, ..*one };
                 let left = (GAIN_BOUND / 2.0 - all_gains).min(GAIN_BOUND / fast_factor);
                 return Err(BodyError::Gain {
                     gain_m2k_j: one.gain_m2k_j,
@@ -374,31 +345,23 @@ impl Body {
             horizon_gain += gain * after_first;
             if r >= FAST_RATE_PER_TICK {
                 let count = body.fast_count;
-                *body
-                    .fast
-                    .get_mut(count)
-                    .ok_or(BodyError::TooManyFast(count + 1))? = FastRelaxation {
-                    input_gain: scaled(gain),
-                    change: to_fixed(expm1(-r)),
-                    horizon_factor: to_fixed::<I1F31>(libm::exp(-(ticks - 1.0) * r)),
-                };
+                *body.fast.get_mut(count).ok_or(BodyError::TooManyFast(count + 1))? =
+                    FastRelaxation {
+                        input_gain: scaled(gain),
+                        change: to_fixed(expm1(-r)),
+                        horizon_factor: to_fixed::<I1F31>(libm::exp(-(ticks - 1.0) * r)),
+                    };
                 body.fast_count += 1;
             } else {
                 let window = f64::from(WINDOW);
                 // Mean of e^(r j) for j from 0 to 7.
-                let mean = if r > 0.0 {
-                    expm1(r * window) / expm1(r) / window
-                } else {
-                    1.0
-                };
+                let mean = if r > 0.0 { expm1(r * window) / expm1(r) / window } else { 1.0 };
                 let count = body.slow_count;
-                *body
-                    .slow
-                    .get_mut(count)
-                    .ok_or(BodyError::TooManySlow(count + 1))? = SlowRelaxation {
-                    input_gain: scaled(gain * mean),
-                    decay: to_fixed(-expm1(-r * window)),
-                };
+                *body.slow.get_mut(count).ok_or(BodyError::TooManySlow(count + 1))? =
+                    SlowRelaxation {
+                        input_gain: scaled(gain * mean),
+                        decay: to_fixed(-expm1(-r * window)),
+                    };
                 body.slow_count += 1;
                 slow_input_gain += gain * libm::exp(-r);
             }

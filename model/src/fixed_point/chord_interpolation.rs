@@ -99,11 +99,7 @@ impl ChordInterpolation {
             0 => (Fraction::MAX, 1),
             _ => (erfcx_at(elapsed, contact.rate_per_tick), 2),
         };
-        let base = if amplitude > 0 {
-            base - tolerance
-        } else {
-            base + tolerance
-        };
+        let base = if amplitude > 0 { base - tolerance } else { base + tolerance };
         let twice_amplitude = amplitude + amplitude;
         let setpoint = |e: Fraction| plus_part(base, twice_amplitude, e.to_bits() >> 1);
         let (start_setpoint, end_setpoint) = (setpoint(start_erfcx), setpoint(end_erfcx));
@@ -215,9 +211,7 @@ const fn octaves(elapsed: u64, lengths: u64) -> u32 {
         return 0;
     }
     // Both are above 0.
-    let estimate = lengths
-        .leading_zeros()
-        .saturating_sub(elapsed.leading_zeros());
+    let estimate = lengths.leading_zeros().saturating_sub(elapsed.leading_zeros());
     estimate - (lengths << (estimate & 63) > elapsed) as u32
 }
 
@@ -264,9 +258,8 @@ const fn first_octave(tolerance: u64, amplitude: u64) -> i32 {
 #[inline(never)] // It is called twice, and not in every tick.
 fn erfcx_at(elapsed: u64, rate_per_tick: MantissaExponent) -> Fraction {
     let excess = (u64::BITS - elapsed.leading_zeros()).saturating_sub(MAX_LENGTH_LOG2);
-    Ticks::new((elapsed >> excess) as u32).map_or(Fraction::MAX, |ticks| {
-        erfcx(ticks, rate_per_tick.times_power_of_2(excess as i16))
-    })
+    Ticks::new((elapsed >> excess) as u32)
+        .map_or(Fraction::MAX, |ticks| erfcx(ticks, rate_per_tick.times_power_of_2(excess as i16)))
 }
 
 #[cfg(test)]
@@ -310,11 +303,7 @@ mod tests {
             if tolerance > 0 {
                 let part = (tolerance << 32) / amplitude;
                 let exact = i32::try_from((part * part).ilog2()).expect("below 64") - 60;
-                assert_eq!(
-                    first_octave(tolerance, amplitude),
-                    exact,
-                    "{tolerance} of {amplitude}"
-                );
+                assert_eq!(first_octave(tolerance, amplitude), exact, "{tolerance} of {amplitude}");
                 // The integer part of the root, or one more.
                 let needed = (amplitude * CURVATURE).div_ceil(20_000 * tolerance);
                 let root = (needed / 8).isqrt().max(1);

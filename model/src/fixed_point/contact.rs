@@ -51,26 +51,20 @@ impl Response {
 
     /// Surface temperature of the skin, °C (Eq. 6-5); error below 0.2 µK + `w e dT`.
     pub fn skin(&self) -> Celsius {
-        self.skin_before
-            .saturating_sub(fraction_of(self.difference(), self.skin_part()))
+        self.skin_before.saturating_sub(fraction_of(self.difference(), self.skin_part()))
     }
 
     /// Surface temperature of the object, °C (Eq. 6-6); error below 0.2 µK + `(1 - w) e dT`.
     pub fn object(&self) -> Celsius {
         let object_part = self.one_less_erfcx().saturating_sub(self.skin_part());
-        self.object_before
-            .saturating_add(fraction_of(self.difference(), object_part))
+        self.object_before.saturating_add(fraction_of(self.difference(), object_part))
     }
 
     /// Temperature of the display's surface at which the skin has the temperature it has on the object, °C
     /// (Eq. 6-12); error below 0.6 µK + `|r - w| e dT`.
     pub fn display(&self) -> Celsius {
         // `w (1 - E) + r E` lies between w and r, below 16, so 60 binary places fit in 64 bits.
-        let by_weight = self
-            .contact
-            .weight
-            .wide_mul(self.one_less_erfcx())
-            .to_bits();
+        let by_weight = self.contact.weight.wide_mul(self.one_less_erfcx()).to_bits();
         let by_ratio = self.contact.ratio.wide_mul(self.erfcx).to_bits();
         let factor = (by_weight >> 4) + by_ratio;
         let factor = (factor + (1 << 32)) >> 33;

@@ -36,10 +36,8 @@ impl ContactPair {
     ) -> Result<Self, ContactPairError> {
         check(skin, object, display, tick_s)?;
         let (es, eo) = (skin.effusivity(), object.effusivity());
-        let conductance = moderate(reference::conductance_at_hardness::<f64>(
-            &skin.surface,
-            &object.surface,
-        ))?;
+        let conductance =
+            moderate(reference::conductance_at_hardness::<f64>(&skin.surface, &object.surface))?;
         let ratio = conductance / reference::conductance_at_hardness::<f64>(&skin.surface, display);
         if ratio >= f64::from(1 << Ratio::INT_NBITS) {
             return Err(ContactPairError::Ratio(ratio));

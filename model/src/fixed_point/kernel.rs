@@ -41,10 +41,7 @@ pub const COUNT_SHIFT: u32 = 12;
 pub fn erfcx(elapsed: Ticks, rate_per_tick: MantissaExponent) -> Fraction {
     // elapsed * (1 + fraction / 2^32), at least 1.
     let product = u64::from(elapsed.get()) * u64::from(rate_per_tick.fraction());
-    let (whole, part) = (
-        ((product >> 32) as u32).wrapping_add(elapsed.get()),
-        product as u32,
-    );
+    let (whole, part) = (((product >> 32) as u32).wrapping_add(elapsed.get()), product as u32);
     // Zeros before the leading one, and bits of `whole` after it.
     let shift = whole.leading_zeros() & 31;
     let places = 31 - shift;
@@ -58,11 +55,8 @@ pub fn erfcx(elapsed: Ticks, rate_per_tick: MantissaExponent) -> Fraction {
     // The low word counts from the start of the row, `t` from its middle.
     let t = (split as u32 ^ 1 << 31) as i32;
 
-    let higher = row
-        .inner
-        .iter()
-        .rev()
-        .fold(step(row.seventh, t, row.sixth), |sum, &c| step(sum, t, c));
+    let higher =
+        row.inner.iter().rev().fold(step(row.seventh, t, row.sixth), |sum, &c| step(sum, t, c));
     let curved = step(step(higher, t, row.sixth), t, row.seventh);
     // The seventh coefficient is the low word, because it is in a register; the fit takes account of it.
     let constant = u64::from(row.constant) << 32 | u64::from(row.seventh as u32);

@@ -3,13 +3,7 @@
 use super::kernel::{Row, Table};
 
 const fn row(constant: u32, slope: i32, seventh: i32, sixth: i32, inner: [i32; 4]) -> Row {
-    Row {
-        constant,
-        slope,
-        seventh,
-        sixth,
-        inner,
-    }
+    Row { constant, slope, seventh, sixth, inner }
 }
 
 #[rustfmt::skip]

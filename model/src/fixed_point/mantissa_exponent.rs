@@ -69,10 +69,7 @@ impl MantissaExponent {
 
     /// Converts exactly, within the range of `f64`.
     pub fn to_f64(self) -> f64 {
-        libm::ldexp(
-            f64::from(self.fraction) + 4_294_967_296.0,
-            self.exponent - 32,
-        )
+        libm::ldexp(f64::from(self.fraction) + 4_294_967_296.0, self.exponent - 32)
     }
 
     /// The 32 bits after the leading one of the mantissa.
@@ -98,9 +95,6 @@ impl MantissaExponent {
 
     /// The number times 2. The exponent is not limited, so it is for few uses in succession.
     pub(super) const fn twice(self) -> Self {
-        Self {
-            fraction: self.fraction,
-            exponent: self.exponent.wrapping_add(1),
-        }
+        Self { fraction: self.fraction, exponent: self.exponent.wrapping_add(1) }
     }
 }

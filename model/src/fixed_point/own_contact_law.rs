@@ -121,11 +121,7 @@ mod tests {
             let scale = SKIN.effusivity() / TICK_S.sqrt();
             let display = contact.expected_display_resistance(&own).to_num::<f64>() / scale;
             let allowed = 3e-5 + 2.0 * RESOLUTION_M2K_W / exact[0] + gap_rounding(exact[0]);
-            prop_assert!(
-                (display / exact[0] - 1.0).abs() < allowed,
-                "{display} of {}",
-                exact[0]
-            );
+            prop_assert!((display / exact[0] - 1.0).abs() < allowed, "{display} of {}", exact[0]);
             let ratio = exact[0] / exact[1];
             if ratio < Ratio::MAX.to_num::<f64>() {
                 let found = contact.ratio_of(&own).to_num::<f64>();
@@ -185,10 +181,7 @@ mod tests {
         let pair = ContactPair::new(&SKIN, granite, &REFERENCE_DISPLAY, TICK_S).expect("a pair");
         let beside = OwnResistances {
             law: OwnContactLaw::new(
-                &ContactLaw {
-                    exponent: 0.95 + 1e-8,
-                    ..ContactLaw::NOMINAL
-                },
+                &ContactLaw { exponent: 0.95 + 1e-8, ..ContactLaw::NOMINAL },
                 TICK_S,
             ),
             ..OwnResistances::NONE
@@ -196,9 +189,7 @@ mod tests {
         for force_n in [0.01, 0.1, 1.0, 10.0] {
             let pressure = log2_relative_pressure(Force::from_num(force_n));
             let of = |own: &OwnResistances| {
-                let resistance = own
-                    .contact(&pair, pressure)
-                    .expected_display_resistance(own);
+                let resistance = own.contact(&pair, pressure).expected_display_resistance(own);
                 resistance.to_num::<f64>()
             };
             let relative = of(&beside) / of(&OwnResistances::NONE) - 1.0;

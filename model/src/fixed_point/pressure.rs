@@ -28,17 +28,11 @@ const SEGMENTS: [Segment; THESIS_PRESSURES.len()] = {
     const fn scaled(value: f64, bits: i32) -> u64 {
         (value * (1u128 << bits) as f64 + 0.5) as u64
     }
-    let mut segments = [Segment {
-        above: Force::ZERO,
-        intercept: 0,
-        slope: 0,
-    }; THESIS_PRESSURES.len()];
+    let mut segments =
+        [Segment { above: Force::ZERO, intercept: 0, slope: 0 }; THESIS_PRESSURES.len()];
     let mut i = 0;
     while i < THESIS_PRESSURES.len() {
-        let (force, area) = (
-            THESIS_PRESSURES[i].0,
-            THESIS_PRESSURES[i].0 / THESIS_PRESSURES[i].1,
-        );
+        let (force, area) = (THESIS_PRESSURES[i].0, THESIS_PRESSURES[i].0 / THESIS_PRESSURES[i].1);
         let slope = if i + 1 < THESIS_PRESSURES.len() {
             (THESIS_PRESSURES[i + 1].0 / THESIS_PRESSURES[i + 1].1 - area)
                 / (THESIS_PRESSURES[i + 1].0 - force)

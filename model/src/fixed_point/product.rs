@@ -154,10 +154,7 @@ mod tests {
             |value: f64| to_fixed::<I10F22>(value * I10F22::DELTA.to_num::<f64>()).to_bits();
         assert_eq!([1.4, 1.5, -1.5, -1.4].map(units), [1, 2, -2, -1]);
         assert_eq!(to_fixed::<I10F22>(f64::NAN), I10F22::ZERO);
-        assert_eq!(
-            [1e9, -1e9].map(to_fixed::<I10F22>),
-            [I10F22::MAX, I10F22::MIN]
-        );
+        assert_eq!([1e9, -1e9].map(to_fixed::<I10F22>), [I10F22::MAX, I10F22::MIN]);
         assert_eq!([1e9, -1e9].map(to_fixed::<U0F32>), [U0F32::MAX, U0F32::MIN]);
     }
 }

@@ -36,10 +36,7 @@ impl fmt::Display for ContactPairError {
             }
             Self::OutOfRange(value) => {
                 let exponent = Rounded(libm::log(*value) * LOG2_E, 2);
-                write!(
-                    f,
-                    "the contact's rate is 2^{exponent}; it must be within 2^-100 to 2^100"
-                )
+                write!(f, "the contact's rate is 2^{exponent}; it must be within 2^-100 to 2^100")
             }
         }
     }
@@ -72,9 +69,7 @@ pub(super) fn check(
     ]
     .into_iter()
     .find(|(_, value)| !is_positive_and_finite(*value))
-    .map_or(Ok(()), |(name, value)| {
-        Err(ContactPairError::Property { name, value })
-    })
+    .map_or(Ok(()), |(name, value)| Err(ContactPairError::Property { name, value }))
 }
 
 /// Not inlined, because it is asked fourteen times.

@@ -61,10 +61,7 @@ impl SlowRelaxation {
 
     /// From the bits of input gain and decay.
     pub(super) const fn from_bits([input_gain, decay]: [i32; 2]) -> Self {
-        Self {
-            input_gain: I0F32::from_bits(input_gain),
-            decay: I0F32::from_bits(decay),
-        }
+        Self { input_gain: I0F32::from_bits(input_gain), decay: I0F32::from_bits(decay) }
     }
 }
 
@@ -98,10 +95,7 @@ impl<const FAST: usize, const SLOW: usize> StateFactors<FAST, SLOW> {
     /// Factors for a change from the relaxations `from` to `to`, of the same rates in the same order. A relaxation without a
     /// gain above its resolution in `from` keeps its state; a factor is at most 16.
     pub fn new(from: &Relaxations<'_>, to: &Relaxations<'_>) -> Self {
-        let mut factors = Self {
-            fast: [I5F27::ONE; FAST],
-            slow: [I5F27::ONE; SLOW],
-        };
+        let mut factors = Self { fast: [I5F27::ONE; FAST], slow: [I5F27::ONE; SLOW] };
         for ((own, from), to) in factors.fast.iter_mut().zip(from.fast).zip(to.fast) {
             *own = ratio(from.input_gain, to.input_gain);
         }
@@ -240,11 +234,7 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
     pub fn uniform_in_step_with<const F: usize, const S: usize>(
         other: &RelaxationBank<F, S>,
     ) -> Self {
-        Self {
-            window: other.window,
-            ticks_left: other.ticks_left,
-            ..Self::default()
-        }
+        Self { window: other.window, ticks_left: other.ticks_left, ..Self::default() }
     }
 
     /// Change of the surface temperature at the end of the coming tick if no flux flows, K.
@@ -255,8 +245,7 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
     /// Change of the surface temperature at the end of the coming tick if `scaled_flux` flows in it, K.
     #[inline]
     pub fn response_to(&self, scaled_flux: Celsius, relaxations: &Relaxations<'_>) -> Celsius {
-        self.free_response
-            .saturating_add(product(bounded(scaled_flux), relaxations.tick_gain))
+        self.free_response.saturating_add(product(bounded(scaled_flux), relaxations.tick_gain))
     }
 
     /// Updates the state by one tick in which `scaled_flux` flows.
@@ -265,9 +254,7 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
         let flux = bounded(scaled_flux);
         let mut fast_sum = Celsius::ZERO;
         for (state, relaxation) in self.fast.iter_mut().zip(relaxations.fast) {
-            let FastRelaxation {
-                input_gain, change, ..
-            } = *relaxation;
+            let FastRelaxation { input_gain, change, .. } = *relaxation;
             let heated = *state + flux.wide_mul(input_gain);
             *state = heated + celsius(heated).wide_mul(change);
             fast_sum = fast_sum.saturating_add(celsius(*state));
@@ -376,11 +363,7 @@ mod tests {
     #[test]
     fn a_gain_of_no_more_than_its_resolution_leaves_the_state() {
         for from in [i32::MIN, -1, 0, 1] {
-            assert_eq!(
-                ratio(I0F32::from_bits(from), I0F32::MAX),
-                I5F27::ONE,
-                "{from}"
-            );
+            assert_eq!(ratio(I0F32::from_bits(from), I0F32::MAX), I5F27::ONE, "{from}");
         }
     }
 }

@@ -6,10 +6,7 @@ use crate::material::{Material, SKIN_MICROHARDNESS_PA, Surface};
 /// Contact conductance `1.25 k_s da / R_q` of two surfaces where the pressure equals the microhardness, W/(m² K)
 /// (Eq. 6-8 to 6-11), for positive properties; relative error of a few roundings of `F`.
 pub fn conductance_at_hardness<F: Real>(a: &Surface, b: &Surface) -> F {
-    let (ka, kb) = (
-        F::from_f64(a.conductivity_w_mk),
-        F::from_f64(b.conductivity_w_mk),
-    );
+    let (ka, kb) = (F::from_f64(a.conductivity_w_mk), F::from_f64(b.conductivity_w_mk));
     let root_sum_square = |x: f64, y: f64| {
         let (x, y) = (F::from_f64(x), F::from_f64(y));
         (x * x + y * y).sqrt()
@@ -72,10 +69,7 @@ impl<F: Real> Contact<F> {
         display: &Surface,
         pressure_pa: F,
     ) -> Self {
-        let (es, eo) = (
-            F::from_f64(skin.effusivity()),
-            F::from_f64(object.effusivity()),
-        );
+        let (es, eo) = (F::from_f64(skin.effusivity()), F::from_f64(object.effusivity()));
         let one = F::from_f64(1.0);
         let resistance_m2k_w = contact_resistance(&skin.surface, &object.surface, pressure_pa);
         let b = (one / es + one / eo) / resistance_m2k_w;

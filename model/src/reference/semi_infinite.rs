@@ -11,10 +11,7 @@ pub fn interface_temperature<F: Real>(
     object: &Material,
     object_c: F,
 ) -> F {
-    let (es, eo) = (
-        F::from_f64(skin.effusivity()),
-        F::from_f64(object.effusivity()),
-    );
+    let (es, eo) = (F::from_f64(skin.effusivity()), F::from_f64(object.effusivity()));
     (object_c * eo + skin_c * es) / (eo + es)
 }
 

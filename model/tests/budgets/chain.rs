@@ -15,9 +15,7 @@ use crate::golden::{material, number, rows};
 /// Forces of the whole range: logarithmic, near zero, and around the five points where the slope of the area changes.
 fn forces() -> impl Iterator<Item = Force> {
     let points_of_thesis = [0.1, 0.25, 0.5, 1.0, 2.0].map(|n| Force::from_num(n).to_bits());
-    let around = points_of_thesis
-        .into_iter()
-        .flat_map(|bits| bits - 4..=bits + 4);
+    let around = points_of_thesis.into_iter().flat_map(|bits| bits - 4..=bits + 4);
     let wide = points::<1>(20_000).map(|[part]| log_between(part, 1.0, f64::from(u32::MAX)) as u32);
     around.chain(1..1000).chain(wide).map(Force::from_bits)
 }
@@ -43,9 +41,7 @@ fn log2_of_pressure(pressure_pa: f64) -> Log2 {
 
 /// Every force, with the materials of the thesis in turn.
 fn each_force() -> impl Iterator<Item = (&'static Material, Force)> {
-    forces()
-        .zip(MATERIALS.iter().cycle())
-        .map(|(force, (_, object))| (object, force))
+    forces().zip(MATERIALS.iter().cycle()).map(|(force, (_, object))| (object, force))
 }
 
 pub fn resistance() -> f64 {
@@ -56,10 +52,7 @@ pub fn resistance() -> f64 {
     });
     let swept = each_force().map(|(object, force)| {
         let contact = contact_pair(object, 1e-3).at_pressure(log2_relative_pressure(force));
-        (
-            contact,
-            float(object, pressure_pa(force.to_num())).resistance_m2k_w,
-        )
+        (contact, float(object, pressure_pa(force.to_num())).resistance_m2k_w)
     });
     worst(
         (golden.chain(swept))
@@ -76,10 +69,7 @@ pub fn per_tick() -> f64 {
     let swept = [1e-5, 1e-3, 0.1].into_iter().flat_map(|tick_s| {
         each_force().map(move |(object, force)| {
             let contact = contact_pair(object, tick_s).at_pressure(log2_relative_pressure(force));
-            (
-                contact,
-                float(object, pressure_pa(force.to_num())).rate_per_s * tick_s,
-            )
+            (contact, float(object, pressure_pa(force.to_num())).rate_per_s * tick_s)
         })
     });
     worst(
@@ -135,11 +125,7 @@ fn golden() -> impl Iterator<Item = Compared> {
             .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         let (skin_c, object_c) = (number(&row, "T_skin_i_C"), number(&row, "T_object_i_C"));
         Compared {
-            fixed: contact.at(
-                elapsed,
-                Celsius::from_num(skin_c),
-                Celsius::from_num(object_c),
-            ),
+            fixed: contact.at(elapsed, Celsius::from_num(skin_c), Celsius::from_num(object_c)),
             truth: reference::Response {
                 erfcx: number(&row, "erfcx_z"),
                 skin_c: number(&row, "T_skin_s_C"),
@@ -221,24 +207,17 @@ pub fn flux() -> f64 {
     worst(both().map(|c| {
         let error = (c.fixed.flux_w_m2().to_num::<f64>() - c.truth.flux_w_m2).abs();
         let beyond = (error - Flux::DELTA.to_num::<f64>()).max(0.0);
-        if beyond == 0.0 {
-            0.0
-        } else {
-            1e9 * beyond / c.landing_flux
-        }
+        if beyond == 0.0 { 0.0 } else { 1e9 * beyond / c.landing_flux }
     }))
 }
 
 pub fn preset() -> f64 {
-    let golden = rows("contact")
-        .into_iter()
-        .filter(|row| number(row, "t_s") == 0.0)
-        .map(|row| {
-            let before = |column| Celsius::from_num(number(&row, column));
-            let t = contact_pair(material(&row), 1e-3)
-                .preset(before("T_skin_i_C"), before("T_object_i_C"));
-            micro_kelvin(t, number(&row, "T_display_C"))
-        });
+    let golden = rows("contact").into_iter().filter(|row| number(row, "t_s") == 0.0).map(|row| {
+        let before = |column| Celsius::from_num(number(&row, column));
+        let t =
+            contact_pair(material(&row), 1e-3).preset(before("T_skin_i_C"), before("T_object_i_C"));
+        micro_kelvin(t, number(&row, "T_display_C"))
+    });
     let swept = points::<3>(20_000).map(|[index, skin, step]| {
         let object = &MATERIALS[(index * 8.0) as usize].1;
         let (skin_c, object_c) = skin_and_object(skin, step);

@@ -19,10 +19,7 @@ pub fn kernel() -> f64 {
     let octaves = inner.clone().flat_map(mantissas);
     let range = f64::from(inner.start).exp2()..f64::from(inner.end).exp2();
     worst(
-        octaves
-            .chain(times_and_rates())
-            .filter(|(u, _)| range.contains(u))
-            .map(|(_, error)| error),
+        octaves.chain(times_and_rates()).filter(|(u, _)| range.contains(u)).map(|(_, error)| error),
     )
 }
 
@@ -34,10 +31,7 @@ pub fn kernel_anywhere() -> f64 {
         MantissaExponent::from_f64(z * z)
             .map(|u| (z * z, kernel_units(1, u, number(&row, "erfcx"))))
     });
-    let all = outer
-        .flat_map(mantissas)
-        .chain(times_and_rates())
-        .chain(golden);
+    let all = outer.flat_map(mantissas).chain(times_and_rates()).chain(golden);
     worst(all.map(|(_, error)| error))
 }
 
@@ -47,10 +41,7 @@ fn mantissas(octave: i32) -> impl Iterator<Item = (f64, f64)> {
         let fraction = i << 20 | i.wrapping_mul(2_654_435_761) >> 12;
         let rate_per_tick = MantissaExponent::new(octave as i16, fraction);
         let u = rate_per_tick.to_f64();
-        (
-            u,
-            kernel_units(1, rate_per_tick, reference::erfcx(u.sqrt())),
-        )
+        (u, kernel_units(1, rate_per_tick, reference::erfcx(u.sqrt())))
     })
 }
 
@@ -61,10 +52,7 @@ fn times_and_rates() -> impl Iterator<Item = (f64, f64)> {
         let rate_per_tick =
             MantissaExponent::from_f64(log_between(rate, 1e-25, 1e20)).expect("normal");
         let u = f64::from(elapsed) * rate_per_tick.to_f64();
-        (
-            u,
-            kernel_units(elapsed, rate_per_tick, reference::erfcx(u.sqrt())),
-        )
+        (u, kernel_units(elapsed, rate_per_tick, reference::erfcx(u.sqrt())))
     })
 }
 

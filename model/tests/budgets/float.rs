@@ -7,11 +7,7 @@ use super::sweep::{log_between, points, relative, worst};
 use crate::golden::{Row, material, number, rows};
 
 pub fn erfcx_f64() -> f64 {
-    worst(
-        rows("erfcx")
-            .iter()
-            .map(|row| relative(erfcx(number(row, "x")), number(row, "erfcx"))),
-    )
+    worst(rows("erfcx").iter().map(|row| relative(erfcx(number(row, "x")), number(row, "erfcx"))))
 }
 
 /// For arguments and results within the normal range of `f32`.
@@ -19,10 +15,8 @@ pub fn erfcx_f32() -> f64 {
     let error = |z: f32, truth: f64| {
         (truth > f64::from(f32::MIN_POSITIVE)).then(|| relative(f64::from(erfcx(z)), truth))
     };
-    let golden = (rows("erfcx")
-        .into_iter()
-        .filter(|row| row["f32_exact"] == "1"))
-    .filter_map(|row| error(number(&row, "x") as f32, number(&row, "erfcx")));
+    let golden = (rows("erfcx").into_iter().filter(|row| row["f32_exact"] == "1"))
+        .filter_map(|row| error(number(&row, "x") as f32, number(&row, "erfcx")));
     let swept = points::<1>(100_000).filter_map(|[part]| {
         let z = log_between(part, 1e-8, 1e37) as f32;
         error(z, erfcx(f64::from(z)))
@@ -54,20 +48,15 @@ fn contact<F: Real>(row: &Row) -> Contact<F> {
 pub fn ratio() -> f64 {
     let rows = rows("contact");
     worst(
-        rows.iter()
-            .map(|row| relative(contact::<f64>(row).ratio, number(row, "ratio_Rdisp_Robj"))),
+        rows.iter().map(|row| relative(contact::<f64>(row).ratio, number(row, "ratio_Rdisp_Robj"))),
     )
 }
 
 fn temperatures<F: Real>() -> f64 {
     worst(rows("contact").iter().flat_map(|row| {
         let at = contact::<F>(row).at(F::from_f64(number(row, "t_s")));
-        [
-            (at.skin_c, "T_skin_s_C"),
-            (at.object_c, "T_object_s_C"),
-            (at.display_c, "T_display_C"),
-        ]
-        .map(|(t, column)| 1e6 * (t.to_f64() - number(row, column)))
+        [(at.skin_c, "T_skin_s_C"), (at.object_c, "T_object_s_C"), (at.display_c, "T_display_C")]
+            .map(|(t, column)| 1e6 * (t.to_f64() - number(row, column)))
     }))
 }
 

@@ -34,9 +34,7 @@ pub fn depth_f64() -> f64 {
 
 pub fn flux_f64() -> f64 {
     worst(rows("semi_infinite_profile").iter().map(|row| {
-        let flux = golden_f64(row)
-            .flux_w_m2(number(row, "t_s"))
-            .expect("after landing");
+        let flux = golden_f64(row).flux_w_m2(number(row, "t_s")).expect("after landing");
         relative(flux, number(row, "q_eq3_3_signed_W_m2"))
     }))
 }

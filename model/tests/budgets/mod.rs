@@ -23,24 +23,15 @@ const BUDGETS: [(&str, Measure); 30] = [
     ("budget.float_flux_f64", float::flux_f64),
     ("budget.float_temperatures_f32", float::temperatures_f32),
     ("budget.float_contact_interior", float::contact_interior),
-    (
-        "budget.half_spaces_interface_f64",
-        half_spaces::interface_f64,
-    ),
+    ("budget.half_spaces_interface_f64", half_spaces::interface_f64),
     ("budget.half_spaces_depth_f64", half_spaces::depth_f64),
     ("budget.half_spaces_flux_f64", half_spaces::flux_f64),
     ("budget.half_spaces_fourier_f64", half_spaces::fourier_f64),
     ("budget.elementary_kernel", elementary::kernel),
-    (
-        "budget.elementary_kernel_anywhere",
-        elementary::kernel_anywhere,
-    ),
+    ("budget.elementary_kernel_anywhere", elementary::kernel_anywhere),
     ("budget.elementary_log2_error", elementary::log2_error),
     ("budget.elementary_exp2_error", elementary::exp2_error),
-    (
-        "budget.elementary_rate_from_log2",
-        elementary::rate_from_log2,
-    ),
+    ("budget.elementary_rate_from_log2", elementary::rate_from_log2),
     ("budget.elementary_rate_times", elementary::rate_times),
     ("budget.chain_log2_pressure", chain::log2_pressure),
     ("budget.chain_resistance", chain::resistance),
@@ -53,10 +44,7 @@ const BUDGETS: [(&str, Measure); 30] = [
     ("budget.chain_display_steep", chain::display_steep),
     ("budget.chain_flux", chain::flux),
     ("budget.chain_preset", chain::preset),
-    (
-        "budget.half_spaces_interface_fixed",
-        half_spaces::interface_fixed,
-    ),
+    ("budget.half_spaces_interface_fixed", half_spaces::interface_fixed),
 ];
 
 #[test]

@@ -24,22 +24,17 @@ pub fn log_between(part: f64, low: f64, high: f64) -> f64 {
 
 /// Largest magnitude of the errors; NaN if one is NaN.
 pub fn worst(errors: impl Iterator<Item = f64>) -> f64 {
-    errors.map(f64::abs).fold(0.0, |worst, error| {
-        if worst.is_nan() || error <= worst {
-            worst
-        } else {
-            error
-        }
-    })
+    errors.map(f64::abs).fold(
+        0.0,
+        |worst, error| {
+            if worst.is_nan() || error <= worst { worst } else { error }
+        },
+    )
 }
 
 /// Magnitude of the relative error.
 pub fn relative(value: f64, truth: f64) -> f64 {
-    if value == truth {
-        0.0
-    } else {
-        (value / truth - 1.0).abs()
-    }
+    if value == truth { 0.0 } else { (value / truth - 1.0).abs() }
 }
 
 /// Temperatures of skin and object, within the range of temperatures and at most 60 K apart.

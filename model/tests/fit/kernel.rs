@@ -48,18 +48,10 @@ impl Basis {
 
     /// Coefficient of `t^k` (`t` from -1/2 to 1/2) in the Chebyshev series of `values`, truncated after degree `k`.
     fn leading(&self, k: usize, values: &[f64; POINTS]) -> f64 {
-        let sum: f64 = values
-            .iter()
-            .zip(&self.polynomials[k])
-            .map(|(v, p)| v * p)
-            .sum();
+        let sum: f64 = values.iter().zip(&self.polynomials[k]).map(|(v, p)| v * p).sum();
         let mean = sum / POINTS as f64;
         // The leading coefficient of the k-th polynomial is 2^(k-1) in 2t.
-        if k == 0 {
-            mean
-        } else {
-            mean * 4f64.powi(k as i32)
-        }
+        if k == 0 { mean } else { mean * 4f64.powi(k as i32) }
     }
 
     fn subtract(&self, k: usize, coefficient: f64, values: &mut [f64; POINTS]) {
@@ -124,9 +116,7 @@ fn fit(basis: &Basis, octave: i32, index: u32, count: u32) -> Option<Fit> {
         for (k, error) in rounding.into_iter().enumerate() {
             basis.subtract(k, -error, &mut residual);
         }
-        let error = residual
-            .iter()
-            .fold(0.0, |worst: f64, e| worst.max(e.abs()));
+        let error = residual.iter().fold(0.0, |worst: f64, e| worst.max(e.abs()));
         if best.is_none_or(|best| error < best.error) {
             if !fits(&powers) {
                 return None;
@@ -146,29 +136,19 @@ fn fit(basis: &Basis, octave: i32, index: u32, count: u32) -> Option<Fit> {
 
 /// Fits an octave that is divided into `count` equal rows.
 fn fit_octave(basis: &Basis, octave: i32, count: u32) -> Option<Vec<Fit>> {
-    (0..count)
-        .map(|index| fit(basis, octave, index, count))
-        .collect()
+    (0..count).map(|index| fit(basis, octave, index, count)).collect()
 }
 
 /// Weighted largest error of an octave.
 fn weighted_error(octave: i32, rows: &[Fit]) -> f64 {
-    let weight = if PRACTICAL_OCTAVES.contains(&octave) {
-        PRACTICAL_WEIGHT
-    } else {
-        1.0
-    };
-    rows.iter()
-        .fold(0.0, |worst: f64, row| worst.max(row.error))
-        * weight
+    let weight = if PRACTICAL_OCTAVES.contains(&octave) { PRACTICAL_WEIGHT } else { 1.0 };
+    rows.iter().fold(0.0, |worst: f64, row| worst.max(row.error)) * weight
 }
 
 /// Rows of every fitted octave: one each, then one more where the error is largest, until the table is full.
 fn octaves(basis: &Basis) -> Vec<Vec<Fit>> {
     let smallest = |octave: i32, from: u32| {
-        (from..)
-            .find_map(|count| fit_octave(basis, octave, count))
-            .unwrap()
+        (from..).find_map(|count| fit_octave(basis, octave, count)).unwrap()
     };
     let mut octaves: Vec<_> = FITTED.map(|octave| smallest(octave, 1)).collect();
     loop {
@@ -189,12 +169,7 @@ fn octaves(basis: &Basis) -> Vec<Vec<Fit>> {
 /// Text of `kernel_table.rs`.
 pub fn table() -> String {
     let octaves = octaves(&Basis::new());
-    let saturated = |constant| Fit {
-        constant,
-        slope: 0,
-        powers: [0; DEGREE + 1],
-        error: 0.0,
-    };
+    let saturated = |constant| Fit { constant, slope: 0, powers: [0; DEGREE + 1], error: 0.0 };
     let mut all = vec![vec![saturated(u32::MAX)]];
     all.extend(octaves);
     all.push(vec![saturated(0)]);
@@ -224,18 +199,8 @@ pub fn table() -> String {
         write!(text, "\n        {},", words.join(", ")).unwrap();
     }
     text.push_str("\n    ],\n    rows: [\n");
-    for Fit {
-        constant,
-        slope,
-        powers: [_, _, inner @ .., sixth, seventh],
-        ..
-    } in rows
-    {
-        writeln!(
-            text,
-            "        row({constant}, {slope}, {seventh}, {sixth}, {inner:?}),"
-        )
-        .unwrap();
+    for Fit { constant, slope, powers: [_, _, inner @ .., sixth, seventh], .. } in rows {
+        writeln!(text, "        row({constant}, {slope}, {seventh}, {sixth}, {inner:?}),").unwrap();
     }
     text.push_str("    ],\n};\n");
     text

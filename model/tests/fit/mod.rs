@@ -35,10 +35,8 @@ fn table_rows(f: impl Fn(f64) -> f64) -> String {
     for row in 0..32 {
         let powers = fit::<5>(|t| f((f64::from(row) + t) / 32.0));
         let constant = (powers[0] * 2f64.powi(32)).round().max(0.0) as u64;
-        let slopes: Vec<i64> = powers[1..]
-            .iter()
-            .map(|c| (c * 2f64.powi(35)).round() as i64)
-            .collect();
+        let slopes: Vec<i64> =
+            powers[1..].iter().map(|c| (c * 2f64.powi(35)).round() as i64).collect();
         writeln!(text, "    row({constant}, {slopes:?}),").unwrap();
     }
     text + "];\n"

@@ -52,10 +52,7 @@ pub fn kernel(octave: i32, bits: u32) -> u32 {
 
 /// Checks every input of `octave` in `bits`, whose ends are multiples of [`BLOCK`].
 pub fn exhaustive(octave: i32, bits: Range<u64>) -> Statistics {
-    let mut statistics = Statistics {
-        inputs: bits.end - bits.start,
-        ..Statistics::default()
-    };
+    let mut statistics = Statistics { inputs: bits.end - bits.start, ..Statistics::default() };
     let mut previous = match bits.start {
         0 => u32::MAX,
         first => kernel(octave, first as u32 - 1),
@@ -64,10 +61,8 @@ pub fn exhaustive(octave: i32, bits: Range<u64>) -> Statistics {
         // The parabola through both ends and the middle.
         let half = BLOCK as f64 / 2.0;
         let [a, b, c] = [0.0, half, 2.0 * half].map(|offset| exact(octave, start as f64 + offset));
-        let (slope, curvature) = (
-            (4.0 * b - 3.0 * a - c) / (2.0 * half),
-            (a - 2.0 * b + c) / (2.0 * half * half),
-        );
+        let (slope, curvature) =
+            ((4.0 * b - 3.0 * a - c) / (2.0 * half), (a - 2.0 * b + c) / (2.0 * half * half));
         for i in 0..BLOCK {
             let value = kernel(octave, (start + i) as u32);
             let x = i as f64;

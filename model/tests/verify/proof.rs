@@ -41,23 +41,14 @@ pub fn bound(octave: i32) -> f64 {
     let (count, first) = (descriptor >> 12, descriptor & 0xfff);
     (0..count)
         .map(|index| {
-            row_bound(
-                octave,
-                index,
-                count,
-                &kernel_table::TABLE.rows[usize::from(first + index)],
-            )
+            row_bound(octave, index, count, &kernel_table::TABLE.rows[usize::from(first + index)])
         })
         .fold(0.0, worse)
 }
 
 /// The larger of two errors; infinite if one is NaN.
 fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() {
-        f64::INFINITY
-    } else {
-        a.max(b)
-    }
+    if a.is_nan() || b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
 fn row_bound(octave: i32, index: u16, count: u16, row: &kernel::Row) -> f64 {
@@ -66,19 +57,15 @@ fn row_bound(octave: i32, index: u16, count: u16, row: &kernel::Row) -> f64 {
     let count = f64::from(count);
     let curvature = |powers: [f64; 8]| {
         let terms = powers.iter().enumerate().skip(2);
-        terms
-            .map(|(k, c)| (k * (k - 1)) as f64 * c.abs() * 0.5f64.powi(k as i32 - 2))
-            .sum::<f64>()
+        terms.map(|(k, c)| (k * (k - 1)) as f64 * c.abs() * 0.5f64.powi(k as i32 - 2)).sum::<f64>()
     };
     let u = f64::from(octave).exp2();
     let pi_root = std::f64::consts::PI.sqrt();
     let rising = (2.0 * u).sqrt() / (2.0 * pi_root);
     let falling = 0.75 / (pi_root * u.sqrt());
     let exact_curvature = rising.min(falling) / UNIT / (count * count);
-    let steps = ((curvature(powers) + exact_curvature) / (8.0 * CURVATURE))
-        .sqrt()
-        .ceil()
-        .max(1.0) as u32;
+    let steps =
+        ((curvature(powers) + exact_curvature) / (8.0 * CURVATURE)).sqrt().ceil().max(1.0) as u32;
 
     let at_grid = (0..=steps).map(|i| {
         let t = f64::from(i) / f64::from(steps) - 0.5;
@@ -100,16 +87,7 @@ fn row_bound(octave: i32, index: u16, count: u16, row: &kernel::Row) -> f64 {
 /// Whether every sum of the evaluation fits in 32 bits for any `t`.
 fn fits(row: &kernel::Row) -> bool {
     let [second, third, fourth, fifth] = row.inner;
-    let order = [
-        row.seventh,
-        row.sixth,
-        fifth,
-        fourth,
-        third,
-        second,
-        row.sixth,
-        row.seventh,
-    ];
+    let order = [row.seventh, row.sixth, fifth, fourth, third, second, row.sixth, row.seventh];
     let mut sum = 0.0;
     order.into_iter().all(|next| {
         sum = sum / 2.0 + f64::from(next).abs() + 1.0;
@@ -125,9 +103,7 @@ fn powers(row: &kernel::Row) -> [f64; 8] {
     let low_word = f64::from(row.seventh as u32) * UNIT;
     let constant = f64::from(row.constant) + low_word + seventh - 0.5;
     let slope = f64::from(row.slope) + sixth;
-    [
-        constant, slope, second, third, fourth, fifth, sixth, seventh,
-    ]
+    [constant, slope, second, third, fourth, fifth, sixth, seventh]
 }
 
 /// `E` in units of 2^-32. For small `z = sqrt(u)` it is the power series with terms `(-z)^k / gamma(k/2 + 1)`, for large

@@ -26,10 +26,7 @@ impl ChipMonitor {
             (true, REQUIRED_LEVEL) => None,
             (true, _) => Some(Fault::BrownOutLevel),
         };
-        Self {
-            fault_at_start,
-            late_clock: (!has_clock).then(LateClock::default),
-        }
+        Self { fault_at_start, late_clock: (!has_clock).then(LateClock::default) }
     }
 
     /// The fault of the microcontroller that is present in this tick, if any.

@@ -53,11 +53,7 @@ fn panic(info: &PanicInfo<'_>) -> ! {
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     disable_bridges_and_store_first_fault(Fault::HardFault);
     if is_first_error_to_log() {
-        defmt::error!(
-            "hard fault at pc {=u32:#x}, lr {=u32:#x}",
-            frame.pc(),
-            frame.lr()
-        );
+        defmt::error!("hard fault at pc {=u32:#x}, lr {=u32:#x}", frame.pc(), frame.lr());
     }
     start_watchdog_and_wait_for_reset()
 }

@@ -279,9 +279,7 @@ impl Board {
         // Before the clocks are set up, because this watchdog has its own oscillator.
         let watchdog = IndependentWatchdog::start(peripherals.IWDG);
         let has_clock = try_start_hse_from_probe(&peripherals.RCC);
-        let mut rcc = peripherals
-            .RCC
-            .freeze(clock_config_from_hse_or_hsi(has_clock));
+        let mut rcc = peripherals.RCC.freeze(clock_config_from_hse_or_hsi(has_clock));
         if has_clock {
             enable_clock_security(&mut rcc);
         }
@@ -307,12 +305,7 @@ impl Board {
         let (stages, multiplexer) = {
             let gpiod = peripherals.GPIOD.split(&mut rcc);
             let pins = wiring::BridgePeripherals {
-                timers: (
-                    peripherals.TIM1,
-                    peripherals.TIM8,
-                    peripherals.TIM10,
-                    peripherals.TIM11,
-                ),
+                timers: (peripherals.TIM1, peripherals.TIM8, peripherals.TIM10, peripherals.TIM11),
                 first: (gpioa.pa8, gpioa.pa9),
                 second: (gpioa.pa10, gpioa.pa11),
                 third: (gpioc.pc6, gpioc.pc7),
@@ -437,16 +430,9 @@ fn try_start_hse_from_probe(rcc: &pac::RCC) -> bool {
 /// All rates are exact: the USART's 45 MHz are a multiple of the baud rate, and the sample timer's
 /// 90 MHz a multiple of the scan rate.
 fn clock_config_from_hse_or_hsi(has_clock: bool) -> Config {
-    let source = if has_clock {
-        Config::hse(8.MHz()).bypass_hse_oscillator()
-    } else {
-        Config::hsi()
-    };
-    source
-        .sysclk(180.MHz())
-        .hclk(180.MHz())
-        .pclk1(45.MHz())
-        .pclk2(90.MHz())
+    let source =
+        if has_clock { Config::hse(8.MHz()).bypass_hse_oscillator() } else { Config::hsi() };
+    source.sysclk(180.MHz()).hclk(180.MHz()).pclk1(45.MHz()).pclk2(90.MHz())
 }
 
 /// Enables the clock security system. When the 8 MHz clock of the probe fails, the hardware

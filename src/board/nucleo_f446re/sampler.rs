@@ -90,9 +90,7 @@ impl SampleTrigger {
     pub fn start(&mut self) {
         // This cannot fail, because the counter has 32 bits. 90 MHz is an exact multiple of both
         // scan rates, 16 and 90 kHz.
-        let _ = self
-            .0
-            .start(((SCANS_PER_BLOCK * FINGERS) as u32 * TICK_HZ).Hz());
+        let _ = self.0.start(((SCANS_PER_BLOCK * FINGERS) as u32 * TICK_HZ).Hz());
     }
 }
 
@@ -147,9 +145,7 @@ impl Sampler {
     ) -> Result<(FingerIndex<FINGERS>, &[Scan; SCANS_PER_TICK]), SampleError> {
         // Checked first, because the start of the tick is measured; reported last, because the
         // other errors are more specific.
-        let clock_check = self
-            .tick_rate_and_rcc_monitor
-            .check_rcc_cfgr_and_tick_rate();
+        let clock_check = self.tick_rate_and_rcc_monitor.check_rcc_cfgr_and_tick_rate();
         let finger = self.finger;
         self.finger_was_selected = self.multiplexer.can_have_selected(finger);
         self.finger = finger.next_cyclic();
@@ -161,13 +157,10 @@ impl Sampler {
             return Err(SampleError::Bus);
         }
         let spare = self.spare.take().ok_or(SampleError::Bus)?;
-        let (block, which) = self
-            .transfer
-            .next_transfer(spare)
-            .map_err(|error| match error {
-                DMAError::Overrun(_) => SampleError::Late,
-                DMAError::NotReady(_) | DMAError::SmallBuffer(_) => SampleError::Bus,
-            })?;
+        let (block, which) = self.transfer.next_transfer(spare).map_err(|error| match error {
+            DMAError::Overrun(_) => SampleError::Late,
+            DMAError::NotReady(_) | DMAError::SmallBuffer(_) => SampleError::Bus,
+        })?;
         if which == self.last_buffer {
             return Err(SampleError::Late);
         }
@@ -176,11 +169,7 @@ impl Sampler {
         if finger == FingerIndex::FIRST {
             defmt_rtt_log::advance_uptime_by_1_ms();
         }
-        let scans = self
-            .spare
-            .insert(block)
-            .last_chunk()
-            .ok_or(SampleError::Bus)?;
+        let scans = self.spare.insert(block).last_chunk().ok_or(SampleError::Bus)?;
         Ok((finger, scans))
     }
 
@@ -200,8 +189,7 @@ impl Sampler {
     /// Stops sampling until the next reset. No control tick follows, so the watchdogs are no longer
     /// fed and reset the device.
     pub fn stop(&mut self) {
-        self.transfer
-            .pause(SensorAdc::disable_adc_and_overrun_interrupt);
+        self.transfer.pause(SensorAdc::disable_adc_and_overrun_interrupt);
     }
 }
 
@@ -250,8 +238,7 @@ impl SensorAdc {
             w.sq7().bits(12); // current, PC2
             w.sq8().bits(14) // supply, PC4
         });
-        adc.sqr1()
-            .write(|w| w.l().set(ADC_CHANNELS_PER_FINGER as u8 - 1));
+        adc.sqr1().write(|w| w.l().set(ADC_CHANNELS_PER_FINGER as u8 - 1));
         adc.cr1().write(|w| w.scan().enabled().ovrie().enabled());
         adc.cr2().write(|w| {
             w.dma().enabled();
@@ -262,10 +249,7 @@ impl SensorAdc {
         });
         // The converter takes 3 us to start (datasheet, t_STAB); the core runs at 180 MHz.
         cortex_m::asm::delay(3 * 180);
-        Self {
-            adc,
-            _inputs: inputs,
-        }
+        Self { adc, _inputs: inputs }
     }
 
     /// Switches ADC1 off and disables its overrun interrupt, which the conversions would raise once

@@ -46,7 +46,5 @@ fn write_dose_and_checksum([saved, sum]: &[AtomicU32; 2], dose: &ThermalDose) {
 /// Sets the saved thermal doses of all fingers to zero. Called after power-on, when the content of
 /// the RAM is arbitrary.
 pub fn zero_saved_doses() {
-    SAVED_DOSES
-        .iter()
-        .for_each(|saved| write_dose_and_checksum(saved, &ThermalDose::default()));
+    SAVED_DOSES.iter().for_each(|saved| write_dose_and_checksum(saved, &ThermalDose::default()));
 }

@@ -51,10 +51,7 @@ pub struct FullAndEmptyFrameQueues {
 impl FullAndEmptyFrameQueues {
     /// Creates both queues without frames; [`set_up`] then puts the free frames into `empty`.
     pub const fn new() -> Self {
-        Self {
-            full: Queue::new(),
-            empty: Queue::new(),
-        }
+        Self { full: Queue::new(), empty: Queue::new() }
     }
 }
 
@@ -180,9 +177,7 @@ pub fn set_up(
     line_queue: LineProducer<'static>,
     rcc: &mut Rcc,
 ) -> (Receiver, Transmitter, Outbox) {
-    let config = Config::default()
-        .baudrate(BAUD.bps())
-        .dma(config::DmaConfig::Tx);
+    let config = Config::default().baudrate(BAUD.bps()).dma(config::DmaConfig::Tx);
     let (tx, mut rx) = Serial::new(usart, (tx, rx), config, rcc)
         .expect("the clock of the USART is at least eight times the baud rate")
         .split();
@@ -200,20 +195,8 @@ pub fn set_up(
         .transfer_error_interrupt(true);
     let transfer = Transfer::init_memory_to_peripheral(stream, tx, first, None, config);
 
-    let receiver = Receiver {
-        rx,
-        reader: LineReader::new(),
-        line_queue,
-    };
-    let transmitter = Transmitter {
-        transfer,
-        sending: false,
-        full: full_out,
-        empty: empty_in,
-    };
-    let outbox = Outbox {
-        full: full_in,
-        empty: empty_out,
-    };
+    let receiver = Receiver { rx, reader: LineReader::new(), line_queue };
+    let transmitter = Transmitter { transfer, sending: false, full: full_out, empty: empty_in };
+    let outbox = Outbox { full: full_in, empty: empty_out };
     (receiver, transmitter, outbox)
 }

@@ -147,9 +147,7 @@ impl<'a> SettingsFlash<'a> {
 /// lie within the three sectors, and that `from` and `bytes` are multiples of `unit` bytes. Returns
 /// [`FlashError::OutOfBounds`] if not.
 fn check_bounds_and_alignment(from: usize, bytes: usize, unit: usize) -> Result<(), FlashError> {
-    let within = from
-        .checked_add(bytes)
-        .is_some_and(|end| end <= CAPACITY_BYTES);
+    let within = from.checked_add(bytes).is_some_and(|end| end <= CAPACITY_BYTES);
     if within && from.is_multiple_of(unit) && bytes.is_multiple_of(unit) {
         Ok(())
     } else {
@@ -208,9 +206,8 @@ impl NorFlash for SettingsFlash<'_> {
         self.with_flash_unlocked(|flash| {
             // `write` starts from the reset value, as in `erase`.
             (flash.0.cr()).write(|w| w.lock().clear_bit().psize().psize32().pg().set_bit());
-            for (word, address) in words
-                .iter()
-                .zip((SETTINGS_ADDRESS + offset as usize..).step_by(WORD_BYTES))
+            for (word, address) in
+                words.iter().zip((SETTINGS_ADDRESS + offset as usize..).step_by(WORD_BYTES))
             {
                 // SAFETY: the address is that of an aligned word within the sectors, which hold no
                 // part of the program; PG is set.

@@ -135,9 +135,7 @@ pub fn save_pending_and_load(registers: &FLASH) -> SaveAndLoadResult {
     let save_result = PENDING_SAVE.count_attempt_and_read_settings().map(|bytes| {
         let settings =
             decode_settings_record::<FINGERS>(&bytes?).map_err(|_| PendingSaveError::Damaged)?;
-        store
-            .save(settings.as_ref())
-            .map_err(PendingSaveError::Failed)
+        store.save(settings.as_ref()).map_err(PendingSaveError::Failed)
     });
     PENDING_SAVE.clear();
     let settings = store.load();
@@ -147,10 +145,7 @@ pub fn save_pending_and_load(registers: &FLASH) -> SaveAndLoadResult {
     if let Some(Err(error)) = &save_result {
         defmt::error!("not stored: {}", defmt::Display2Format(error));
     }
-    SaveAndLoadResult {
-        settings,
-        save_result,
-    }
+    SaveAndLoadResult { settings, save_result }
 }
 
 /// Waits 3 ms for the end of the last line to the host, copies `bytes`, the record of the settings,

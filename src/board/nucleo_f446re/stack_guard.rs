@@ -33,7 +33,5 @@ pub fn stack_is_overrun() -> bool {
 /// Writes the expected value into all words of the guard. Called at every start, after the check
 /// whether the stack has overwritten the guard before the reset.
 pub fn init_guard() {
-    guard_words()
-        .iter()
-        .for_each(|word| word.store(GUARD_VALUE, Ordering::Relaxed));
+    guard_words().iter().for_each(|word| word.store(GUARD_VALUE, Ordering::Relaxed));
 }

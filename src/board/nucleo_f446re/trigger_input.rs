@@ -44,9 +44,7 @@ impl TriggerInput {
         TIM3::enable(rcc);
         TIM3::reset(rcc);
         let clock_hz = rcc.clocks.timclk1().raw();
-        timer
-            .psc()
-            .write(|w| w.psc().set((clock_hz / COUNT_HZ - 1) as u16));
+        timer.psc().write(|w| w.psc().set((clock_hz / COUNT_HZ - 1) as u16));
         timer.arr().write(|w| w.arr().set(COUNTS - 1));
         // The prescaler takes effect at an update event.
         timer.egr().write(|w| w.ug().update());
@@ -54,21 +52,13 @@ impl TriggerInput {
         timer.ccer().write(|w| w.cc1e().set_bit());
         timer.sr().write(|w| w.uif().clear_bit());
         timer.smcr().write(|w| w.ts().itr1().sms().trigger_mode());
-        Self {
-            timer,
-            _pin: pin.into_alternate().internal_resistor(Pull::Down),
-            waiting: None,
-        }
+        Self { timer, _pin: pin.into_alternate().internal_resistor(Pull::Down), waiting: None }
     }
 
     /// The last rising edge since the call before, but for one that must wait. Called in each tick of the first finger.
     pub fn take_edge(&mut self) -> Option<TriggerEdge> {
         let is_new = self.timer.sr().read().cc1if().bit_is_set();
-        if is_new || self.waiting.is_some() {
-            self.take_new_or_waiting(is_new)
-        } else {
-            None
-        }
+        if is_new || self.waiting.is_some() { self.take_new_or_waiting(is_new) } else { None }
     }
 
     #[cold]
@@ -82,10 +72,7 @@ impl TriggerInput {
         let captured = self.timer.ccr1().read().ccr().bits();
         let now = self.timer.cnt().read().cnt().bits();
         let us = captured % COUNTS_PER_TICK;
-        let edge = TriggerEdge {
-            us,
-            ticks_ago: u8::from(us >= WAITS_FROM_US),
-        };
+        let edge = TriggerEdge { us, ticks_ago: u8::from(us >= WAITS_FROM_US) };
         // Times since the edge, and since edges wait for the next tick.
         let age_us = (now + COUNTS - captured) % COUNTS;
         let waits_since_us = (now + COUNTS - WAITS_FROM_US) % COUNTS_PER_TICK;

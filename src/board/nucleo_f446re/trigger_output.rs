@@ -15,10 +15,7 @@ pub struct TriggerOutput {
 impl TriggerOutput {
     /// Sets up the pin, low.
     pub fn new(pin: PB3<Debugger>) -> Self {
-        Self {
-            pin: pin.into_push_pull_output(),
-            marking: 0,
-        }
+        Self { pin: pin.into_push_pull_output(), marking: 0 }
     }
 
     /// Sets what a finger's tick demands; it stays until the finger's next tick.

@@ -21,9 +21,7 @@ static STORED_TRIP_CAUSE: [AtomicU32; STORED_WORD_COUNT] =
 /// RAM is arbitrary, which a wrong checksum shows.
 pub fn checksum_of_words(words: &[u32]) -> u32 {
     words.iter().fold(CHECKSUM_INITIAL_VALUE, |sum, word| {
-        sum.rotate_left(5)
-            .wrapping_add(*word)
-            .wrapping_mul(0x9e37_79b1)
+        sum.rotate_left(5).wrapping_add(*word).wrapping_mul(0x9e37_79b1)
     })
 }
 
@@ -33,11 +31,7 @@ pub fn stored_trip_cause() -> Option<TripCause> {
     let words: [u32; STORED_WORD_COUNT] =
         core::array::from_fn(|i| STORED_TRIP_CAUSE[i].load(Ordering::Relaxed));
     let [cause @ .., sum] = words;
-    if checksum_of_words(&cause) == sum {
-        TripCause::from_retained_words(cause)
-    } else {
-        None
-    }
+    if checksum_of_words(&cause) == sum { TripCause::from_retained_words(cause) } else { None }
 }
 
 /// Stores a trip cause in RAM that a reset does not clear, unless a cause is stored there already:
@@ -47,9 +41,8 @@ pub fn store_trip_cause_if_none(cause: &TripCause) {
         return;
     }
     let words = cause.to_retained_words();
-    for (place, word) in STORED_TRIP_CAUSE
-        .iter()
-        .zip(words.into_iter().chain([checksum_of_words(&words)]))
+    for (place, word) in
+        STORED_TRIP_CAUSE.iter().zip(words.into_iter().chain([checksum_of_words(&words)]))
     {
         place.store(word, Ordering::Relaxed);
     }

@@ -46,18 +46,14 @@ fn self_heating_setting_k(settings: &Settings, sensor: usize) -> f64 {
 /// reading, which is a mean sum of 16 conversions, 0 to 65520.
 fn calibrated_border_count_below(sum: f64) -> usize {
     let segment = (sum / f64::from(16 * CODES_PER_ADC_SEGMENT)) as usize;
-    (segment + 1)
-        .saturating_sub(FIRST_CALIBRATED_ADC_BORDER_INDEX)
-        .min(CALIBRATED_ADC_BORDER_COUNT)
+    (segment + 1).saturating_sub(FIRST_CALIBRATED_ADC_BORDER_INDEX).min(CALIBRATED_ADC_BORDER_COUNT)
 }
 
 /// The factors `1`, `u` and `u²` of a correction's offset, slope and curvature for a thermistor at `thermistor_c`, °C:
 /// `u` is the difference from 29 °C, limited to ±16 K.
 fn polynomial_terms(thermistor_c: f64) -> [f64; COEFFICIENTS_PER_CORRECTION] {
-    let u = (thermistor_c - CORRECTION_POLYNOMIAL_CENTER_C).clamp(
-        -CORRECTION_POLYNOMIAL_CLAMP_K,
-        CORRECTION_POLYNOMIAL_CLAMP_K,
-    );
+    let u = (thermistor_c - CORRECTION_POLYNOMIAL_CENTER_C)
+        .clamp(-CORRECTION_POLYNOMIAL_CLAMP_K, CORRECTION_POLYNOMIAL_CLAMP_K);
     [1.0, u, u * u]
 }
 
@@ -65,14 +61,8 @@ fn polynomial_terms(thermistor_c: f64) -> [f64; COEFFICIENTS_PER_CORRECTION] {
 /// mean sum of 16 conversions, 0 to 65520. It is not valid within two codes of a segment border, where the device
 /// interpolates the converter's step, nor if the steps add up to more than 8 counts, to which the device limits them.
 pub fn calibrated_temperature_c(settings: &Settings, sensor: usize, sum: f64) -> f64 {
-    let Calibration {
-        steps_counts,
-        corrections,
-    } = &settings.calibration;
-    let steps: f64 = steps_counts
-        .iter()
-        .take(calibrated_border_count_below(sum))
-        .sum();
+    let Calibration { steps_counts, corrections } = &settings.calibration;
+    let steps: f64 = steps_counts.iter().take(calibrated_border_count_below(sum)).sum();
     let self_heating_k = self_heating_setting_k(settings, sensor);
     let uncorrected_c = settings.thermistor.temperature_c(sum - 16.0 * steps) - self_heating_k;
     let correction = corrections.get(sensor).copied().unwrap_or_default();
@@ -134,10 +124,7 @@ struct NormalEquations<const N: usize> {
 
 impl<const N: usize> NormalEquations<N> {
     const fn new() -> Self {
-        Self {
-            matrix: [[0.0; N]; N],
-            right: [0.0; N],
-        }
+        Self { matrix: [[0.0; N]; N], right: [0.0; N] }
     }
 
     /// Adds the equation "the sum of `factor * x[index]` over all `(index, factor)` in `terms` equals `value`".
@@ -162,9 +149,8 @@ impl<const N: usize> NormalEquations<N> {
     /// unknowns `first` to `first + 2`, equal those of `correction`, with [`COEFFICIENT_PRIOR_STANDARD_DEVIATIONS`].
     fn add_prior_correction_equations(&mut self, first: usize, correction: &Correction) {
         let coefficients = correction.to_array().into_iter();
-        for (i, (value, deviation)) in coefficients
-            .zip(COEFFICIENT_PRIOR_STANDARD_DEVIATIONS)
-            .enumerate()
+        for (i, (value, deviation)) in
+            coefficients.zip(COEFFICIENT_PRIOR_STANDARD_DEVIATIONS).enumerate()
         {
             self.add_equation(&[(first + i, 1.0)], value, deviation);
         }
@@ -265,11 +251,8 @@ fn fit_thermistor_with_fixed_steps(
     let mut equations = NormalEquations::<COEFFICIENTS_PER_CORRECTION>::new();
     equations.add_prior_correction_equations(0, &calibration.corrections[sensor]);
     for point in points.of_sensor(sensor) {
-        let CalibrationPointEquation {
-            deviation_k,
-            polynomial_terms: [one, u, square],
-            ..
-        } = CalibrationPointEquation::new(settings, &calibration.steps_counts, sensor, point);
+        let CalibrationPointEquation { deviation_k, polynomial_terms: [one, u, square], .. } =
+            CalibrationPointEquation::new(settings, &calibration.steps_counts, sensor, point);
         equations.add_equation(
             &[(0, one), (1, u), (2, square)],
             deviation_k,

@@ -58,9 +58,7 @@ impl CalibrationPoints {
     /// Calibration points of the thermistor with the index `sensor` (0 to 4), in the order in which they were added;
     /// empty for any other index.
     pub fn of_sensor(&self, sensor: usize) -> &[CalibrationPoint] {
-        self.by_sensor
-            .get(sensor)
-            .map_or(&[], |points| points.as_slice())
+        self.by_sensor.get(sensor).map_or(&[], |points| points.as_slice())
     }
 
     /// Removes all calibration points of the thermistor with the index `sensor`.
@@ -100,10 +98,7 @@ impl CalibrationPoints {
         if libm::fabs(reading_c - reference_c) > REFERENCE_DIFFERENCE_MAX_K {
             return Err(PointError::TooFar(to_fixed(reading_c)));
         }
-        let point = CalibrationPoint {
-            sum: average.mean_sum(),
-            reference_c,
-        };
+        let point = CalibrationPoint { sum: average.mean_sum(), reference_c };
         let points = self.by_sensor.get_mut(sensor).ok_or(PointError::Full)?;
         points.push(point).map_err(|_| PointError::Full)
     }

@@ -52,11 +52,7 @@ pub struct CommissioningSession {
 impl CommissioningSession {
     /// A session for a finger whose station starts with these settings; it has no calibration points yet.
     pub fn new(settings: Settings) -> Self {
-        Self {
-            settings,
-            points: CalibrationPoints::default(),
-            prior: settings.calibration,
-        }
+        Self { settings, points: CalibrationPoints::default(), prior: settings.calibration }
     }
 
     /// The present settings of the finger, which its station uses: those at start-up, with every accepted change since.
@@ -82,19 +78,17 @@ impl CommissioningSession {
         mut execute: impl ExecuteOnStation,
     ) -> Result<SessionReply, SessionError> {
         match request {
-            SessionRequest::AddPoint {
-                sensor,
-                reference_c,
-            } => return self.add_point_and_refit(sensor, reference_c, &mut execute),
+            SessionRequest::AddPoint { sensor, reference_c } => {
+                return self.add_point_and_refit(sensor, reference_c, &mut execute);
+            }
             SessionRequest::ClearCalibration { sensor } => {
                 self.clear_thermistor_calibration(sensor, &mut execute)?;
             }
             SessionRequest::Set(Setting::Steps { first, counts }) => {
                 let mut calibration = self.settings.calibration;
                 let steps = calibration.steps_counts.iter_mut();
-                for (step, count) in steps
-                    .skip(first - FIRST_CALIBRATED_ADC_BORDER_INDEX)
-                    .zip(&counts)
+                for (step, count) in
+                    steps.skip(first - FIRST_CALIBRATED_ADC_BORDER_INDEX).zip(&counts)
                 {
                     *step = *count;
                 }
@@ -244,10 +238,7 @@ impl CommissioningSession {
         calibration: Calibration,
         execute: &mut impl ExecuteOnStation,
     ) -> Result<(), Refused> {
-        let settings = Settings {
-            calibration,
-            ..self.settings
-        };
+        let settings = Settings { calibration, ..self.settings };
         execute(Command::Calibrate(CalibrationTables::new(&settings)))?;
         self.settings = settings;
         Ok(())
@@ -298,10 +289,7 @@ impl CommissioningSession {
     ) -> Result<(), Refused> {
         let (mut calibration, mut prior) =
             self.calibration_and_fit_prior_with_correction(sensor, Correction::default());
-        let mut display = calibration
-            .corrections
-            .iter()
-            .take(DISPLAY_THERMISTOR_COUNT);
+        let mut display = calibration.corrections.iter().take(DISPLAY_THERMISTOR_COUNT);
         if display.all(|correction| *correction == Correction::default()) {
             calibration.steps_counts = [0.0; CALIBRATED_ADC_BORDER_COUNT];
             prior.steps_counts = [0.0; CALIBRATED_ADC_BORDER_COUNT];
@@ -324,9 +312,7 @@ impl CommissioningSession {
             return Err(Refused::TooEarly.into());
         };
         let present_c = calibrated_temperature_c(&self.settings, sensor, average.mean_sum());
-        self.points
-            .add(sensor, &average, present_c, reference_c)
-            .map_err(SessionError::Point)?;
+        self.points.add(sensor, &average, present_c, reference_c).map_err(SessionError::Point)?;
         let applied = fit_calibration(&self.settings, &self.prior, &self.points)
             .filter(|calibration| calibration.first_value_out_of_range().is_none())
             .ok_or(SessionError::Point(PointError::Contradicts))
@@ -352,10 +338,8 @@ impl CommissioningSession {
     #[inline(never)]
     fn setting_at_line_index(&self, index: usize) -> Setting {
         let calibration = &self.settings.calibration;
-        if let Some(steps) = calibration
-            .steps_counts
-            .chunks(CONVERTER_STEPS_PER_LINE_MAX)
-            .nth(index)
+        if let Some(steps) =
+            calibration.steps_counts.chunks(CONVERTER_STEPS_PER_LINE_MAX).nth(index)
         {
             return Setting::Steps {
                 first: FIRST_CALIBRATED_ADC_BORDER_INDEX + index * CONVERTER_STEPS_PER_LINE_MAX,

@@ -47,12 +47,7 @@ const PLAUSIBLE_MEASURED_TO_DEMANDED_RATIOS: RangeInclusive<f64> = 0.5..=1.5;
 /// Dead times, 0.004 to 0.04 s, that an identified tile can have; another ends the identification with
 /// [`IdentificationError::OutOfRange`]. A disturbance of the display, such as a touch too light for the force sensor,
 /// distorts the dead time before the other parameters.
-static PLAUSIBLE_DEAD_TIME: Range = Range {
-    name: "dead time",
-    unit: "s",
-    min: 0.004,
-    max: 0.04,
-};
+static PLAUSIBLE_DEAD_TIME: Range = Range { name: "dead time", unit: "s", min: 0.004, max: 0.04 };
 /// Largest RMS residual of the fit as a fraction of the fitted signal, which is the time integral of the change of the
 /// display's reading. Above it the identification ends with [`IdentificationError::ModelMismatch`]; quantisation by the
 /// converter alone leaves 0.007.

@@ -106,11 +106,8 @@ pub enum AssumedFinger {
 
 impl AssumedFinger {
     /// The fingers with their words in the protocol.
-    pub const PROTOCOL_WORDS: [(&str, Self); 3] = [
-        ("mean", Self::Mean),
-        ("mean-on-pad", Self::MeanOnPad),
-        ("thesis", Self::Thesis),
-    ];
+    pub const PROTOCOL_WORDS: [(&str, Self); 3] =
+        [("mean", Self::Mean), ("mean-on-pad", Self::MeanOnPad), ("thesis", Self::Thesis)];
 
     /// Its word in the protocol.
     pub const fn name(self) -> &'static str {
@@ -150,17 +147,11 @@ pub struct ChosenContactLaw {
 
 impl ChosenContactLaw {
     /// Eq. 6-8.
-    pub const NOMINAL: Self = Self {
-        sent: ContactLaw::NOMINAL,
-        own: None,
-    };
+    pub const NOMINAL: Self = Self { sent: ContactLaw::NOMINAL, own: None };
 
     /// Computes the constants of a law. Uses `f64`, which is slow on the microcontroller.
     pub fn new(sent: ContactLaw) -> Self {
-        Self {
-            sent,
-            own: OwnContactLaw::new(&sent, TICK_S),
-        }
+        Self { sent, own: OwnContactLaw::new(&sent, TICK_S) }
     }
 }
 
@@ -445,18 +436,12 @@ pub struct WithSourceFinger<T> {
 impl<T> WithSourceFinger<T> {
     /// Content that belongs to the device as a whole, so that its line to the host names no finger.
     pub const fn from_whole_device(content: T) -> Self {
-        Self {
-            finger: None,
-            content,
-        }
+        Self { finger: None, content }
     }
 
     /// Converts the content by `function`, for example a refusal to the error that the host receives; the finger stays.
     pub fn map_content<U>(self, function: impl FnOnce(T) -> U) -> WithSourceFinger<U> {
-        WithSourceFinger {
-            finger: self.finger,
-            content: function(self.content),
-        }
+        WithSourceFinger { finger: self.finger, content: function(self.content) }
     }
 }
 

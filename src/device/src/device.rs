@@ -38,9 +38,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// Converts the settings from `f64`, so it is for the start only.
     pub fn new_optionally_tripped(cause: Option<TripCause>, settings: &Settings) -> Self {
         let station = Station::new_optionally_tripped(cause, settings);
-        Self {
-            stations: array::from_fn(|_| station.clone()),
-        }
+        Self { stations: array::from_fn(|_| station.clone()) }
     }
 }
 
@@ -154,10 +152,7 @@ impl<const FINGERS: usize, S: BorrowMut<[Station; FINGERS]>> Device<FINGERS, S> 
         finger: FingerIndex<FINGERS>,
     ) -> Option<WithSourceFinger<Telemetry>> {
         let content = self.station(finger).telemetry_if_due()?;
-        Some(WithSourceFinger {
-            finger: finger.index_unless_single_finger(),
-            content,
-        })
+        Some(WithSourceFinger { finger: finger.index_unless_single_finger(), content })
     }
 
     /// Whether there is an event of a finger that was not fetched yet.

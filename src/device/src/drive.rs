@@ -63,11 +63,7 @@ impl Duty {
         let low = (u32::from(period) * u32::from(fraction.unsigned_abs()) + (1 << 14)) >> 15;
         // No overflow, because the fraction is below one.
         let high = period.saturating_sub(low as u16);
-        if fraction >= 0 {
-            (period, high)
-        } else {
-            (high, period)
-        }
+        if fraction >= 0 { (period, high) } else { (high, period) }
     }
 }
 

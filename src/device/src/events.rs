@@ -132,11 +132,7 @@ impl EventReporter {
         }
         let place = &mut self.kept[usize::from(self.end) % EVENTS_KEPT_MAX];
         if self.reports && place.is_none() {
-            *place = Some(DeviceEvent {
-                tick,
-                microseconds,
-                kind,
-            });
+            *place = Some(DeviceEvent { tick, microseconds, kind });
             self.end = self.end.wrapping_add(1);
         }
     }
@@ -180,11 +176,7 @@ mod tests {
             reporter.note(DeviceEventKind::Trigger, tick, 7);
         }
         for tick in 0..8 {
-            let event = DeviceEvent {
-                tick,
-                microseconds: 7,
-                kind: DeviceEventKind::Trigger,
-            };
+            let event = DeviceEvent { tick, microseconds: 7, kind: DeviceEventKind::Trigger };
             assert_eq!(reporter.take(), Some(event));
         }
         assert_eq!(reporter.take(), None);
@@ -214,10 +206,9 @@ mod tests {
             marked: EventKinds::NONE.with(DeviceEventKind::CourseEnded),
             ..EventReporter::default()
         };
-        for (kind, ticks) in [
-            (DeviceEventKind::CourseStarted, 0),
-            (DeviceEventKind::CourseEnded, 10),
-        ] {
+        for (kind, ticks) in
+            [(DeviceEventKind::CourseStarted, 0), (DeviceEventKind::CourseEnded, 10)]
+        {
             reporter.note(kind, 5, 0);
             let high = (0..30).filter(|_| reporter.next_trigger_output()).count();
             assert_eq!(high, ticks, "{kind:?}");

@@ -11,20 +11,13 @@ impl<const FINGERS: usize> FingerIndex<FINGERS> {
     /// The finger with index 0. This constant does not compile for a device without fingers or with more than ten,
     /// because a finger's address is one digit.
     pub const FIRST: Self = {
-        assert!(
-            0 < FINGERS && FINGERS <= 10,
-            "the number of a finger is one digit"
-        );
+        assert!(0 < FINGERS && FINGERS <= 10, "the number of a finger is one digit");
         Self(0)
     };
 
     /// The finger with this index, counted from 0; `None` if the index is not below `FINGERS`.
     pub const fn new(index: usize) -> Option<Self> {
-        if index < FINGERS {
-            Some(Self(index as u8))
-        } else {
-            None
-        }
+        if index < FINGERS { Some(Self(index as u8)) } else { None }
     }
 
     /// All fingers of the device, in the order of their indices from 0.
@@ -70,10 +63,7 @@ mod tests {
     #[test]
     fn a_finger_exists_for_each_index_below_the_number_of_fingers() {
         for index in [0, 1, 4] {
-            assert_eq!(
-                FingerIndex::<5>::new(index).map(FingerIndex::index),
-                Some(index)
-            );
+            assert_eq!(FingerIndex::<5>::new(index).map(FingerIndex::index), Some(index));
         }
         for index in [5, 256, usize::MAX] {
             assert_eq!(FingerIndex::<5>::new(index), None);

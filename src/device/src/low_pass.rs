@@ -16,10 +16,7 @@ impl Coefficient {
     /// for start-up and the task that serves the host, not for the tick.
     pub fn from_time_constant_s(time_constant_s: f64) -> Self {
         let part = 1.0 - libm::exp(-1.0 / (time_constant_s * f64::from(TICK_HZ)));
-        Self(I0F32::from_bits(truncated_units(
-            part.clamp(0.0, 0.499),
-            32,
-        )))
+        Self(I0F32::from_bits(truncated_units(part.clamp(0.0, 0.499), 32)))
     }
 }
 
@@ -40,10 +37,7 @@ pub struct LowPass {
 impl LowPass {
     /// A filter whose output is 0 (°C or K) until its first input.
     pub const fn new(coefficient: Coefficient) -> Self {
-        Self {
-            coefficient,
-            state: I10F54::ZERO,
-        }
+        Self { coefficient, state: I10F54::ZERO }
     }
 
     /// Changes the time constant of the filter to that of `coefficient`; the output stays.

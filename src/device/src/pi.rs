@@ -134,11 +134,7 @@ impl Pi {
     pub fn update_current_by_error(&mut self, error: Celsius) -> Current {
         // Nothing overflows 64 bits: with 52 binary places the integral is within 2^7 A and its step within 2^10 A;
         // with 38 binary places the proportional part is within 2^24 A.
-        let PiCoefficients {
-            proportional,
-            integral,
-            ..
-        } = self.coefficients;
+        let PiCoefficients { proportional, integral, .. } = self.coefficients;
         let proportional = error.wide_mul(proportional).to_bits()
             >> (Celsius::FRAC_NBITS + I16F16::FRAC_NBITS - Current::FRAC_NBITS);
         let sum = self.integral.wrapping_add(error.wide_mul(integral));
@@ -165,14 +161,8 @@ mod tests {
     use super::*;
 
     fn pi() -> Pi {
-        let gains = PiGains {
-            proportional_a_k: 2.0,
-            integral_s: 0.5,
-        };
-        Pi::new(
-            PiCoefficients::new(&gains, UpdatePeriod::EveryTick),
-            Current::lit("6"),
-        )
+        let gains = PiGains { proportional_a_k: 2.0, integral_s: 0.5 };
+        Pi::new(PiCoefficients::new(&gains, UpdatePeriod::EveryTick), Current::lit("6"))
     }
 
     fn at(t_c: f64) -> Celsius {
@@ -184,13 +174,8 @@ mod tests {
         let (setpoint, mut pi) = (Setpoint::clamp_celsius_with_flag(at(25.0)).0, pi());
         for tick in 1..=1000 {
             let expected = 2.0 * 0.5 * (1.0 + f64::from(tick) * 1e-3 / 0.5);
-            let output = pi
-                .update_output_when_due(setpoint, at(25.5))
-                .to_num::<f64>();
-            assert!(
-                (output - expected).abs() < 1e-4,
-                "tick {tick}: {output}, expected {expected}"
-            );
+            let output = pi.update_output_when_due(setpoint, at(25.5)).to_num::<f64>();
+            assert!((output - expected).abs() < 1e-4, "tick {tick}: {output}, expected {expected}");
         }
     }
 
@@ -198,10 +183,7 @@ mod tests {
     fn the_output_leaves_its_limit_as_soon_as_the_error_changes_sign() {
         let (setpoint, mut pi) = (Setpoint::clamp_celsius_with_flag(at(25.0)).0, pi());
         for _ in 0..10_000 {
-            assert_eq!(
-                pi.update_output_when_due(setpoint, at(40.0)),
-                Current::lit("6")
-            );
+            assert_eq!(pi.update_output_when_due(setpoint, at(40.0)), Current::lit("6"));
         }
         // Without anti-windup the integral would hold 600 A by now.
         let output = pi.update_output_when_due(setpoint, at(24.0));

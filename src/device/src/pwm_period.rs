@@ -43,10 +43,7 @@ mod tests {
 
     #[test]
     fn what_couples_from_the_bridge_averages_out_in_every_tick() {
-        let periods = [
-            PWM_PERIOD_STEPS_OF_ONE_FINGER,
-            PWM_PERIOD_STEPS_OF_FIVE_FINGERS,
-        ];
+        let periods = [PWM_PERIOD_STEPS_OF_ONE_FINGER, PWM_PERIOD_STEPS_OF_FIVE_FINGERS];
         for (period, scan_steps) in periods.into_iter().zip(SCAN_STEPS) {
             let period = f64::from(period);
             let square = worst_error(period, scan_steps, true);

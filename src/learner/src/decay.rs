@@ -35,11 +35,7 @@ impl WindowDecay {
         }
         if halvings == 0 {
             let mean = 1.0 - x * sum;
-            return Self {
-                remaining: 1.0 - x * mean,
-                mean,
-                mean_of_input_response: sum,
-            };
+            return Self { remaining: 1.0 - x * mean, mean, mean_of_input_response: sum };
         }
         let mut remaining = 1.0 - part * (1.0 - part * sum);
         while halvings > 0 {
@@ -47,11 +43,7 @@ impl WindowDecay {
             halvings -= 1;
         }
         let mean = (1.0 - remaining) / x;
-        Self {
-            remaining,
-            mean,
-            mean_of_input_response: (1.0 - mean) / x,
-        }
+        Self { remaining, mean, mean_of_input_response: (1.0 - mean) / x }
     }
 }
 
@@ -70,11 +62,8 @@ mod tests {
             assert!(close(decay.mean, mean), "{rate_1_s}: {decay:?}");
             // The closed form loses digits at small x.
             let series = 0.5 - x / 6.0 + x * x / 24.0;
-            let (expected, error) = if x < 1e-4 {
-                (series, 1e-12)
-            } else {
-                ((1.0 - mean) / x, 1e-10)
-            };
+            let (expected, error) =
+                if x < 1e-4 { (series, 1e-12) } else { ((1.0 - mean) / x, 1e-10) };
             assert!(
                 (decay.mean_of_input_response - expected).abs() < error,
                 "{rate_1_s}: {decay:?}"

@@ -31,10 +31,7 @@ impl Estimate {
             covariance[i][i] = 1.0;
             i += 1;
         }
-        Self {
-            parameters: PRIOR,
-            covariance,
-        }
+        Self { parameters: PRIOR, covariance }
     };
 
     /// Variances.

@@ -143,9 +143,7 @@ impl Learner {
 
     /// What is known of the finger before its contacts.
     fn prior(&self) -> Estimate {
-        self.person.map_or(Estimate::PRIOR, |person| {
-            person.estimate(self.place, &self.scale)
-        })
+        self.person.map_or(Estimate::PRIOR, |person| person.estimate(self.place, &self.scale))
     }
 
     /// Takes one window's measurements, and returns what is known of the finger after it.
@@ -164,9 +162,7 @@ impl Learner {
                     self.ticks_since_landing = 0;
                 }
                 self.follow(contact, lands);
-                let windows = self
-                    .windows_in_contact
-                    .map_or(1, |windows| windows.wrapping_add(1));
+                let windows = self.windows_in_contact.map_or(1, |windows| windows.wrapping_add(1));
                 self.windows_in_contact = Some(windows);
                 // 0 in the window in which the finger lifts.
                 self.ticks_since_landing =
@@ -253,18 +249,13 @@ impl Learner {
         let changes_k2 = display_k * display_k + force_k * force_k;
         self.has_changed = true;
         self.widen_factor(resistance_m2k_w);
-        let skipped = if ticks < ONE_IN_TWO_UNTIL_TICKS {
-            every
-        } else {
-            1
-        };
+        let skipped = if ticks < ONE_IN_TWO_UNTIL_TICKS { every } else { 1 };
         let variance_k2 = (error_k2 + changes_k2) / f32::from(skipped);
         let innovation = self.estimate.update(&measurement, variance_k2, &self.scale);
         let innovation = innovation.map(|innovation| if is_settled { innovation } else { 0.0 });
         let parameters = &self.estimate.parameters;
         let state = (resistance_m2k_w, ticks, error_k2);
-        self.judge
-            .judge(innovation, &measurement, state, parameters, &self.scale);
+        self.judge.judge(innovation, &measurement, state, parameters, &self.scale);
     }
 
     /// Raises the variance of the factor on the contact resistance, because the nominal resistance has changed.
@@ -273,11 +264,7 @@ impl Learner {
         self.learnt_resistance_m2k_w = resistance_m2k_w;
         if before_m2k_w > 0.0 {
             let change_m2k_w = resistance_m2k_w - before_m2k_w;
-            let larger_m2k_w = if change_m2k_w > 0.0 {
-                resistance_m2k_w
-            } else {
-                before_m2k_w
-            };
+            let larger_m2k_w = if change_m2k_w > 0.0 { resistance_m2k_w } else { before_m2k_w };
             let relative = change_m2k_w / larger_m2k_w;
             let deviation = FACTOR_CHANGE * relative / self.scale.deviations[RESISTANCE];
             self.estimate.widen_resistance(deviation * deviation);

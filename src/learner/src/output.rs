@@ -91,9 +91,8 @@ impl LearnerOutput {
     /// Whether the finger differs too little to be applied anew: by at most some 2 mK of the set-point.
     pub fn is_nearly(&self, other: &Self) -> bool {
         let weights = self.weights.iter().zip(&other.weights);
-        weights.fold(true, |near, (own, other)| {
-            near & (own.abs_diff(*other) <= WEIGHT_TOLERANCE)
-        }) && self.air_flux_deviation.abs_diff(other.air_flux_deviation) <= AIR_TOLERANCE
+        weights.fold(true, |near, (own, other)| near & (own.abs_diff(*other) <= WEIGHT_TOLERANCE))
+            && self.air_flux_deviation.abs_diff(other.air_flux_deviation) <= AIR_TOLERANCE
             && self.skin_offset_k.abs_diff(other.skin_offset_k) <= SKIN_TOLERANCE_K
             && self.resistance_factor.abs_diff(other.resistance_factor) <= RESISTANCE_TOLERANCE
     }

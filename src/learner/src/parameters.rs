@@ -55,14 +55,8 @@ pub const RELATIVE_COMPONENTS: [BankOutput; 2] = {
 };
 
 /// Parameters before anything is learnt, in prior deviations: the mean of the simulated fingers. All zero is the mean finger.
-pub const PRIOR: Parameters = [
-    COMPONENT_MEANS[0] as f32,
-    COMPONENT_MEANS[1] as f32,
-    0.0,
-    0.0,
-    0.0,
-    0.0,
-];
+pub const PRIOR: Parameters =
+    [COMPONENT_MEANS[0] as f32, COMPONENT_MEANS[1] as f32, 0.0, 0.0, 0.0, 0.0];
 
 /// Where the finger is before each contact, on which the heat that its skin loses there depends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,14 +81,8 @@ pub struct Scale {
 /// Limits of the components (the second one also represents strong perfusion of the dermis: 5.6 in a finger of scenario G), of the
 /// relative change of the air's flux (below -1 for a finger on a pad whose blood the force stops), of the error of the skin's
 /// thermistor, K, of the relative change of the contact resistance, and of that of the lag.
-const LIMITS: [(f32, f32); PARAMETERS] = [
-    (-3.5, 3.5),
-    (-7.0, 7.0),
-    (-2.5, 2.5),
-    (-0.3, 0.3),
-    (0.4 - 1.0, 2.5 - 1.0),
-    (-0.3, 0.3),
-];
+const LIMITS: [(f32, f32); PARAMETERS] =
+    [(-3.5, 3.5), (-7.0, 7.0), (-2.5, 2.5), (-0.3, 0.3), (0.4 - 1.0, 2.5 - 1.0), (-0.3, 0.3)];
 
 impl Scale {
     /// For a finger at this place, and a sensor whose lag has this relative deviation.
@@ -111,19 +99,13 @@ impl Scale {
             high[i] = LIMITS[i].1 / deviations[i];
             i += 1;
         }
-        Self {
-            deviations,
-            low,
-            high,
-        }
+        Self { deviations, low, high }
     }
 }
 
 /// Least and largest relative weight of a finger: that which the device applies, and one below the range of its type.
-pub const WEIGHT_LIMITS: (f32, f32) = (
-    TissueWeights::MIN.to_bits() as f32 / (1u32 << I2F30::FRAC_NBITS) as f32,
-    1.999,
-);
+pub const WEIGHT_LIMITS: (f32, f32) =
+    (TissueWeights::MIN.to_bits() as f32 / (1u32 << I2F30::FRAC_NBITS) as f32, 1.999);
 
 /// Relative weights of the finger with these parameters.
 pub fn relative_weights(parameters: &Parameters) -> BankOutput {

@@ -189,21 +189,13 @@ const fn deviation(level: u8) -> f32 {
 fn level(variance: f32) -> u8 {
     (0..8).rev().fold(0, |level, bit| {
         let larger = level | 1 << bit;
-        if deviation(larger) * deviation(larger) >= variance {
-            larger
-        } else {
-            level
-        }
+        if deviation(larger) * deviation(larger) >= variance { larger } else { level }
     })
 }
 
 /// The value so that a cast, which truncates, rounds to the nearest integer.
 fn rounded(value: f32) -> f32 {
-    if value < 0.0 {
-        value - 0.5
-    } else {
-        value + 0.5
-    }
+    if value < 0.0 { value - 0.5 } else { value + 0.5 }
 }
 
 #[cfg(test)]

@@ -9,10 +9,7 @@ pub struct Recent {
 
 impl Recent {
     /// Before the first contact.
-    pub const NEW: Self = Self {
-        followed: 0.0,
-        change: 0.0,
-    };
+    pub const NEW: Self = Self { followed: 0.0, change: 0.0 };
 
     /// Takes the signal of a window; `share` is the coefficient of the low-pass, 1 in the window of a landing.
     pub fn advance(&mut self, signal: f32, share: f32) {

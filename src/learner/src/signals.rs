@@ -44,12 +44,8 @@ struct UnitRelaxation {
 }
 
 const UNIT_RELAXATIONS: [UnitRelaxation; RELAXATION_COUNT] = {
-    let mut all = [UnitRelaxation {
-        remaining: 0.0,
-        gain_s: 0.0,
-        mean: 0.0,
-        mean_gain_s: 0.0,
-    }; RELAXATION_COUNT];
+    let mut all = [UnitRelaxation { remaining: 0.0, gain_s: 0.0, mean: 0.0, mean_gain_s: 0.0 };
+        RELAXATION_COUNT];
     let mut k = 0;
     while k < RELAXATION_COUNT {
         let decay = WindowDecay::new(RELAXATIONS[k].rate_1_s);

@@ -88,14 +88,7 @@ impl Judge {
     /// A new contact. Returns whether the finger is the one that was learnt before.
     pub const fn land(&mut self) -> bool {
         let is_known = !matches!(self.trust, Trust::Mean(_));
-        *self = Self {
-            trust: if is_known {
-                self.trust
-            } else {
-                Trust::Learning
-            },
-            ..Self::NEW
-        };
+        *self = Self { trust: if is_known { self.trust } else { Trust::Learning }, ..Self::NEW };
         is_known
     }
 
@@ -119,11 +112,7 @@ impl Judge {
         };
         self.filtered_innovation += (innovation - self.filtered_innovation) / INNOVATION_UPDATES;
         let is_light = resistance_m2k_w > LIGHT_RESISTANCE_M2K_W;
-        let largest = if is_light {
-            INNOVATION_MAX_LIGHT
-        } else {
-            INNOVATION_MAX
-        };
+        let largest = if is_light { INNOVATION_MAX_LIGHT } else { INNOVATION_MAX };
         let is_strange = self.filtered_innovation > largest;
         let sensitive_k2 = SENSITIVITY_MIN * error_k2;
         let limit = |index: usize, least_k2: f32| {

@@ -32,9 +32,7 @@ pub fn word_or_empty<'a>(words: &mut Words<'a>) -> &'a str {
 /// # Errors
 /// [`Error::Extra`] with the word that follows.
 pub fn expect_end(words: &mut Words<'_>) -> Result<(), Error> {
-    words
-        .next()
-        .map_or(Ok(()), |extra| Err(Error::Extra(extra.into())))
+    words.next().map_or(Ok(()), |extra| Err(Error::Extra(extra.into())))
 }
 
 /// Skips the next word of a line if it is `expected`, and returns whether it is. Otherwise the word stays the next one.

@@ -61,25 +61,12 @@ impl fmt::Display for BoardStatus {
             unique_id,
             ..
         } = self;
-        let watchdogs = if self.watchdogs_may_freeze {
-            "frozen"
-        } else {
-            "running"
-        };
+        let watchdogs = if self.watchdogs_may_freeze { "frozen" } else { "running" };
         let clock = if self.clock_is_external { "hse" } else { "hsi" };
-        write!(
-            f,
-            "ok bor={brown_out_level} watchdogs={watchdogs} clock={clock}"
-        )?;
+        write!(f, "ok bor={brown_out_level} watchdogs={watchdogs} clock={clock}")?;
         write!(f, " pwm_lock={pwm_lock_level} reset={reset}")?;
-        write!(
-            f,
-            " rx_overruns={receive_overruns} rx_framing={receive_framing_errors}"
-        )?;
-        write!(
-            f,
-            " rx_noise={receive_noise} tx_dropped={telemetry_dropped} uid="
-        )?;
+        write!(f, " rx_overruns={receive_overruns} rx_framing={receive_framing_errors}")?;
+        write!(f, " rx_noise={receive_noise} tx_dropped={telemetry_dropped} uid=")?;
         let mut bytes = unique_id.iter().flat_map(|word| word.to_be_bytes());
         bytes.try_for_each(|byte| TwoHexDigits(byte).fmt(f))
     }

@@ -16,12 +16,8 @@ use crate::arguments::{
     skip_if_next_is, word_or_empty,
 };
 
-static REFERENCE_TEMPERATURE_RANGE: Range = Range {
-    name: "reference temperature",
-    unit: "C",
-    min: 0.0,
-    max: 60.0,
-};
+static REFERENCE_TEMPERATURE_RANGE: Range =
+    Range { name: "reference temperature", unit: "C", min: 0.0, max: 60.0 };
 static SETTINGS_LINE_NUMBER_RANGE: Range = Range {
     name: "line of settings",
     unit: "(whole)",
@@ -92,10 +88,7 @@ pub fn parse_set_arguments(words: &mut Words<'_>) -> Result<Setting, Error> {
             // At least one step. Words that follow the last possible step are left to the caller, who reports them.
             while counts.is_empty() || counts.len() < room && words.clone().next().is_some() {
                 let step = read_number_in_range(words, &ADC_ERROR_STEP_RANGE)?;
-                let _ = counts.push(round_to_decimals(
-                    step,
-                    Calibration::ADC_ERROR_STEP_DECIMALS,
-                ));
+                let _ = counts.push(round_to_decimals(step, Calibration::ADC_ERROR_STEP_DECIMALS));
             }
             Setting::Steps { first, counts }
         }
@@ -105,10 +98,9 @@ pub fn parse_set_arguments(words: &mut Words<'_>) -> Result<Setting, Error> {
                 Correction::from_array(read_numbers_in_ranges(words, &CORRECTION_RANGES)?);
             Setting::Correction(sensor, correction.rounded())
         }
-        "tile" => Setting::Tile(Tile::from_array_rounded(read_numbers_in_ranges(
-            words,
-            &TILE_RANGES,
-        )?)),
+        "tile" => {
+            Setting::Tile(Tile::from_array_rounded(read_numbers_in_ranges(words, &TILE_RANGES)?))
+        }
         "flux" if skip_if_next_is(words, "none") => Setting::FluxSensor(None),
         "flux" => parse_flux_sensor(words)?,
         "surface" if skip_if_next_is(words, NOMINAL_SURFACE_WORD) => {

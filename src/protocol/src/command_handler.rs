@@ -140,14 +140,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         })?;
         let (finger, line) = split_address(line)?;
         let number = finger.map(FingerIndex::index_u8);
-        let addressed = |content| WithSourceFinger {
-            finger: number,
-            content,
-        };
-        let rejected = |content| WithSourceFinger {
-            finger: number,
-            content,
-        };
+        let addressed = |content| WithSourceFinger { finger: number, content };
+        let rejected = |content| WithSourceFinger { finger: number, content };
         let owner = finger.map_or(0, FingerIndex::index);
         let request = Request::parse(line, self.sessions[owner].settings()).map_err(rejected)?;
         match request {
@@ -158,9 +152,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 self.checksums = on;
                 Ok(addressed(Reply::DONE))
             }
-            Request::Identify => Ok(addressed(Reply::Identity {
-                fingers: FINGERS as u8,
-            })),
+            Request::Identify => Ok(addressed(Reply::Identity { fingers: FINGERS as u8 })),
             Request::Board => Ok(addressed(Reply::Board(self.board))),
             Request::Station(Command::Material(chosen))
                 if finger.is_none() && self.displays_differ() =>
@@ -286,10 +278,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             PersonRequest::Enrol(_) if !is_one => Err(Error::Missing("finger (as @0)")),
             PersonRequest::Query => {
                 Self::person_state(Command::Person, finger, execute).map(|state| {
-                    Reply::Person(PersonReply {
-                        person: state.chosen,
-                        contacts: state.contacts(),
-                    })
+                    Reply::Person(PersonReply { person: state.chosen, contacts: state.contacts() })
                 })
             }
             PersonRequest::Enrol(code) => {
@@ -311,10 +300,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<PersonState, Error> {
         match execute(Some(finger.unwrap_or(FingerIndex::FIRST)), command) {
-            Ok(WithSourceFinger {
-                content: command::Reply::Person(state),
-                ..
-            }) => Ok(state),
+            Ok(WithSourceFinger { content: command::Reply::Person(state), .. }) => Ok(state),
             Ok(_) => Ok(PersonState::new(None)),
             Err(refused) => Err(Error::Refused(refused.content)),
         }
@@ -327,17 +313,12 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         let finger = learnt.ok_or(Error::NotEnrolled(contacts))?.0;
         let person = Person { code, finger };
         self.store_person(person)?;
-        Ok(Reply::Person(PersonReply {
-            person: Some(person),
-            contacts,
-        }))
+        Ok(Reply::Person(PersonReply { person: Some(person), contacts }))
     }
 
     fn store_person(&mut self, person: Person) -> Result<Reply, Error> {
         let is_stored = self.persons.insert(person);
-        is_stored
-            .then_some(Reply::DONE)
-            .ok_or(Error::NoRoomForPerson)
+        is_stored.then_some(Reply::DONE).ok_or(Error::NoRoomForPerson)
     }
 
     /// Loads the course of the upload in the station of `finger`, or in all stations for `None`. A course that has only begun
@@ -348,10 +329,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         &self,
         finger: Option<FingerIndex<FINGERS>>,
         execute: &mut impl ExecuteOnStations<FINGERS>,
-    ) -> (
-        bool,
-        Result<WithSourceFinger<Reply>, WithSourceFinger<Error>>,
-    ) {
+    ) -> (bool, Result<WithSourceFinger<Reply>, WithSourceFinger<Error>>) {
         let number = finger.map(FingerIndex::index_u8);
         let (mut permitted, mut first_refusal) = (false, None);
         for one in FingerIndex::all().filter(|one| finger.is_none_or(|finger| finger == *one)) {
@@ -369,10 +347,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 }
             }
         }
-        let done = WithSourceFinger {
-            finger: number,
-            content: Reply::DONE,
-        };
+        let done = WithSourceFinger { finger: number, content: Reply::DONE };
         (permitted, first_refusal.map_or(Ok(done), Err))
     }
 
@@ -386,10 +361,9 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         execute: &mut impl ExecuteOnStations<FINGERS>,
     ) -> Result<Material, Error> {
         let mut material_of = |one| match execute(Some(one), Command::MaterialProperties) {
-            Ok(WithSourceFinger {
-                content: command::Reply::Material(Some(material)),
-                ..
-            }) => Ok(material),
+            Ok(WithSourceFinger { content: command::Reply::Material(Some(material)), .. }) => {
+                Ok(material)
+            }
             _ => Err(Error::SlabNeedsMaterial),
         };
         let material = material_of(finger.unwrap_or(FingerIndex::FIRST))?;
@@ -460,9 +434,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             SessionRequest::AddPoint { .. } | SessionRequest::TuneResult
                 if finger.is_none() && FINGERS > 1 =>
             {
-                return Err(WithSourceFinger::from_whole_device(Error::Missing(
-                    "finger (as @0)",
-                )));
+                return Err(WithSourceFinger::from_whole_device(Error::Missing("finger (as @0)")));
             }
             _ => finger,
         };
@@ -471,12 +443,11 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             if finger.is_some_and(|finger| finger != one) {
                 continue;
             }
-            let answer = session.answer(request.clone(), |command| {
-                match execute(Some(one), command) {
+            let answer =
+                session.answer(request.clone(), |command| match execute(Some(one), command) {
                     Ok(reply) => Ok(reply.content),
                     Err(refused) => Err(refused.content),
-                }
-            });
+                });
             match answer {
                 // A request to several fingers has no other reply than `Done`.
                 Ok(answer) => reply = answer,
@@ -512,13 +483,11 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         for one in FingerIndex::all() {
             match execute(Some(one), Command::Status) {
                 Err(refused) => return Some(refused.map_content(Error::from)),
-                Ok(WithSourceFinger {
-                    content: command::Reply::Status(status),
-                    ..
-                }) if matches!(
-                    status.state,
-                    StateName::Off | StateName::Ready | StateName::Tripped(_)
-                ) => {}
+                Ok(WithSourceFinger { content: command::Reply::Status(status), .. })
+                    if matches!(
+                        status.state,
+                        StateName::Off | StateName::Ready | StateName::Tripped(_)
+                    ) => {}
                 Ok(_) => {
                     return Some(WithSourceFinger {
                         finger: one

@@ -48,11 +48,7 @@ pub fn fixed_point_from_decimal(word: &str) -> Option<I32F32> {
 
     let magnitude = (u128::from(integer) << I32F32::FRAC_NBITS) + u128::from(fraction);
     let magnitude = I32F32::from_bits(i64::try_from(magnitude).unwrap_or(i64::MAX));
-    Some(if word.starts_with('-') {
-        -magnitude
-    } else {
-        magnitude
-    })
+    Some(if word.starts_with('-') { -magnitude } else { magnitude })
 }
 
 #[cfg(test)]
@@ -97,10 +93,7 @@ mod tests {
             ("1e2147483647", I32F32::MAX),
             ("1e-2147483648", I32F32::ZERO),
             ("0e2147483647", I32F32::ZERO),
-            (
-                "0.000000000000000000000000000000000000000000000001",
-                I32F32::ZERO,
-            ),
+            ("0.000000000000000000000000000000000000000000000001", I32F32::ZERO),
             ("2147483647.99999999999999999999", I32F32::MAX),
         ] {
             assert_eq!(fixed_point_from_decimal(word), Some(value), "{word}");

@@ -215,12 +215,9 @@ impl fmt::Display for Error {
                 let known = SWITCH_WORDS.map(|(name, _)| name);
                 write_word_not_in_list(f, command, word, &known)
             }
-            Self::UnknownCommand(word) => write_unknown_word(
-                f,
-                "command",
-                word,
-                Request::KNOWN_COMMAND_WORDS.iter().copied(),
-            ),
+            Self::UnknownCommand(word) => {
+                write_unknown_word(f, "command", word, Request::KNOWN_COMMAND_WORDS.iter().copied())
+            }
             Self::UnknownFinger(word, fingers) => {
                 let last = fingers.saturating_sub(1);
                 write!(f, "unknown finger {word} after @; known: 0 to {last}")
@@ -304,11 +301,7 @@ impl fmt::Display for Error {
             }
             Self::NotMillimetres(range, word) => {
                 let (min, max) = (Shortest(range.min), Shortest(range.max));
-                write!(
-                    f,
-                    "{} {word}: a number of mm, such as 3 or 3mm; {min} to {max}",
-                    range.name
-                )
+                write!(f, "{} {word}: a number of mm, such as 3 or 3mm; {min} to {max}", range.name)
             }
             Self::NotANumber(range, word) => {
                 write!(f, "{} {word} is not a decimal number; {range}", range.name)
@@ -330,11 +323,7 @@ impl fmt::Display for Error {
                 write!(f, "person {word}: a code is 1 to 8 of A-Z, 0-9")
             }
             Self::NotPersonData(word) => {
-                write!(
-                    f,
-                    "data {word} is not {} hexadecimal digits",
-                    2 * Person::FINGER_BYTES
-                )
+                write!(f, "data {word} is not {} hexadecimal digits", 2 * Person::FINGER_BYTES)
             }
             Self::UnknownPerson(code) => {
                 write!(f, "no person {code} is stored; persons lists those who are")
@@ -405,17 +394,11 @@ fn write_checksum_error(f: &mut fmt::Formatter<'_>, error: &ChecksumError) -> fm
     match error {
         ChecksumError::Wrong(received, actual) => {
             let (received, actual) = (TwoHexDigits(*received), TwoHexDigits(*actual));
-            write!(
-                f,
-                "checksum {received} is wrong, the line has {actual}; send the line again"
-            )
+            write!(f, "checksum {received} is wrong, the line has {actual}; send the line again")
         }
         ChecksumError::Missing(actual) => {
             let actual = TwoHexDigits(*actual);
-            write!(
-                f,
-                "checksum missing, the line has {actual}; send the line again with it"
-            )
+            write!(f, "checksum missing, the line has {actual}; send the line again with it")
         }
         ChecksumError::Malformed(word) => write!(f, "checksum {word} is not 2 hexadecimal digits"),
     }
@@ -436,16 +419,10 @@ fn write_upload_error(f: &mut fmt::Formatter<'_>, error: UploadError) -> fmt::Re
         }
         UploadError::NotNextRow(next) => write!(f, "not the next row, which is {next}"),
         UploadError::Incomplete(there, count) => {
-            write!(
-                f,
-                "{there} of {count} rows; nothing is changed, upload again"
-            )
+            write!(f, "{there} of {count} rows; nothing is changed, upload again")
         }
         UploadError::Checksum(actual) => {
-            write!(
-                f,
-                "checksum is {actual:08x}; nothing is changed, upload again"
-            )
+            write!(f, "checksum is {actual:08x}; nothing is changed, upload again")
         }
         UploadError::MalformedChecksum => {
             f.write_str("checksum must have 8 hexadecimal digits; nothing is changed, upload again")
@@ -459,10 +436,9 @@ fn write_course_error(f: &mut fmt::Formatter<'_>, error: &CourseError) -> fmt::R
             write!(f, "too many points; at most {COURSE_POINTS_MAX}")
         }
         CourseError::TooFewPoints => f.write_str("a course has at least 2 points"),
-        CourseError::TimeGoesBack(ms, before_ms) => write!(
-            f,
-            "time {ms} ms is not after {before_ms} ms, that of the row before"
-        ),
+        CourseError::TimeGoesBack(ms, before_ms) => {
+            write!(f, "time {ms} ms is not after {before_ms} ms, that of the row before")
+        }
         CourseError::TooLong(ms) => {
             write!(f, "too long: {ms} ms; {COURSE_DURATION_MAX_MS} ms at most")
         }
@@ -548,10 +524,7 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
 
 /// A temperature with two decimals.
 fn rounded_celsius(celsius: Celsius) -> Rounded {
-    Rounded(
-        units_to_f64(celsius.to_bits().into(), Celsius::FRAC_NBITS),
-        2,
-    )
+    Rounded(units_to_f64(celsius.to_bits().into(), Celsius::FRAC_NBITS), 2)
 }
 
 fn write_celsius_or_dash(f: &mut fmt::Formatter<'_>, value: Option<Celsius>) -> fmt::Result {
@@ -579,15 +552,7 @@ fn write_identification_error(
             "tune saw {} % of what the display did come from elsewhere; look for a loose sensor, a draught, a touch",
             Rounded(100.0 * residual, 2)
         ),
-        IdentificationError::OutOfRange(
-            Range {
-                name,
-                unit,
-                min,
-                max,
-            },
-            value,
-        ) => {
+        IdentificationError::OutOfRange(Range { name, unit, min, max }, value) => {
             let (value, min, max) = (Rounded(*value, 3), Shortest(*min), Shortest(*max));
             write!(
                 f,
@@ -614,9 +579,8 @@ fn write_calibration_point_error(f: &mut fmt::Formatter<'_>, error: &PointError)
         PointError::Contradicts => {
             f.write_str("no correction fits this and the points before; clear them and begin again")
         }
-        PointError::Full => write!(
-            f,
-            "no room for more than {POINTS_PER_THERMISTOR_MAX} points; clear them"
-        ),
+        PointError::Full => {
+            write!(f, "no room for more than {POINTS_PER_THERMISTOR_MAX} points; clear them")
+        }
     }
 }

@@ -44,9 +44,5 @@ pub fn parse_telemetry_fields(words: &mut Words<'_>) -> Result<TelemetryFields, 
         let index = TelemetryFields::NAMES.iter().position(|name| *name == word);
         fields = fields.with(index.ok_or(Error::UnknownTelemetryField(word.into()))?);
     }
-    Ok(if fields == TelemetryFields::NONE {
-        TelemetryFields::DEFAULT
-    } else {
-        fields
-    })
+    Ok(if fields == TelemetryFields::NONE { TelemetryFields::DEFAULT } else { fields })
 }

@@ -28,10 +28,9 @@ pub fn split_address<const FINGERS: usize>(
     };
     match known {
         Some(finger) => Ok((Some(finger), rest)),
-        None => Err(WithSourceFinger::from_whole_device(Error::UnknownFinger(
-            number.into(),
-            FINGERS,
-        ))),
+        None => {
+            Err(WithSourceFinger::from_whole_device(Error::UnknownFinger(number.into(), FINGERS)))
+        }
     }
 }
 

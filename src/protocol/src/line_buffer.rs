@@ -25,10 +25,7 @@ pub(super) struct LineBuffer {
 impl LineBuffer {
     #[inline]
     pub(super) const fn new() -> Self {
-        Self {
-            bytes: [0; LINE_CAPACITY_BYTES],
-            length: 0,
-        }
+        Self { bytes: [0; LINE_CAPACITY_BYTES], length: 0 }
     }
 
     #[inline]
@@ -208,33 +205,17 @@ mod tests {
 
     #[test]
     fn decimals_are_the_exact_value_rounded() {
-        for bits in (i32::MIN..=i32::MAX)
-            .step_by(9973)
-            .chain([i32::MIN, -1, 0, 1, i32::MAX])
-        {
+        for bits in (i32::MIN..=i32::MAX).step_by(9973).chain([i32::MIN, -1, 0, 1, i32::MAX]) {
             let exact = f64::from(bits) / f64::from(1 << 22);
             let text = text(|text| text.push_celsius_or_dash(5, Some(Celsius::from_bits(bits))));
             let value: f64 = text.parse().expect("a number");
-            assert!(
-                (value - exact).abs() <= 0.5e-5 + 1e-12,
-                "{bits}: {text}, exactly {exact}"
-            );
-            assert_eq!(
-                text.split_once('.').map(|(_, decimals)| decimals.len()),
-                Some(5),
-                "{text}"
-            );
+            assert!((value - exact).abs() <= 0.5e-5 + 1e-12, "{bits}: {text}, exactly {exact}");
+            assert_eq!(text.split_once('.').map(|(_, decimals)| decimals.len()), Some(5), "{text}");
             assert_ne!(text, "-0.00000");
         }
         assert_eq!(text(|text| text.push_celsius_or_dash(2, None)), "-");
-        assert_eq!(
-            text(|text| text.push_force_or_dash(Some(Force::MAX))),
-            "256.000"
-        );
-        assert_eq!(
-            text(|text| text.push_current(Current::lit("-1.25"))),
-            "-1.250"
-        );
+        assert_eq!(text(|text| text.push_force_or_dash(Some(Force::MAX))), "256.000");
+        assert_eq!(text(|text| text.push_current(Current::lit("-1.25"))), "-1.250");
         for count in [0, 9, 10, 12_345, u32::MAX] {
             assert_eq!(text(|text| text.push_integer(count)), count.to_string());
         }

@@ -18,10 +18,7 @@ pub struct OutgoingLine {
 impl OutgoingLine {
     /// An empty line.
     pub const fn new() -> Self {
-        Self {
-            bytes: [0; OUTGOING_LINE_MAX_BYTES],
-            length: 0,
-        }
+        Self { bytes: [0; OUTGOING_LINE_MAX_BYTES], length: 0 }
     }
 
     /// Appends bytes, if there is room for all of them.
@@ -87,11 +84,7 @@ pub fn strip_checksum(line: &str) -> Result<&str, ChecksumError> {
         return Err(ChecksumError::Malformed(digits.into()));
     };
     let actual = line_checksum(content.as_bytes());
-    if received == actual {
-        Ok(content)
-    } else {
-        Err(ChecksumError::Wrong(received, actual))
-    }
+    if received == actual { Ok(content) } else { Err(ChecksumError::Wrong(received, actual)) }
 }
 
 /// A byte, written with two upper-case digits. `{:02X}` would add 0.9 KB to the image.
@@ -99,12 +92,10 @@ pub struct TwoHexDigits(pub u8);
 
 impl fmt::Display for TwoHexDigits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        [self.0 >> 4, self.0 & 0x0f]
-            .into_iter()
-            .try_for_each(|digit| {
-                let first = if digit < 10 { b'0' } else { b'A' - 10 };
-                f.write_char(char::from(first + digit))
-            })
+        [self.0 >> 4, self.0 & 0x0f].into_iter().try_for_each(|digit| {
+            let first = if digit < 10 { b'0' } else { b'A' - 10 };
+            f.write_char(char::from(first + digit))
+        })
     }
 }
 

@@ -37,10 +37,7 @@ pub struct LineReader {
 impl LineReader {
     /// A reader that has received no byte of a line yet.
     pub const fn new() -> Self {
-        Self {
-            line: String::new(),
-            error: None,
-        }
+        Self { line: String::new(), error: None }
     }
 
     /// Marks the line that is being received as invalid; [`Self::push`] returns `error`, or an earlier error of the

@@ -10,24 +10,10 @@ use crate::arguments::{
 };
 use crate::{Error, Request};
 
-static OBJECT_TEMPERATURE_RANGE: Range = Range {
-    name: "object temperature",
-    unit: "C",
-    min: -20.0,
-    max: 60.0,
-};
-static THICKNESS_RANGE: Range = Range {
-    name: "thickness",
-    unit: "mm",
-    min: 0.1,
-    max: 1000.0,
-};
-static FILM_RANGE: Range = Range {
-    name: "film",
-    unit: "W/m2K",
-    min: 0.1,
-    max: 100_000.0,
-};
+static OBJECT_TEMPERATURE_RANGE: Range =
+    Range { name: "object temperature", unit: "C", min: -20.0, max: 60.0 };
+static THICKNESS_RANGE: Range = Range { name: "thickness", unit: "mm", min: 0.1, max: 1000.0 };
+static FILM_RANGE: Range = Range { name: "film", unit: "W/m2K", min: 0.1, max: 100_000.0 };
 /// What may follow `object`, for the error message. Its range is that of [`OBJECT_TEMPERATURE_RANGE`].
 pub const OBJECT_ARGUMENTS: &str = "slab, half-space, room, or -20 to 60 C";
 /// Words for the back of a slab, which the answer to an unknown one lists.

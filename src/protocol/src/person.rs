@@ -77,11 +77,7 @@ impl fmt::Display for PersonReply {
         let Some(person) = &self.person else {
             return write!(f, "ok person=none contacts={}", self.contacts);
         };
-        write!(
-            f,
-            "ok person={} contacts={} data=",
-            person.code, self.contacts
-        )?;
+        write!(f, "ok person={} contacts={} data=", person.code, self.contacts)?;
         for byte in person.finger {
             TwoHexDigits(byte).fmt(f)?;
         }

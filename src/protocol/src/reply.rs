@@ -106,10 +106,7 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
 pub fn write_contact_law(f: &mut fmt::Formatter<'_>, law: &ContactLaw) -> fmt::Result {
     let exponent = Rounded(law.exponent, 4);
     let (hardness, gap) = (Rounded(law.hardness_pa, 0), Rounded(law.gap_w_m2k, 1));
-    write!(
-        f,
-        "exponent={exponent} hardness_pa={hardness} gap_w_m2k={gap}"
-    )
+    write!(f, "exponent={exponent} hardness_pa={hardness} gap_w_m2k={gap}")
 }
 
 fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt::Result {
@@ -131,12 +128,7 @@ fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt:
         SessionReply::DisplaySurface(display) => {
             f.write_str("ok")?;
             let values = display.to_array();
-            write_named_numbers(
-                f,
-                &DisplaySurface::NAMES,
-                &values,
-                &DisplaySurface::DECIMALS,
-            )
+            write_named_numbers(f, &DisplaySurface::NAMES, &values, &DisplaySurface::DECIMALS)
         }
         SessionReply::SettingsLines(lines) => write!(f, "ok lines={lines}"),
         SessionReply::Setting(setting) => write_set_line(f, setting),
@@ -188,9 +180,7 @@ fn state_answer_line(status: &Status) -> LineBuffer {
         None => line.push_str_if_fits("room"),
     }
     line.push_str_if_fits(" mode=");
-    let mode = CONTACT_MODEL_WORDS
-        .iter()
-        .find(|(_, mode)| *mode == status.mode);
+    let mode = CONTACT_MODEL_WORDS.iter().find(|(_, mode)| *mode == status.mode);
     line.push_str_if_fits(mode.map_or("-", |(name, _)| name));
     line.push_str_if_fits(" setpoint_c=");
     line.push_celsius_or_dash(2, status.setpoint);
@@ -210,11 +200,9 @@ fn trip_cause_answer_line(cause: Option<&TripCause>) -> LineBuffer {
     line.push_str_if_fits(cause.fault.name());
     line.push_str_if_fits(" tick=");
     line.push_integer(cause.tick);
-    for (name, temperature) in [
-        (" display_c=", cause.display),
-        (" check_c=", cause.check),
-        (" sink_c=", cause.sink),
-    ] {
+    for (name, temperature) in
+        [(" display_c=", cause.display), (" check_c=", cause.check), (" sink_c=", cause.sink)]
+    {
         line.push_str_if_fits(name);
         line.push_celsius_or_dash(2, temperature);
     }
@@ -230,18 +218,8 @@ fn comparator_test_answer_words(report: &SelfTestReport) -> LineBuffer {
     let mut line = LineBuffer::new();
     line.push_str_if_fits("ok");
     for (cut, supply, release, side) in [
-        (
-            " hot_cut_ms=",
-            " hot_supply_v=",
-            " hot_release_ms=",
-            &report.hot,
-        ),
-        (
-            " cold_cut_ms=",
-            " cold_supply_v=",
-            " cold_release_ms=",
-            &report.cold,
-        ),
+        (" hot_cut_ms=", " hot_supply_v=", " hot_release_ms=", &report.hot),
+        (" cold_cut_ms=", " cold_supply_v=", " cold_release_ms=", &report.cold),
     ] {
         line.push_str_if_fits(cut);
         line.push_integer_or_dash(side.cut_ms);
@@ -260,17 +238,13 @@ fn pulse_test_answer_words(report: &SelfTestReport) -> LineBuffer {
     let mut line = LineBuffer::new();
     line.push_str_if_fits(" supply_v=");
     line.push_supply_or_dash(report.supply);
-    for (name, current) in [
-        (" cool_a=", report.cooling_current),
-        (" warm_a=", report.warming_current),
-    ] {
+    for (name, current) in
+        [(" cool_a=", report.cooling_current), (" warm_a=", report.warming_current)]
+    {
         line.push_str_if_fits(name);
         line.push_current_or_dash(current);
     }
-    for (name, response) in [" display_k=", " check_k="]
-        .into_iter()
-        .zip(report.responses)
-    {
+    for (name, response) in [" display_k=", " check_k="].into_iter().zip(report.responses) {
         line.push_str_if_fits(name);
         line.push_celsius_or_dash(2, response);
     }
@@ -299,10 +273,9 @@ fn raw_answer_line(samples: &Samples) -> LineBuffer {
         line.push_str_if_fits(name);
         line.push_mean_of_16(sum);
     }
-    for (name, level) in [
-        (" stop=", samples.emergency_stop),
-        (" fault_line=", samples.bridge_fault),
-    ] {
+    for (name, level) in
+        [(" stop=", samples.emergency_stop), (" fault_line=", samples.bridge_fault)]
+    {
         line.push_str_if_fits(name);
         line.push_str_if_fits(if level { "1" } else { "0" });
     }
@@ -320,11 +293,7 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
             write_numbers(f, counts, &decimals)
         }
         Setting::Correction(sensor, correction) => {
-            write!(
-                f,
-                "correction {}",
-                THERMISTOR_WORDS[sensor % THERMISTOR_WORDS.len()]
-            )?;
+            write!(f, "correction {}", THERMISTOR_WORDS[sensor % THERMISTOR_WORDS.len()])?;
             write_numbers(f, &correction.to_array(), &Calibration::CORRECTION_DECIMALS)
         }
         Setting::FluxSensor(None) => f.write_str("flux none"),

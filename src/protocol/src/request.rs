@@ -26,10 +26,7 @@ use crate::person::{PersonRequest, parse_forget, parse_person};
 use crate::stimulus::{Pulse, parse_hold, parse_play, parse_pulse, parse_skin};
 
 /// A line from the host after parsing: a command with its arguments, which are within their ranges.
-#[allow(
-    clippy::large_enum_variant,
-    reason = "no heap to box the larger one in"
-)]
+#[allow(clippy::large_enum_variant, reason = "no heap to box the larger one in")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// The line `id`: report name and version of the firmware, number of fingers, tick rate and scan rate.
@@ -146,10 +143,8 @@ impl Request {
 
 /// Arguments of the command `mode`, each with the contact model that it selects: `contact` takes the thermal contact
 /// resistance between skin and object into account, `semi-infinite` does not. The contact model gives the set-point.
-pub const CONTACT_MODEL_WORDS: [(&str, ContactModel); 2] = [
-    ("contact", ContactModel::ContactResistance),
-    ("semi-infinite", ContactModel::SemiInfinite),
-];
+pub const CONTACT_MODEL_WORDS: [(&str, ContactModel); 2] =
+    [("contact", ContactModel::ContactResistance), ("semi-infinite", ContactModel::SemiInfinite)];
 /// Arguments of the commands `checksum` and `events`.
 pub const SWITCH_WORDS: [(&str, bool); 2] = [("on", true), ("off", false)];
 /// Argument of the command `material` in place of a material's name. The properties of the material follow:
@@ -179,57 +174,24 @@ static CONTACT_LAW_RANGES: [Range; 3] = [
         max: *ContactLaw::GAPS_W_M2K.end(),
     },
 ];
-static STREAM_INTERVAL_RANGE: Range = Range {
-    name: "interval",
-    unit: "ms",
-    min: 0.0,
-    max: 60_000.0,
-};
+static STREAM_INTERVAL_RANGE: Range =
+    Range { name: "interval", unit: "ms", min: 0.0, max: 60_000.0 };
 /// Allowed ranges of the properties of a material in the line `material custom ...`, in their order on the line:
 /// thermal conductivity, density, specific heat, roughness and slope of the asperities.
 static MATERIAL_PROPERTY_RANGES: [Range; 5] = [
-    Range {
-        name: "conductivity",
-        unit: "W/mK",
-        min: 0.001,
-        max: 5000.0,
-    },
-    Range {
-        name: "density",
-        unit: "kg/m3",
-        min: 1.0,
-        max: 30_000.0,
-    },
-    Range {
-        name: "specific heat",
-        unit: "J/kgK",
-        min: 10.0,
-        max: 10_000.0,
-    },
-    Range {
-        name: "roughness",
-        unit: "um",
-        min: 0.001,
-        max: 1000.0,
-    },
-    Range {
-        name: "slope",
-        unit: "rad",
-        min: 0.0001,
-        max: 1.5,
-    },
+    Range { name: "conductivity", unit: "W/mK", min: 0.001, max: 5000.0 },
+    Range { name: "density", unit: "kg/m3", min: 1.0, max: 30_000.0 },
+    Range { name: "specific heat", unit: "J/kgK", min: 10.0, max: 10_000.0 },
+    Range { name: "roughness", unit: "um", min: 0.001, max: 1000.0 },
+    Range { name: "slope", unit: "rad", min: 0.0001, max: 1.5 },
 ];
 
 fn parse_stream(words: &mut Words<'_>) -> Result<Command<'static>, Error> {
     // Rounds a fraction of a millisecond up, so that only 0 ends the stream.
-    let interval_ms = read_fixed_point_in_range(words, &STREAM_INTERVAL_RANGE)?
-        .saturating_ceil()
-        .to_bits()
-        >> I32F32::FRAC_NBITS;
-    Ok(Command::Stream {
-        interval_ms: interval_ms as u32,
-        fields: parse_telemetry_fields(words)?,
-    })
+    let interval_ms =
+        read_fixed_point_in_range(words, &STREAM_INTERVAL_RANGE)?.saturating_ceil().to_bits()
+            >> I32F32::FRAC_NBITS;
+    Ok(Command::Stream { interval_ms: interval_ms as u32, fields: parse_telemetry_fields(words)? })
 }
 
 fn parse_finger(name: &str) -> Result<AssumedFinger, Error> {
@@ -246,11 +208,7 @@ fn parse_contact_law(words: &mut Words<'_>) -> Result<Option<ChosenContactLaw>, 
         return Ok(Some(ChosenContactLaw::NOMINAL));
     }
     let [exponent, hardness_pa, gap_w_m2k] = read_numbers_in_ranges(words, &CONTACT_LAW_RANGES)?;
-    Ok(Some(ChosenContactLaw::new(ContactLaw {
-        exponent,
-        hardness_pa,
-        gap_w_m2k,
-    })))
+    Ok(Some(ChosenContactLaw::new(ContactLaw { exponent, hardness_pa, gap_w_m2k })))
 }
 
 fn parse_contact_model(words: &mut Words<'_>) -> Result<ContactModel, Error> {
@@ -272,10 +230,7 @@ fn parse_material_and_compute_contact(
 ) -> Result<Command<'static>, Error> {
     let name = word_or_empty(words);
     let (name, material) = if name == CUSTOM_MATERIAL_WORD {
-        (
-            CUSTOM_MATERIAL_WORD,
-            parse_custom_material_properties(words)?,
-        )
+        (CUSTOM_MATERIAL_WORD, parse_custom_material_properties(words)?)
     } else {
         table_entry_for_word_or_none(&MATERIALS, name).ok_or(Error::UnknownMaterial(name.into()))?
     };
@@ -284,19 +239,10 @@ fn parse_material_and_compute_contact(
 }
 
 fn parse_custom_material_properties(words: &mut Words<'_>) -> Result<Material, Error> {
-    let [
-        conductivity_w_mk,
-        density_kg_m3,
-        specific_heat_j_kgk,
-        roughness_um,
-        slope_rad,
-    ] = read_numbers_in_ranges(words, &MATERIAL_PROPERTY_RANGES)?;
+    let [conductivity_w_mk, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad] =
+        read_numbers_in_ranges(words, &MATERIAL_PROPERTY_RANGES)?;
     Ok(Material {
-        surface: Surface {
-            conductivity_w_mk,
-            roughness_um,
-            slope_rad,
-        },
+        surface: Surface { conductivity_w_mk, roughness_um, slope_rad },
         density_kg_m3,
         specific_heat_j_kgk,
     })

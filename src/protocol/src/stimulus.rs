@@ -17,56 +17,27 @@ use crate::arguments::{
     word_or_empty,
 };
 
-static TEMPERATURE_RANGE: Range = Range {
-    name: "temperature",
-    unit: "C",
-    min: SETPOINT_MIN_C,
-    max: SETPOINT_MAX_C,
-};
-static SKIN_RANGE: Range = Range {
-    name: "skin",
-    unit: "C",
-    min: SETPOINT_MIN_C,
-    max: SETPOINT_MAX_C,
-};
+static TEMPERATURE_RANGE: Range =
+    Range { name: "temperature", unit: "C", min: SETPOINT_MIN_C, max: SETPOINT_MAX_C };
+static SKIN_RANGE: Range =
+    Range { name: "skin", unit: "C", min: SETPOINT_MIN_C, max: SETPOINT_MAX_C };
 static RELATIVE_TEMPERATURE_RANGE: Range = Range {
     name: "temperature",
     unit: "K",
     min: SETPOINT_MIN_C - SETPOINT_MAX_C,
     max: SETPOINT_MAX_C - SETPOINT_MIN_C,
 };
-static RATE_RANGE: Range = Range {
-    name: "rate",
-    unit: "K/s",
-    min: 0.01,
-    max: COURSE_RATE_MAX_K_S as f64,
-};
-static TIME_RANGE: Range = Range {
-    name: "time",
-    unit: "s",
-    min: 0.0,
-    max: COURSE_DURATION_MAX_MS as f64 / 1e3,
-};
-static TIMES_RANGE: Range = Range {
-    name: "repeats",
-    unit: "",
-    min: 1.0,
-    max: 1000.0,
-};
+static RATE_RANGE: Range =
+    Range { name: "rate", unit: "K/s", min: 0.01, max: COURSE_RATE_MAX_K_S as f64 };
+static TIME_RANGE: Range =
+    Range { name: "time", unit: "s", min: 0.0, max: COURSE_DURATION_MAX_MS as f64 / 1e3 };
+static TIMES_RANGE: Range = Range { name: "repeats", unit: "", min: 1.0, max: 1000.0 };
 /// Number of points of a course.
-pub static COURSE_POINT_COUNT_RANGE: Range = Range {
-    name: "number of points",
-    unit: "",
-    min: 2.0,
-    max: COURSE_POINTS_MAX as f64,
-};
+pub static COURSE_POINT_COUNT_RANGE: Range =
+    Range { name: "number of points", unit: "", min: 2.0, max: COURSE_POINTS_MAX as f64 };
 /// Index of a point of a course.
-pub static COURSE_POINT_INDEX_RANGE: Range = Range {
-    name: "row",
-    unit: "",
-    min: 0.0,
-    max: (COURSE_POINTS_MAX - 1) as f64,
-};
+pub static COURSE_POINT_INDEX_RANGE: Range =
+    Range { name: "row", unit: "", min: 0.0, max: (COURSE_POINTS_MAX - 1) as f64 };
 
 /// The line `pulse BASE TARGET RISE_K_S HOLD_S RETURN_K_S`, and when its course is played.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,21 +61,12 @@ impl Pulse {
         let mut time_ms = 0u32;
         for (temperature, duration_ms) in [
             (self.base, 0),
-            (
-                self.target,
-                duration_ms(self.base, self.target, self.rise_k_s),
-            ),
+            (self.target, duration_ms(self.base, self.target, self.rise_k_s)),
             (self.target, self.hold_ms),
-            (
-                self.base,
-                duration_ms(self.base, self.target, self.return_k_s),
-            ),
+            (self.base, duration_ms(self.base, self.target, self.return_k_s)),
         ] {
             time_ms = time_ms.saturating_add(duration_ms);
-            let point = CoursePoint {
-                time_ms,
-                temperature,
-            };
+            let point = CoursePoint { time_ms, temperature };
             // Without a hold the third point is the second one.
             if course.points().last() != Some(&point) {
                 course.push(point)?;
@@ -118,8 +80,7 @@ impl Pulse {
 #[inline(never)]
 fn duration_ms(from: Celsius, to: Celsius, rate_k_s: Celsius) -> u32 {
     let way = u64::from(from.abs_diff(to).to_bits()) * 1000;
-    way.div_ceil(u64::from(rate_k_s.to_bits().unsigned_abs().max(1)))
-        .max(1) as u32
+    way.div_ceil(u64::from(rate_k_s.to_bits().unsigned_abs().max(1))).max(1) as u32
 }
 
 #[inline(never)]
@@ -140,10 +101,7 @@ pub fn parse_hold(words: &mut Words<'_>) -> Result<Command<'static>, Error> {
         Some(_) => read_celsius(words, &RATE_RANGE)?,
         None => Hold::DEFAULT_RATE_K_S,
     };
-    Ok(Command::Hold {
-        target: Setpoint::clamp_celsius_with_flag(celsius).0,
-        rate_k_s,
-    })
+    Ok(Command::Hold { target: Setpoint::clamp_celsius_with_flag(celsius).0, rate_k_s })
 }
 
 #[inline(never)]
@@ -151,11 +109,7 @@ pub fn parse_play(words: &mut Words<'_>) -> Result<PlayOrder, Error> {
     let word = word_or_empty(words);
     let (_, start) = table_entry_for_word_or_none(&CourseStart::PROTOCOL_WORDS, word)
         .ok_or(Error::UnknownCourseStart(word.into()))?;
-    let mut order = PlayOrder {
-        start,
-        play_count: 1,
-        end: CourseEnd::default(),
-    };
+    let mut order = PlayOrder { start, play_count: 1, end: CourseEnd::default() };
     let is_number = |word: &str| !word.starts_with(|first: char| first.is_ascii_alphabetic());
     if words.clone().next().is_some_and(is_number) {
         order.play_count = read_whole_number_in_range(words, &TIMES_RANGE)? as u16;
@@ -176,11 +130,7 @@ pub fn parse_pulse(words: &mut Words<'_>) -> Result<Pulse, Error> {
         return_k_s: read_celsius(words, &RATE_RANGE)?,
         order: match words.clone().next() {
             Some(_) => parse_play(words)?,
-            None => PlayOrder {
-                start: CourseStart::Now,
-                play_count: 1,
-                end: CourseEnd::default(),
-            },
+            None => PlayOrder { start: CourseStart::Now, play_count: 1, end: CourseEnd::default() },
         },
     })
 }
@@ -212,8 +162,5 @@ pub fn read_course_point(
         TemperatureKind::Absolute => &TEMPERATURE_RANGE,
         TemperatureKind::AboveSkin => &RELATIVE_TEMPERATURE_RANGE,
     };
-    Ok(CoursePoint {
-        time_ms: read_milliseconds(words)?,
-        temperature: read_celsius(words, range)?,
-    })
+    Ok(CoursePoint { time_ms: read_milliseconds(words)?, temperature: read_celsius(words, range)? })
 }

@@ -42,29 +42,20 @@ fn refusal(line: &str) -> String {
 fn each_line_about_persons_is_parsed() {
     let code = |word: &str| PersonCode::new(word).expect("a code");
     let finger = core::array::from_fn(|i| [0x01, 0x23, 0x45, 0x67, 0x89, 0xab, 0xcd, 0xef][i % 8]);
-    let person = Person {
-        code: code("ABCDEFGH"),
-        finger,
-    };
+    let person = Person { code: code("ABCDEFGH"), finger };
     for (line, request) in [
         ("person", PersonRequest::Query),
         ("person P07", PersonRequest::Choose(Some(code("P07")))),
         ("person none", PersonRequest::Choose(None)),
         ("person enrol P07", PersonRequest::Enrol(code("P07"))),
-        (
-            "person ABCDEFGH 0123456789abcdef0123456789ABCDEF01234567",
-            PersonRequest::Store(person),
-        ),
+        ("person ABCDEFGH 0123456789abcdef0123456789ABCDEF01234567", PersonRequest::Store(person)),
         ("persons", PersonRequest::List),
         ("forget person 7", PersonRequest::Forget(code("7"))),
     ] {
         assert_eq!(parse(line), Ok(Request::Person(request)), "{line}");
     }
     assert_eq!(parse("forget"), Ok(Request::Storage(StorageOrder::Forget)));
-    let reply = PersonReply {
-        person: Some(person),
-        contacts: 255,
-    };
+    let reply = PersonReply { person: Some(person), contacts: 255 };
     assert_eq!(
         Reply::Person(reply).to_string(),
         "ok person=ABCDEFGH contacts=255 data=0123456789ABCDEF0123456789ABCDEF01234567"
@@ -87,32 +78,17 @@ fn every_command_is_parsed() {
     assert_eq!(parse("board"), Ok(Request::Board));
     for (line, command) in [
         ("state", Command::Status),
-        (
-            "stream 0",
-            Command::Stream {
-                interval_ms: 0,
-                fields: TelemetryFields::DEFAULT,
-            },
-        ),
+        ("stream 0", Command::Stream { interval_ms: 0, fields: TelemetryFields::DEFAULT }),
         (
             " stream  60000 ",
-            Command::Stream {
-                interval_ms: 60_000,
-                fields: TelemetryFields::DEFAULT,
-            },
+            Command::Stream { interval_ms: 60_000, fields: TelemetryFields::DEFAULT },
         ),
         ("object room", Command::Object(None)),
         ("object half-space", Command::Body(ObjectBody::HalfSpace)),
         ("finger", Command::Finger(None)),
-        (
-            "finger thesis",
-            Command::Finger(Some(AssumedFinger::Thesis)),
-        ),
+        ("finger thesis", Command::Finger(Some(AssumedFinger::Thesis))),
         ("contact", Command::ContactLaw(None)),
-        (
-            "contact nominal",
-            Command::ContactLaw(Some(ChosenContactLaw::NOMINAL)),
-        ),
+        ("contact nominal", Command::ContactLaw(Some(ChosenContactLaw::NOMINAL))),
         (
             "contact 0.875 61250 1000",
             Command::ContactLaw(Some(ChosenContactLaw::new(ContactLaw {
@@ -126,14 +102,8 @@ fn every_command_is_parsed() {
         ("law", Command::Law(None)),
         ("law pi-10hz", Command::Law(Some(Law::Pi10Hz))),
         ("law pi", Command::Law(Some(Law::Pi))),
-        (
-            "mode contact",
-            Command::Mode(ContactModel::ContactResistance),
-        ),
-        (
-            "mode semi-infinite",
-            Command::Mode(ContactModel::SemiInfinite),
-        ),
+        ("mode contact", Command::Mode(ContactModel::ContactResistance)),
+        ("mode semi-infinite", Command::Mode(ContactModel::SemiInfinite)),
         ("arm", Command::Arm),
         ("start", Command::Start),
         ("abort", Command::Abort),
@@ -146,10 +116,8 @@ fn every_command_is_parsed() {
         Ok(Request::Station(Command::Material(material))) => material.pair,
         other => panic!("{line}: {other:?}"),
     };
-    let (named, custom) = (
-        pair_of("material copper"),
-        pair_of("material custom 398 8954 384 0.31 0.045"),
-    );
+    let (named, custom) =
+        (pair_of("material copper"), pair_of("material custom 398 8954 384 0.31 0.045"));
     assert!((named.ratio().to_num::<f64>() - custom.ratio().to_num::<f64>()).abs() < 1e-5);
 }
 
@@ -187,103 +155,40 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
             "err unknown material 'unobtainium-of-the-f'; known: copper bronze stainless-steel granite g10 abs foam \
              baf2 zns custom",
         ),
-        (
-            "mode x",
-            "err unknown mode 'x'; known: contact semi-infinite",
-        ),
+        ("mode x", "err unknown mode 'x'; known: contact semi-infinite"),
         ("law x", "err unknown law 'x'; known: pi-10hz pi model"),
         (" ", "err command missing"),
         ("stream", "err interval missing; 0 to 60000 ms"),
-        (
-            "object",
-            "err object missing; slab, half-space, room, or -20 to 60 C",
-        ),
+        ("object", "err object missing; slab, half-space, room, or -20 to 60 C"),
         (
             "material",
             "err material missing; known: copper bronze stainless-steel granite g10 abs foam baf2 zns custom",
         ),
-        (
-            "material custom 1 1",
-            "err specific heat missing; 10 to 10000 J/kgK",
-        ),
-        (
-            "material custom 1 1 10 1",
-            "err slope missing; 0.0001 to 1.5 rad",
-        ),
+        ("material custom 1 1", "err specific heat missing; 10 to 10000 J/kgK"),
+        ("material custom 1 1 10 1", "err slope missing; 0.0001 to 1.5 rad"),
         ("mode", "err mode missing; known: contact semi-infinite"),
-        (
-            "contact soft",
-            "err exponent 'soft' is not a decimal number; 0.3 to 1.5 ",
-        ),
-        (
-            "contact 0.9 122500",
-            "err gap missing; 0 to 100000 W/(m2 K)",
-        ),
-        (
-            "contact 0.9 999 0",
-            "err microhardness '999' out of range; 1000 to 100000000 Pa",
-        ),
-        (
-            "calibrate",
-            "err sensor missing; known: display check sink skin room",
-        ),
-        (
-            "set",
-            "err setting missing; known: steps correction tile flux surface",
-        ),
+        ("contact soft", "err exponent 'soft' is not a decimal number; 0.3 to 1.5 "),
+        ("contact 0.9 122500", "err gap missing; 0 to 100000 W/(m2 K)"),
+        ("contact 0.9 999 0", "err microhardness '999' out of range; 1000 to 100000000 Pa"),
+        ("calibrate", "err sensor missing; known: display check sink skin room"),
+        ("set", "err setting missing; known: steps correction tile flux surface"),
         ("flux fit", "err unknown flux 'fit'; known: set none zero"),
         ("flux set", "err gain missing; 0.01 to 1 counts per W/m2"),
-        (
-            "flux set 1.1 2048 5 30",
-            "err gain '1.1' out of range; 0.01 to 1 counts per W/m2",
-        ),
-        (
-            "set flux 0.1 63 5 30",
-            "err zero '63' out of range; 64 to 4031 counts",
-        ),
-        (
-            "flux set 0.1 2048 0 30",
-            "err lag '0' out of range; 0.1 to 500 ms",
-        ),
-        (
-            "flux set 0.1 2048 5 3e3",
-            "err resistance '3e3' out of range; 0 to 1000 mm2 K/W",
-        ),
+        ("flux set 1.1 2048 5 30", "err gain '1.1' out of range; 0.01 to 1 counts per W/m2"),
+        ("set flux 0.1 63 5 30", "err zero '63' out of range; 64 to 4031 counts"),
+        ("flux set 0.1 2048 0 30", "err lag '0' out of range; 0.1 to 500 ms"),
+        ("flux set 0.1 2048 5 3e3", "err resistance '3e3' out of range; 0 to 1000 mm2 K/W"),
         ("flux none 1", "err unexpected '1' after the command"),
-        (
-            "surface rough",
-            "err unknown surface 'rough'; known: set nominal",
-        ),
+        ("surface rough", "err unknown surface 'rough'; known: set nominal"),
         ("surface set", "err conductivity missing; 0.1 to 500 W/mK"),
-        (
-            "surface set 0.09 1 0.1",
-            "err conductivity '0.09' out of range; 0.1 to 500 W/mK",
-        ),
-        (
-            "set surface 36 31 0.1",
-            "err roughness '31' out of range; 0.01 to 30 um",
-        ),
-        (
-            "surface set 36 1 1.6",
-            "err slope '1.6' out of range; 0.001 to 1.5 rad",
-        ),
+        ("surface set 0.09 1 0.1", "err conductivity '0.09' out of range; 0.1 to 500 W/mK"),
+        ("set surface 36 31 0.1", "err roughness '31' out of range; 0.01 to 30 um"),
+        ("surface set 36 1 1.6", "err slope '1.6' out of range; 0.001 to 1.5 rad"),
         ("surface nominal 1", "err unexpected '1' after the command"),
-        (
-            "person p07",
-            "err person 'p07': a code is 1 to 8 of A-Z, 0-9",
-        ),
-        (
-            "person enrol ABCDEFGHI",
-            "err person 'ABCDEFGHI': a code is 1 to 8 of A-Z, 0-9",
-        ),
-        (
-            "person enrol",
-            "err person missing; a code of 1 to 8 of A-Z, 0-9",
-        ),
-        (
-            "forget person",
-            "err person missing; a code of 1 to 8 of A-Z, 0-9",
-        ),
+        ("person p07", "err person 'p07': a code is 1 to 8 of A-Z, 0-9"),
+        ("person enrol ABCDEFGHI", "err person 'ABCDEFGHI': a code is 1 to 8 of A-Z, 0-9"),
+        ("person enrol", "err person missing; a code of 1 to 8 of A-Z, 0-9"),
+        ("forget person", "err person missing; a code of 1 to 8 of A-Z, 0-9"),
         (
             "person P07 0123456789abcdef0123456789abcdef0123456",
             "err data '0123456789abcdef0123' is not 40 hexadecimal digits",
@@ -294,45 +199,21 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
         ),
         ("person none P07", "err unexpected 'P07' after the command"),
         ("persons P07", "err unexpected 'P07' after the command"),
-        (
-            "forget persons",
-            "err unexpected 'persons' after the command",
-        ),
+        ("forget persons", "err unexpected 'persons' after the command"),
         ("arm now", "err unexpected 'now' after the command"),
         ("object room 3", "err unexpected '3' after the command"),
-        (
-            "object warm",
-            "err object 'warm': slab, half-space, room, or -20 to 60 C",
-        ),
-        (
-            "object slap 3mm held",
-            "err object 'slap': slab, half-space, room, or -20 to 60 C",
-        ),
-        (
-            "object half space",
-            "err object 'half': slab, half-space, room, or -20 to 60 C",
-        ),
-        (
-            "object nan",
-            "err object 'nan': slab, half-space, room, or -20 to 60 C",
-        ),
-        (
-            "object inf",
-            "err object 'inf': slab, half-space, room, or -20 to 60 C",
-        ),
-        (
-            "object 60.001",
-            "err object temperature '60.001' out of range; -20 to 60 C",
-        ),
+        ("object warm", "err object 'warm': slab, half-space, room, or -20 to 60 C"),
+        ("object slap 3mm held", "err object 'slap': slab, half-space, room, or -20 to 60 C"),
+        ("object half space", "err object 'half': slab, half-space, room, or -20 to 60 C"),
+        ("object nan", "err object 'nan': slab, half-space, room, or -20 to 60 C"),
+        ("object inf", "err object 'inf': slab, half-space, room, or -20 to 60 C"),
+        ("object 60.001", "err object temperature '60.001' out of range; -20 to 60 C"),
         ("stream -1", "err interval '-1' out of range; 0 to 60000 ms"),
         (
             "stream 99999999999999999999999",
             "err interval '99999999999999999999' out of range; 0 to 60000 ms",
         ),
-        (
-            "material custom 0 1 10 1 0.1",
-            "err conductivity '0' out of range; 0.001 to 5000 W/mK",
-        ),
+        ("material custom 0 1 10 1 0.1", "err conductivity '0' out of range; 0.001 to 5000 W/mK"),
     ] {
         assert_eq!(refusal(line), answer);
     }
@@ -342,29 +223,18 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
 fn read_lines(bytes: impl IntoIterator<Item = u8>) -> Vec<Result<String, LineError>> {
     let mut reader = LineReader::new();
     let lines = bytes.into_iter().filter_map(|byte| reader.push(byte));
-    lines
-        .map(|line| line.map(|line| line.to_string()))
-        .collect()
+    lines.map(|line| line.map(|line| line.to_string())).collect()
 }
 
 #[test]
 fn an_invalid_byte_rejects_only_its_line() {
     let line = |text: &str| Ok(text.to_string());
     assert_eq!(read_lines(*b"arm\r\n\n\rid\n"), [line("arm"), line("id")]);
-    assert_eq!(
-        read_lines(*b"a\xffrm\nid\n"),
-        [Err(LineError::NotText(0xff)), line("id")]
-    );
+    assert_eq!(read_lines(*b"a\xffrm\nid\n"), [Err(LineError::NotText(0xff)), line("id")]);
     let full = "x".repeat(LINE_MAX_BYTES);
     let bytes = [full.as_str(), "\n", &full, "x\nid\n"].concat();
-    assert_eq!(
-        read_lines(bytes.bytes()),
-        [line(&full), Err(LineError::TooLong), line("id")]
-    );
-    assert_eq!(
-        Error::from(LineError::TooLong).to_string(),
-        "err line too long; at most 96 bytes"
-    );
+    assert_eq!(read_lines(bytes.bytes()), [line(&full), Err(LineError::TooLong), line("id")]);
+    assert_eq!(Error::from(LineError::TooLong).to_string(), "err line too long; at most 96 bytes");
 }
 
 proptest! {
@@ -398,10 +268,7 @@ fn the_longest_answers_fit_their_limit() {
         "{answer}"
     );
     let unknown = refusal(&"x".repeat(LINE_MAX_BYTES));
-    assert!(
-        unknown.len() == ANSWER_MAX_BYTES && unknown.ends_with(" forget"),
-        "{unknown}"
-    );
+    assert!(unknown.len() == ANSWER_MAX_BYTES && unknown.ends_with(" forget"), "{unknown}");
     let documentation = include_str!("../../../docs/protocol.md");
     let limit = std::format!("at most {ANSWER_MAX_BYTES} bytes without address and checksum");
     assert!(documentation.contains(&limit), "docs/protocol.md: {limit}");
@@ -463,10 +330,7 @@ fn the_longest_answers_fit_their_limit() {
     };
     assert_eq!(
         write(all),
-        line.replace(
-            " display-short",
-            " -524288.0 -512.0000 sensor-range display-short"
-        )
+        line.replace(" display-short", " -524288.0 -512.0000 sensor-range display-short")
     );
 }
 
@@ -483,10 +347,7 @@ fn the_longest_status_of_a_board_fits_an_answer() {
     };
     let answer = Reply::Board(status).to_string();
     assert!(answer.len() <= ANSWER_MAX_BYTES, "{answer}");
-    assert!(
-        answer.ends_with(" uid=00230041513250132032364E"),
-        "{answer}"
-    );
+    assert!(answer.ends_with(" uid=00230041513250132032364E"), "{answer}");
 }
 
 #[test]

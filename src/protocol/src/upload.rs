@@ -24,36 +24,13 @@ const ROWS_MAX: usize = FAST_MAX + SLOW_MAX;
 /// Square metres per square millimetre, in which the lines count areas.
 const M2_PER_MM2: f64 = 1e-6;
 
-static ROW_COUNT_RANGE: Range = Range {
-    name: "number of rows",
-    unit: "",
-    min: 0.0,
-    max: ROWS_MAX as f64,
-};
-static ROW_INDEX_RANGE: Range = Range {
-    name: "row",
-    unit: "",
-    min: 0.0,
-    max: (ROWS_MAX - 1) as f64,
-};
-static DIRECT_RANGE: Range = Range {
-    name: "direct",
-    unit: "mm2K/W",
-    min: 0.0,
-    max: 27e3,
-};
-static RATE_RANGE: Range = Range {
-    name: "rate",
-    unit: "1/s",
-    min: 0.0,
-    max: 690.0,
-};
-static GAIN_RANGE: Range = Range {
-    name: "gain",
-    unit: "mm2K/J",
-    min: 1e-6,
-    max: 1.3e7,
-};
+static ROW_COUNT_RANGE: Range =
+    Range { name: "number of rows", unit: "", min: 0.0, max: ROWS_MAX as f64 };
+static ROW_INDEX_RANGE: Range =
+    Range { name: "row", unit: "", min: 0.0, max: (ROWS_MAX - 1) as f64 };
+static DIRECT_RANGE: Range = Range { name: "direct", unit: "mm2K/W", min: 0.0, max: 27e3 };
+static RATE_RANGE: Range = Range { name: "rate", unit: "1/s", min: 0.0, max: 690.0 };
+static GAIN_RANGE: Range = Range { name: "gain", unit: "mm2K/J", min: 1e-6, max: 1.3e7 };
 
 /// Why a line of an upload is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,10 +60,7 @@ enum Kind {
 }
 
 /// What a line of an upload has completed.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is no allocator; a step lives for one line"
-)]
+#[expect(clippy::large_enum_variant, reason = "there is no allocator; a step lives for one line")]
 #[derive(Debug)]
 pub enum UploadStep {
     /// Nothing yet: the begin of an object, or a row.
@@ -270,10 +244,8 @@ impl Upload {
         }
         match kind {
             Kind::Object => {
-                let impedance = Impedance {
-                    direct_m2k_w: self.direct_m2k_w,
-                    relaxations: &self.rows,
-                };
+                let impedance =
+                    Impedance { direct_m2k_w: self.direct_m2k_w, relaxations: &self.rows };
                 let body = Body::new(&impedance, SKIN.effusivity(), TICK_S);
                 body.map(UploadStep::Object).map_err(Error::Body)
             }
@@ -289,8 +261,5 @@ fn read_relaxation(words: &mut Words<'_>) -> Result<Relaxation, Error> {
     let rate_1_s = read_number_in_range(words, &RATE_RANGE)?;
     let gain_m2k_j = M2_PER_MM2 * read_number_in_range(words, &GAIN_RANGE)?;
     expect_end(words)?;
-    Ok(Relaxation {
-        rate_1_s,
-        gain_m2k_j,
-    })
+    Ok(Relaxation { rate_1_s, gain_m2k_j })
 }

@@ -79,11 +79,7 @@ impl Correction {
 
     /// A correction with this offset (K), slope (K/K) and curvature (1/K); the inverse of [`Self::to_array`].
     pub const fn from_array([offset_k, slope, curvature_1_k]: [f64; 3]) -> Self {
-        Self {
-            offset_k,
-            slope,
-            curvature_1_k,
-        }
+        Self { offset_k, slope, curvature_1_k }
     }
 
     /// Returns this correction with offset, slope and curvature rounded to the 6, 7 and 8 decimals that the record in

@@ -26,11 +26,7 @@ impl DisplaySurface {
 
     /// Conductivity, roughness and slope, in the order of lines and record.
     pub const fn to_array(&self) -> [f64; 3] {
-        [
-            self.0.conductivity_w_mk,
-            self.0.roughness_um,
-            self.0.slope_rad,
-        ]
+        [self.0.conductivity_w_mk, self.0.roughness_um, self.0.slope_rad]
     }
 
     /// A surface of this conductivity, roughness and slope.
@@ -40,10 +36,6 @@ impl DisplaySurface {
             *value = round_to_decimals(*value, decimals);
         }
         let [conductivity_w_mk, roughness_um, slope_rad] = rounded;
-        Self(Surface {
-            conductivity_w_mk,
-            roughness_um,
-            slope_rad,
-        })
+        Self(Surface { conductivity_w_mk, roughness_um, slope_rad })
     }
 }

@@ -17,32 +17,18 @@ pub struct FluxSensor {
 
 impl FluxSensor {
     /// The designed sensor.
-    pub const DESIGNED: Self = Self {
-        counts_per_w_m2: 0.1192,
-        zero_counts: 2048.0,
-        lag_ms: 5.0,
-        resistance_mm2k_w: 30.0,
-    };
+    pub const DESIGNED: Self =
+        Self { counts_per_w_m2: 0.1192, zero_counts: 2048.0, lag_ms: 5.0, resistance_mm2k_w: 30.0 };
 
     /// Names of gain, zero, lag and resistance in an answer.
-    pub const NAMES: [&str; 4] = [
-        "counts_per_w_m2",
-        "zero_counts",
-        "lag_ms",
-        "resistance_mm2k_w",
-    ];
+    pub const NAMES: [&str; 4] = ["counts_per_w_m2", "zero_counts", "lag_ms", "resistance_mm2k_w"];
 
     /// Decimals of gain, zero, lag and resistance in a line of settings and in the record in flash.
     pub const DECIMALS: [i32; 4] = [6, 3, 3, 3];
 
     /// Gain, zero, lag and resistance, in the order of lines and record.
     pub const fn to_array(&self) -> [f64; 4] {
-        [
-            self.counts_per_w_m2,
-            self.zero_counts,
-            self.lag_ms,
-            self.resistance_mm2k_w,
-        ]
+        [self.counts_per_w_m2, self.zero_counts, self.lag_ms, self.resistance_mm2k_w]
     }
 
     /// A sensor with this gain, zero, lag and resistance, each rounded to [`Self::DECIMALS`].
@@ -52,11 +38,6 @@ impl FluxSensor {
             *value = round_to_decimals(*value, decimals);
         }
         let [counts_per_w_m2, zero_counts, lag_ms, resistance_mm2k_w] = rounded;
-        Self {
-            counts_per_w_m2,
-            zero_counts,
-            lag_ms,
-            resistance_mm2k_w,
-        }
+        Self { counts_per_w_m2, zero_counts, lag_ms, resistance_mm2k_w }
     }
 }

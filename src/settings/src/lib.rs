@@ -149,11 +149,9 @@ impl ThermistorCurve {
     /// thermistor, with `T` in K and `R` in ohm. The beta equation is a Steinhart-Hart equation with `c = 0`.
     pub fn steinhart_hart_coefficients(&self) -> (f64, f64, f64) {
         match *self {
-            Self::Beta { r25_ohm, beta_k } => (
-                1.0 / 298.15 - libm::log(r25_ohm) / beta_k,
-                1.0 / beta_k,
-                0.0,
-            ),
+            Self::Beta { r25_ohm, beta_k } => {
+                (1.0 / 298.15 - libm::log(r25_ohm) / beta_k, 1.0 / beta_k, 0.0)
+            }
             Self::SteinhartHart { a, b, c } => (a, b, c),
         }
     }
@@ -219,18 +217,12 @@ impl Default for Settings {
         Self {
             thermistor: ThermistorDivider {
                 pull_up_ohm: 10e3,
-                curve: ThermistorCurve::Beta {
-                    r25_ohm: 10e3,
-                    beta_k: 3950.0,
-                },
+                curve: ThermistorCurve::Beta { r25_ohm: 10e3, beta_k: 3950.0 },
             },
             // The divider heats each thermistor by 0.27 mW, which 8 mW/K carry away from a bonded one, 3 mW/K from the
             // one on the skin, 1 mW/K from the one in still air.
             self_heating_k: [0.034, 0.034, 0.034, 0.09, 0.27],
-            force: ForceSensor {
-                zero_counts: 410.0,
-                counts_per_n: 300.0,
-            },
+            force: ForceSensor { zero_counts: 410.0, counts_per_n: 300.0 },
             current_counts_per_a: 400.0,
             module: PeltierModule {
                 legs_ohm: 1.061,

@@ -62,10 +62,7 @@ pub struct StoredDevice<const FINGERS: usize> {
 impl<const FINGERS: usize> From<[StoredSettings; FINGERS]> for StoredDevice<FINGERS> {
     /// No persons.
     fn from(fingers: [StoredSettings; FINGERS]) -> Self {
-        Self {
-            fingers,
-            persons: Persons::new(),
-        }
+        Self { fingers, persons: Persons::new() }
     }
 }
 
@@ -217,25 +214,14 @@ impl fmt::Display for RecordError {
             Self::Kind(kind) => write!(f, "settings have the unknown kind {kind}; known: 0 1"),
             Self::Fingers(fingers) => write!(f, "settings are those of {fingers} fingers"),
             Self::Persons(persons) => {
-                write!(
-                    f,
-                    "settings are of {persons} persons; 1 to {}",
-                    Persons::MAX
-                )
+                write!(f, "settings are of {persons} persons; 1 to {}", Persons::MAX)
             }
             Self::PersonCode(index) => {
                 write!(f, "person {index} has no code of 1 to 8 of A-Z, 0-9")
             }
-            Self::OutOfRange {
-                finger,
-                allowed,
-                value,
-            } => {
+            Self::OutOfRange { finger, allowed, value } => {
                 let (name, value) = (allowed.name, Shortest(*value));
-                write!(
-                    f,
-                    "{name} {value} of finger {finger} out of range; {allowed}"
-                )
+                write!(f, "{name} {value} of finger {finger} out of range; {allowed}")
             }
         }
     }
@@ -295,12 +281,8 @@ pub fn decode_settings_record<const FINGERS: usize>(
     bytes: &[u8],
 ) -> Result<Option<StoredDevice<FINGERS>>, RecordError> {
     let wrong_length = RecordError::Length(bytes.len());
-    let (content, checksum) = bytes
-        .split_last_chunk::<CHECKSUM_BYTES>()
-        .ok_or(wrong_length)?;
-    let (header, values) = content
-        .split_first_chunk::<HEADER_BYTES>()
-        .ok_or(wrong_length)?;
+    let (content, checksum) = bytes.split_last_chunk::<CHECKSUM_BYTES>().ok_or(wrong_length)?;
+    let (header, values) = content.split_first_chunk::<HEADER_BYTES>().ok_or(wrong_length)?;
     if CRC_32.checksum(content) != u32::from_le_bytes(*checksum) {
         return Err(RecordError::Checksum);
     }
@@ -318,9 +300,8 @@ pub fn decode_settings_record<const FINGERS: usize>(
     if usize::from(fingers) != expected_fingers {
         return Err(RecordError::Fingers(fingers));
     }
-    let (values, persons) = values
-        .split_at_checked(expected_fingers * 4 * integers_per_finger)
-        .ok_or(wrong_length)?;
+    let (values, persons) =
+        values.split_at_checked(expected_fingers * 4 * integers_per_finger).ok_or(wrong_length)?;
     let may_have_persons = kind == KIND_SETTINGS && integers_per_finger == INTEGERS_IN_VERSION_2;
     if !persons.is_empty() && !may_have_persons {
         return Err(wrong_length);
@@ -336,11 +317,7 @@ pub fn decode_settings_record<const FINGERS: usize>(
     });
     for (finger, one) in (0..).zip(&fingers) {
         if let Some((allowed, value)) = one.first_value_out_of_range() {
-            return Err(RecordError::OutOfRange {
-                finger,
-                allowed,
-                value,
-            });
+            return Err(RecordError::OutOfRange { finger, allowed, value });
         }
     }
     Ok(Some(StoredDevice { fingers, persons }))

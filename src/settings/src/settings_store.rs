@@ -75,27 +75,18 @@ impl<E: fmt::Debug> From<Error<TriplicatedSealedFlashError<E>>> for StoreError<E
 impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
     /// A store of settings in the first three sectors of `flash`, which is neither read nor written yet.
     pub const fn new(flash: F) -> Self {
-        Self {
-            flash: TriplicatedSealedFlash::new(flash),
-            buffer: [0; RECORD_MAX_BYTES],
-        }
+        Self { flash: TriplicatedSealedFlash::new(flash), buffer: [0; RECORD_MAX_BYTES] }
     }
 
     /// Returns the log of records in the flash and the buffer for one record; both come from one call, so that they can
     /// be borrowed together. The log starts with an empty cache, and so reads the flash as after power-up.
     fn record_log_and_buffer(
         &mut self,
-    ) -> (
-        MapStorage<(), &mut TriplicatedSealedFlash<F>, RecordLogPositionCache>,
-        &mut [u8],
-    ) {
+    ) -> (MapStorage<(), &mut TriplicatedSealedFlash<F>, RecordLogPositionCache>, &mut [u8]) {
         let end =
             (RECORD_LOG_SECTOR_COUNT * TriplicatedSealedFlash::<F>::DATA_BYTES_PER_SECTOR) as u32;
-        let empty_cache = Cache::new(
-            ArrayPageStates::new(),
-            ArrayPagePointers::new(),
-            ArrayKeyPointers::new(),
-        );
+        let empty_cache =
+            Cache::new(ArrayPageStates::new(), ArrayPagePointers::new(), ArrayKeyPointers::new());
         let log = MapStorage::new(&mut self.flash, MapConfig::new(0..end), empty_cache);
         (log, &mut self.buffer)
     }
@@ -111,9 +102,7 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
     pub fn load(&mut self) -> Result<Option<StoredDevice<FINGERS>>, StoreError<F::Error>> {
         let (mut log, buffer) = self.record_log_and_buffer();
         let record = block_on(log.fetch_item::<&[u8]>(buffer, &()))?;
-        record.map_or(Ok(None), |bytes| {
-            decode_settings_record(bytes).map_err(StoreError::Record)
-        })
+        record.map_or(Ok(None), |bytes| decode_settings_record(bytes).map_err(StoreError::Record))
     }
 
     /// Saves the settings of all fingers, or factory defaults for `None`, as the newest record, and verifies the record

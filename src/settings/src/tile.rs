@@ -45,13 +45,7 @@ impl Tile {
     /// Gain (K/s per A), Joule term (1/A), leak (1/s), sensor lag (s) and dead time (s), in the order in which a
     /// `set tile` line and the record in flash hold them.
     pub const fn to_array(&self) -> [f64; 5] {
-        [
-            self.gain_k_s_a,
-            self.joule_per_a,
-            self.leak_1_s,
-            self.sensor_lag_s,
-            self.dead_time_s,
-        ]
+        [self.gain_k_s_a, self.joule_per_a, self.leak_1_s, self.sensor_lag_s, self.dead_time_s]
     }
 
     /// A tile with this gain (K/s per A), Joule term (1/A), leak (1/s), sensor lag (s) and dead time (s), each rounded
@@ -59,13 +53,7 @@ impl Tile {
     pub fn from_array_rounded(values: [f64; 5]) -> Self {
         let [gain_k_s_a, joule_per_a, leak_1_s, sensor_lag_s, dead_time_s] =
             values.map(|value| round_to_decimals(value, Self::DECIMALS));
-        Self {
-            gain_k_s_a,
-            joule_per_a,
-            leak_1_s,
-            sensor_lag_s,
-            dead_time_s,
-        }
+        Self { gain_k_s_a, joule_per_a, leak_1_s, sensor_lag_s, dead_time_s }
     }
 }
 
@@ -77,10 +65,7 @@ impl PiGains {
     pub fn simc_for_update_interval(tile: &Tile, hold_s: f64) -> Self {
         let theta_s = tile.sensor_lag_s + tile.dead_time_s + 0.5 * hold_s;
         let closed_s = 2.0 * theta_s;
-        Self {
-            proportional_a_k: 1.0 / (tile.gain_k_s_a * closed_s),
-            integral_s: 4.0 * closed_s,
-        }
+        Self { proportional_a_k: 1.0 / (tile.gain_k_s_a * closed_s), integral_s: 4.0 * closed_s }
     }
 
     /// Gains for a tile, first those of the control law `pi`, which updates the module's current every 1 ms, then those

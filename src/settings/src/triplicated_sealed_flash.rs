@@ -99,10 +99,8 @@ impl<F: BlockingNorFlash> TriplicatedSealedFlash<F> {
         bytes: usize,
     ) -> Result<(u32, u32), TriplicatedSealedFlashError<F::Error>> {
         let offset = offset as usize;
-        let (sector, within) = (
-            offset / Self::DATA_BYTES_PER_SECTOR,
-            offset % Self::DATA_BYTES_PER_SECTOR,
-        );
+        let (sector, within) =
+            (offset / Self::DATA_BYTES_PER_SECTOR, offset % Self::DATA_BYTES_PER_SECTOR);
         let start = sector * F::ERASE_SIZE;
         let fits = within.is_multiple_of(WORD_BYTES)
             && within + bytes <= Self::DATA_BYTES_PER_SECTOR
@@ -123,9 +121,8 @@ impl<F: BlockingNorFlash> TriplicatedSealedFlash<F> {
         address: u32,
         bytes: &mut [u8],
     ) -> Result<(), TriplicatedSealedFlashError<F::Error>> {
-        for (word, at) in bytes
-            .chunks_mut(WORD_BYTES)
-            .zip((address..).step_by(FLASH_BYTES_PER_DATA_WORD))
+        for (word, at) in
+            bytes.chunks_mut(WORD_BYTES).zip((address..).step_by(FLASH_BYTES_PER_DATA_WORD))
         {
             let mut copies = [[0; WORD_BYTES]; COPIES_PER_WORD];
             self.0
@@ -133,9 +130,7 @@ impl<F: BlockingNorFlash> TriplicatedSealedFlash<F> {
                 .map_err(TriplicatedSealedFlashError::Flash)?;
             let [first, second, third] = copies.map(u32::from_ne_bytes);
             let majority = first & second | second & third | third & first;
-            word.iter_mut()
-                .zip(majority.to_ne_bytes())
-                .for_each(|(byte, voted)| *byte = voted);
+            word.iter_mut().zip(majority.to_ne_bytes()).for_each(|(byte, voted)| *byte = voted);
         }
         Ok(())
     }
@@ -153,14 +148,9 @@ impl<F: BlockingNorFlash> TriplicatedSealedFlash<F> {
         let (words, []) = bytes.as_chunks() else {
             return Err(TriplicatedSealedFlashError::OutOfBounds);
         };
-        for (word, at) in words
-            .iter()
-            .zip((address..).step_by(FLASH_BYTES_PER_DATA_WORD))
-        {
+        for (word, at) in words.iter().zip((address..).step_by(FLASH_BYTES_PER_DATA_WORD)) {
             let copies: [[u8; WORD_BYTES]; COPIES_PER_WORD] = [*word; COPIES_PER_WORD];
-            self.0
-                .write(at, copies.as_flattened())
-                .map_err(TriplicatedSealedFlashError::Flash)?;
+            self.0.write(at, copies.as_flattened()).map_err(TriplicatedSealedFlashError::Flash)?;
         }
         Ok(())
     }
@@ -177,14 +167,10 @@ impl<F: BlockingNorFlash> TriplicatedSealedFlash<F> {
     #[inline(never)]
     fn erase_and_seal(&mut self, start: u32) -> Result<(), TriplicatedSealedFlashError<F::Error>> {
         let end = start + F::ERASE_SIZE as u32;
-        self.0
-            .erase(start, end)
-            .map_err(TriplicatedSealedFlashError::Flash)?;
+        self.0.erase(start, end).map_err(TriplicatedSealedFlashError::Flash)?;
         for at in (start..end).step_by(BLANK_CHECK_CHUNK_BYTES) {
             let mut read = [0; BLANK_CHECK_CHUNK_BYTES];
-            self.0
-                .read(at, &mut read)
-                .map_err(TriplicatedSealedFlashError::Flash)?;
+            self.0.read(at, &mut read).map_err(TriplicatedSealedFlashError::Flash)?;
             if read != [ERASED_BYTE; BLANK_CHECK_CHUNK_BYTES] {
                 return Err(TriplicatedSealedFlashError::NotErased);
             }

@@ -27,13 +27,7 @@ fn sum(plausible: core::ops::Range<u16>) -> impl Strategy<Value = u16> {
 /// Samples of 20 to 40 °C, 0 to 3 N, 0 to 6 A, and sometimes of any value.
 fn samples() -> impl Strategy<Value = Samples> {
     let temperature = || sum(23_000..36_000);
-    let temperatures = (
-        temperature(),
-        temperature(),
-        temperature(),
-        temperature(),
-        temperature(),
-    );
+    let temperatures = (temperature(), temperature(), temperature(), temperature(), temperature());
     let others = (
         sum(6_560..21_000),
         sum(0..38_400),
@@ -139,10 +133,7 @@ fn upload() -> impl Strategy<Value = Vec<String>> {
     (rates_1_s, decades, direct).prop_map(|((fast, slow), decades, direct)| {
         let rates_1_s = [fast, slow].concat();
         let gain = 10f64.powf(decades) / rates_1_s.len().max(1) as f64;
-        let mut lines = Vec::from([format!(
-            "upload begin object {} {direct:.6}",
-            rates_1_s.len()
-        )]);
+        let mut lines = Vec::from([format!("upload begin object {} {direct:.6}", rates_1_s.len())]);
         let rows = rates_1_s.iter().enumerate();
         lines.extend(rows.map(|(i, rate)| format!("upload row {i} {rate:.6} {gain:.6}")));
         lines.push(format!("upload commit {:08x}", checksum(&lines)));
@@ -201,10 +192,7 @@ impl TickCount {
         let (outputs, telemetry) = match samples {
             Some(samples) => (
                 bench.station.step(samples),
-                bench
-                    .station
-                    .telemetry_if_due()
-                    .expect("streamed on every tick"),
+                bench.station.telemetry_if_due().expect("streamed on every tick"),
             ),
             None => bench.step_with_outputs(),
         };
@@ -252,11 +240,7 @@ impl TickCount {
             if bench.state() == StateName::SelfTest {
                 continue;
             }
-            let display_c = if bench.plate_responds {
-                bench.display_c
-            } else {
-                phase.display_c
-            };
+            let display_c = if bench.plate_responds { bench.display_c } else { phase.display_c };
             for (at_c, to_c) in [
                 (&mut bench.display_c, display_c),
                 (&mut bench.sink_c, phase.sink_c),
@@ -292,9 +276,7 @@ fn check(cases: u32, plate_responds: bool, scenarios: &impl Strategy<Value = Vec
         let mut bench = TestBench::new();
         bench.plate_responds = plate_responds;
         bench.send_ok(&["law model", "material granite", "arm", "start"]);
-        scenario
-            .iter()
-            .try_for_each(|phase| count.phase(&mut bench, phase))
+        scenario.iter().try_for_each(|phase| count.phase(&mut bench, phase))
     });
     if let Err(error) = outcome {
         panic!("{error}");
@@ -312,12 +294,7 @@ fn safety_limits_hold_for_any_samples_and_lines() {
 fn safety_limits_hold_for_any_object_under_a_finger() {
     let (accepted, sent) = (Cell::new(0), Cell::new(0));
     let temperatures = prop_oneof![Just(-20.0), Just(60.0), -20.0..60.0];
-    let scenarios = (
-        upload(),
-        temperatures,
-        0.05..5.0,
-        select(&AssumedFinger::PROTOCOL_WORDS),
-    );
+    let scenarios = (upload(), temperatures, 0.05..5.0, select(&AssumedFinger::PROTOCOL_WORDS));
     let count = TickCount::default();
     let mut runner = TestRunner::new(ProptestConfig::with_cases(48));
     let outcome = runner.run(&scenarios, |(upload, object_c, force_n, (finger, _))| {

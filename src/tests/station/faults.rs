@@ -62,12 +62,7 @@ fn every_fault_trips_in_its_tick_from_every_state_and_stays_latched() {
             cause(&mut bench);
             let (drive, telemetry) = bench.step();
             let fault = telemetry.state.fault().map(|fault| fault.name());
-            assert_eq!(
-                (drive, fault),
-                (Drive::Off, Some(word)),
-                "from {:?}",
-                healthy.state()
-            );
+            assert_eq!((drive, fault), (Drive::Off, Some(word)), "from {:?}", healthy.state());
             assert_eq!(telemetry.demand, 0);
 
             let tripped = ["err tripped by ", word, "; clear it first"].concat();
@@ -79,19 +74,13 @@ fn every_fault_trips_in_its_tick_from_every_state_and_stays_latched() {
             assert_eq!(bench.send("clear"), present);
 
             // The cause is gone, but no tick has sampled that yet.
-            bench = TestBench {
-                station: bench.station,
-                ..healthy.clone()
-            };
+            bench = TestBench { station: bench.station, ..healthy.clone() };
             assert_eq!(bench.send("clear"), present);
             for _ in 0..100 {
                 assert_eq!(bench.step().0, Drive::Off, "{word}");
             }
-            for (line, answer) in [
-                ("arm", tripped.as_str()),
-                ("start", &tripped),
-                ("abort", "ok"),
-            ] {
+            for (line, answer) in [("arm", tripped.as_str()), ("start", &tripped), ("abort", "ok")]
+            {
                 assert_eq!(bench.send(line), answer);
                 assert_eq!(bench.step().0, Drive::Off, "{word} after {line}");
                 assert_eq!(bench.state().name(), "tripped");
@@ -128,10 +117,7 @@ fn clear_reports_an_external_fault_that_was_raised_while_tripped() {
     }
     bench.steps(2);
     assert_eq!(bench.state().fault(), Some(Fault::SinkHot));
-    assert_eq!(
-        bench.send("clear"),
-        "err fault settings-corrupt is still present"
-    );
+    assert_eq!(bench.send("clear"), "err fault settings-corrupt is still present");
     assert_eq!(bench.state().fault(), Some(Fault::SettingsCorrupt));
     assert!(bench.send("cause").contains("settings-corrupt"));
     bench.send_ok(&["clear"]);
@@ -158,10 +144,7 @@ fn the_dose_accumulates_while_another_fault_is_latched() {
     bench.step();
     (bench.display_c, bench.check_c) = (42.8, 42.8);
     bench.steps(32_000);
-    assert_eq!(
-        bench.send("clear"),
-        "err fault force-sensor is still present"
-    );
+    assert_eq!(bench.send("clear"), "err fault force-sensor is still present");
     bench.force_n = 0.0;
     bench.steps(10_000);
     (bench.display_c, bench.check_c) = (39.5, 39.5);
@@ -268,18 +251,13 @@ fn the_bridge_voltage_is_the_feed_forward_of_the_demanded_current() {
         bench.send_ok(&["start"]);
         let (drive, telemetry) = bench.step();
         assert_eq!(telemetry.demand, 12.0 * duty);
-        let Drive::On(voltage) = drive else {
-            panic!("{drive:?}")
-        };
+        let Drive::On(voltage) = drive else { panic!("{drive:?}") };
         let voltage = voltage.fraction().to_num::<f64>();
         let seebeck_fraction = 0.0273 * (25.0 - display_c) / 12.0;
         let legs_above_27_c_k = (25.0 + display_c) / 2.0 - 27.0;
         let ohm = 0.05 + 1.061 * (1.0 + 0.0049 * legs_above_27_c_k);
         let expected = duty * (ohm + 0.21 / 6.0) + seebeck_fraction;
-        assert!(
-            (voltage - expected).abs() < 1e-3,
-            "{line}: {voltage}, {expected}"
-        );
+        assert!((voltage - expected).abs() < 1e-3, "{line}: {voltage}, {expected}");
     }
 }
 
@@ -407,11 +385,7 @@ fn the_self_test_passes_after_a_finger_has_landed_during_it() {
         }
         bench.force_n = if tick < 150 { 0.0 } else { 1.0 };
         bench.step_self_test();
-        bench.display_c += if (150..450).contains(&tick) {
-            2e-3
-        } else {
-            0.0
-        };
+        bench.display_c += if (150..450).contains(&tick) { 2e-3 } else { 0.0 };
         bench.check_c = bench.display_c;
     }
     assert_eq!(bench.state(), StateName::Armed);

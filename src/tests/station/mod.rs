@@ -90,10 +90,8 @@ impl TestBench {
     /// Sends a line, and returns the answer.
     fn send(&mut self, line: &str) -> String {
         let answer = self.handler.answer(line, |_, command| {
-            let content = self
-                .station
-                .execute(&command)
-                .map_err(WithSourceFinger::from_whole_device)?;
+            let content =
+                self.station.execute(&command).map_err(WithSourceFinger::from_whole_device)?;
             Ok(WithSourceFinger::from_whole_device(content))
         });
         answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
@@ -205,20 +203,12 @@ impl TestBench {
             self.station.note_host_activity();
         }
         let outputs = self.station.step(&samples);
-        let telemetry = self
-            .station
-            .telemetry_if_due()
-            .expect("streamed on every tick");
+        let telemetry = self.station.telemetry_if_due().expect("streamed on every tick");
         self.tick = telemetry.tick;
         self.demanded_a = telemetry.demand.to_num::<f64>().abs();
         if self.plate_responds {
             let demand_a = telemetry.demand.to_num::<f64>();
-            let Tile {
-                gain_k_s_a,
-                joule_per_a,
-                leak_1_s,
-                ..
-            } = Tile::FACTORY_DEFAULT;
+            let Tile { gain_k_s_a, joule_per_a, leak_1_s, .. } = Tile::FACTORY_DEFAULT;
             let pumped_k_s = gain_k_s_a * (demand_a - joule_per_a * demand_a * demand_a);
             let leak_k_s = leak_1_s * (self.plate_c - self.sink_c);
             self.plate_c -= 1e-3 * (pumped_k_s + leak_k_s);
@@ -264,8 +254,5 @@ impl TestBench {
 /// 0.7 mK, and a set-point that is computed from skin and room by little more.
 #[track_caller]
 fn assert_close(actual_c: f64, expected_c: f64) {
-    assert!(
-        (actual_c - expected_c).abs() < 2e-3,
-        "{actual_c} °C, expected {expected_c} °C"
-    );
+    assert!((actual_c - expected_c).abs() < 2e-3, "{actual_c} °C, expected {expected_c} °C");
 }

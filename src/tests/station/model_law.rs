@@ -57,17 +57,11 @@ fn the_preset_accounts_for_skin_that_has_not_recovered() {
         (touched_c - expected_c).abs() < 0.1 * (expected_c - recovered_c).abs(),
         "{touched_c} C, not {expected_c} C"
     );
-    assert!(
-        (expected_c - recovered_c).abs() > 0.2,
-        "{expected_c} C, recovered {recovered_c} C"
-    );
+    assert!((expected_c - recovered_c).abs() > 0.2, "{expected_c} C, recovered {recovered_c} C");
     bench.steps(60_000);
     let retained = (bench.setpoint_c() - recovered_c) / (touched_c - recovered_c);
     let expected = (5.0f64 / 65.0).sqrt().asin() * core::f64::consts::FRAC_2_PI;
-    assert!(
-        (retained / expected - 1.0).abs() < 0.1,
-        "{retained}, not {expected}"
-    );
+    assert!((retained / expected - 1.0).abs() < 0.1, "{retained}, not {expected}");
 }
 
 /// The relaxations of one tissue say nothing about another one.

@@ -142,11 +142,9 @@ fn semi_infinite_mode_holds_the_interface_temperature() {
     bench.send_ok(&["mode semi-infinite"]);
     let granite = find("granite").expect("a material of the thesis");
     let expected_c = interface_temperature(&SKIN, 34.0, granite, 24.0);
-    for (force_n, state) in [
-        (0.0, StateName::Preset),
-        (2.0, StateName::Contact),
-        (0.0, StateName::Preset),
-    ] {
+    for (force_n, state) in
+        [(0.0, StateName::Preset), (2.0, StateName::Contact), (0.0, StateName::Preset)]
+    {
         bench.force_n = force_n;
         for _ in 0..500 {
             assert_close(bench.setpoint_c(), expected_c);
@@ -223,12 +221,8 @@ fn the_contact_kernel_is_not_evaluated_for_an_object_at_skin_temperature() {
 /// A ripple of 0.6 mN, the noise of the sensor in its least favourable order, costs at most 80 evaluations in 10 s.
 #[test]
 fn force_noise_hardly_costs_evaluations_of_the_contact_kernel() {
-    for (force_n, material) in [
-        (2.0, "granite"),
-        (0.1, "granite"),
-        (2.0, "foam"),
-        (0.1, "copper"),
-    ] {
+    for (force_n, material) in [(2.0, "granite"), (0.1, "granite"), (2.0, "foam"), (0.1, "copper")]
+    {
         let mut bench = TestBench::presenting_with_plate(material);
         bench.force_n = force_n;
         bench.steps(2);

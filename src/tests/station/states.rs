@@ -64,10 +64,7 @@ fn every_transition_of_the_state_diagram_is_taken() {
             land(&mut bench);
         }
         bench.send_ok(&["abort"]);
-        assert_eq!(
-            (bench.step().0, bench.state()),
-            (Drive::Off, StateName::Ready)
-        );
+        assert_eq!((bench.step().0, bench.state()), (Drive::Off, StateName::Ready));
     }
 }
 
@@ -81,10 +78,7 @@ fn a_start_in_the_wrong_state_is_refused_and_changes_nothing() {
     bench.force_n = 2.0;
     bench.steps(500);
     let mut undisturbed = bench.clone();
-    assert_eq!(
-        bench.send("start"),
-        "err already started; arm takes the object away"
-    );
+    assert_eq!(bench.send("start"), "err already started; arm takes the object away");
     assert_eq!(bench.send("clear"), "err no fault to clear");
     assert_eq!(bench.step(), undisturbed.step());
 }
@@ -96,13 +90,7 @@ fn state_and_id_report_the_station_and_the_device() {
         bench.send("state"),
         "ok state=off fault=- material=- object_c=room mode=contact setpoint_c=- body=half-space"
     );
-    bench.send_ok(&[
-        "material abs",
-        "object 60",
-        "mode semi-infinite",
-        "law model",
-        "arm",
-    ]);
+    bench.send_ok(&["material abs", "object 60", "mode semi-infinite", "law model", "arm"]);
     bench.plate_responds = true;
     bench.skin_c = 45.0;
     bench.steps(3000);

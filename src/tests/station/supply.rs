@@ -75,11 +75,7 @@ fn each_broken_part_has_its_fault_and_its_place_in_the_report() {
             "comparator",
             "hot_cut_ms=- hot_supply_v=- hot_release_ms=- cold_cut_ms=-",
         ),
-        (
-            Broken::ColdSide,
-            "comparator",
-            "hot_release_ms=1 cold_cut_ms=- cold_supply_v=-",
-        ),
+        (Broken::ColdSide, "comparator", "hot_release_ms=1 cold_cut_ms=- cold_supply_v=-"),
         // The other side would answer in its place.
         (
             Broken::SideLow,
@@ -96,11 +92,7 @@ fn each_broken_part_has_its_fault_and_its_place_in_the_report() {
             "comparator",
             "hot_cut_ms=1 hot_supply_v=4.1 hot_release_ms=- cold_cut_ms=-",
         ),
-        (
-            Broken::SwitchShorted,
-            "supply-switch",
-            "hot_cut_ms=1 hot_supply_v=12.0 hot_release_ms=-",
-        ),
+        (Broken::SwitchShorted, "supply-switch", "hot_cut_ms=1 hot_supply_v=12.0 hot_release_ms=-"),
         (
             Broken::SwitchOpen,
             "supply",
@@ -187,14 +179,8 @@ fn a_pressed_emergency_stop_refuses_arm_until_it_is_released_and_cleared() {
     let mut bench = TestBench::new();
     bench.emergency_stop = true;
     bench.step();
-    assert_eq!(
-        bench.send("arm"),
-        "err tripped by emergency-stop; clear it first"
-    );
-    assert_eq!(
-        bench.send("clear"),
-        "err fault emergency-stop is still present"
-    );
+    assert_eq!(bench.send("arm"), "err tripped by emergency-stop; clear it first");
+    assert_eq!(bench.send("clear"), "err fault emergency-stop is still present");
     bench.emergency_stop = false;
     bench.steps(1000);
     assert_eq!(bench.step().0, Drive::Off);
@@ -213,13 +199,7 @@ fn raw_samples_are_means_of_conversions() {
     let numbers: std::vec::Vec<f64> = answer
         .split(' ')
         .skip(1)
-        .map(|word| {
-            word.split_once('=')
-                .expect("a pair")
-                .1
-                .parse()
-                .expect("a number")
-        })
+        .map(|word| word.split_once('=').expect("a pair").1.parse().expect("a number"))
         .collect();
     assert!((numbers[0] - 1823.7).abs() < 0.2, "{answer}");
     assert_eq!(numbers[5..], [410.0, 600.0, 3463.88, 1.0, 1.0], "{answer}");

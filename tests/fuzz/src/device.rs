@@ -111,26 +111,18 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
 
     fn status(&mut self, finger: FingerIndex<FINGERS>) -> Status {
         match self.device.execute(Some(finger), Command::Status) {
-            Ok(WithSourceFinger {
-                content: command::Reply::Status(status),
-                ..
-            }) => status,
+            Ok(WithSourceFinger { content: command::Reply::Status(status), .. }) => status,
             other => panic!("the status query is answered by {other:?}"),
         }
     }
 
     fn states(&mut self) -> Vec<(FingerIndex<FINGERS>, StateName)> {
-        FingerIndex::all()
-            .map(|finger| (finger, self.state(finger)))
-            .collect()
+        FingerIndex::all().map(|finger| (finger, self.state(finger))).collect()
     }
 
     /// Display temperature of the first finger, °C, if it streams telemetry and has a reading.
     pub fn display_c(&self) -> Option<f64> {
-        let telemetry = self
-            .device
-            .finger_telemetry_if_due(FingerIndex::FIRST)?
-            .content;
+        let telemetry = self.device.finger_telemetry_if_due(FingerIndex::FIRST)?.content;
         telemetry.display.map(|celsius| celsius.to_num())
     }
 
@@ -199,9 +191,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
                 self.device.put_learner_output(finger, &output);
             }
         }
-        let Status {
-            state, setpoint, ..
-        } = self.status(finger);
+        let Status { state, setpoint, .. } = self.status(finger);
         let allowed = match before {
             StateName::SelfTest => matches!(state, StateName::SelfTest | StateName::Armed),
             StateName::Preset | StateName::Contact => {
@@ -216,10 +206,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
         check_outputs(outputs, state, samples);
         if let Some(setpoint) = setpoint {
             let setpoint_c: f64 = setpoint.to_num();
-            assert!(
-                (15.0..=42.0).contains(&setpoint_c),
-                "set-point {setpoint_c} C"
-            );
+            assert!((15.0..=42.0).contains(&setpoint_c), "set-point {setpoint_c} C");
         }
         while let Some(event) = self.device.take_finger_event(finger) {
             let line = self.unsolicited(event);
@@ -281,12 +268,8 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
         // A line with a wrong checksum may do less than one without.
         let content = split_checksum(line).map_or(line, |(content, _)| content);
         let device = &mut self.device;
-        let answer = self
-            .handler
-            .answer(line, |finger, command| device.execute(finger, command));
-        let answer = answer
-            .map(|reply| self.to_host(&reply))
-            .map_err(|error| self.to_host(&error));
+        let answer = self.handler.answer(line, |finger, command| device.execute(finger, command));
+        let answer = answer.map(|reply| self.to_host(&reply)).map_err(|error| self.to_host(&error));
         let (Ok(text) | Err(text)) = &answer;
         check_answer(text, answer.is_ok());
         for (finger, before) in before {
@@ -302,11 +285,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
 
 fn check_outputs(outputs: BoardOutputs, state: StateName, samples: &Samples) {
     if outputs.comparator_test != ComparatorTest::None {
-        assert_eq!(
-            (state, outputs.drive),
-            (StateName::SelfTest, Drive::Off),
-            "comparator tested"
-        );
+        assert_eq!((state, outputs.drive), (StateName::SelfTest, Drive::Off), "comparator tested");
     }
     let Drive::On(duty) = outputs.drive else {
         return;
@@ -326,13 +305,8 @@ fn check_outputs(outputs: BoardOutputs, state: StateName, samples: &Samples) {
         !samples.bridge_fault && !samples.emergency_stop,
         "driven while the bridge reports a fault or the emergency stop is pressed: {samples:?}"
     );
-    let at_rail = samples
-        .thermistor_sums()
-        .map(|sum| sum == 0 || sum >= FULL_SCALE);
-    assert_eq!(
-        at_rail, [false; 5],
-        "driven without a thermistor: {samples:?}"
-    );
+    let at_rail = samples.thermistor_sums().map(|sum| sum == 0 || sum >= FULL_SCALE);
+    assert_eq!(at_rail, [false; 5], "driven without a thermistor: {samples:?}");
     // The hotter, the smaller the sum.
     let allowed = sum_at(SURELY_HOT_C)..=sum_at(SURELY_COLD_C);
     for sum in [samples.display, samples.display_check] {
@@ -346,9 +320,7 @@ fn check_outputs(outputs: BoardOutputs, state: StateName, samples: &Samples) {
 /// Whether a line may change a state in this way.
 fn may_change_state(line: &str, from: StateName, to: StateName) -> bool {
     use StateName::{Armed, Contact, Off, Preset, Ready, SelfTest, Stimulus, Tripped};
-    let mut words = line
-        .split_ascii_whitespace()
-        .skip_while(|word| word.starts_with('@'));
+    let mut words = line.split_ascii_whitespace().skip_while(|word| word.starts_with('@'));
     match (words.next().unwrap_or_default(), from) {
         // A second fault, still present, is reported next.
         ("clear", Tripped(_)) => matches!(to, Off | Tripped(_)),
@@ -365,27 +337,18 @@ fn may_change_state(line: &str, from: StateName, to: StateName) -> bool {
 
 fn check_answer(answer: &str, ok: bool) {
     check_text(answer, ANSWER_MAX);
-    let text = answer
-        .strip_prefix('@')
-        .and_then(|rest| rest.get(2..))
-        .unwrap_or(answer);
+    let text = answer.strip_prefix('@').and_then(|rest| rest.get(2..)).unwrap_or(answer);
     let word = text.split(' ').next();
     assert_eq!(word, Some(if ok { "ok" } else { "err" }), "{answer:?}");
     // An error may quote the host's own words.
     let not_finite = |word: &str| word.ends_with("NaN") || word.ends_with("inf");
-    assert!(
-        !ok || !answer.split([' ', '=']).any(not_finite),
-        "{answer:?}"
-    );
+    assert!(!ok || !answer.split([' ', '=']).any(not_finite), "{answer:?}");
 }
 
 /// A line to the host is short and printable.
 fn check_text(line: &str, bytes_max: usize) {
     assert!(line.len() <= bytes_max, "{} bytes: {line:?}", line.len());
-    assert!(
-        line.bytes().all(|byte| matches!(byte, b' '..=b'~')),
-        "{line:?}"
-    );
+    assert!(line.bytes().all(|byte| matches!(byte, b' '..=b'~')), "{line:?}");
 }
 
 /// A line, and the two digits of its checksum after it, if it ends like one.

@@ -87,12 +87,7 @@ impl Verdict {
 impl ExpectedLines {
     /// Of a device that has just been switched on.
     pub const fn new(fingers: usize) -> Self {
-        Self {
-            fingers,
-            checksums: false,
-            upload: None,
-            uncertain: false,
-        }
+        Self { fingers, checksums: false, upload: None, uncertain: false }
     }
 
     /// Rows of the upload that were accepted.
@@ -263,16 +258,9 @@ impl Upload {
                 ]);
             }
         };
-        let ranges = [
-            Verdict::within(first, 0.0, 3600.0),
-            Verdict::within(second, min_c, max_c),
-        ];
+        let ranges = [Verdict::within(first, 0.0, 3600.0), Verdict::within(second, min_c, max_c)];
         // Zero is a time that every course may have.
-        let range = if first == 0.0 {
-            ranges[1]
-        } else {
-            Verdict::all(ranges)
-        };
+        let range = if first == 0.0 { ranges[1] } else { Verdict::all(ranges) };
         let follows = self.rows.last().map_or(Verdict::Accepted, |last| {
             let (milliseconds, halves) = (1e3 * (first - last[0]), [first, last[0]]);
             // A time in the middle of two milliseconds may be rounded either way.
@@ -307,14 +295,8 @@ fn begin(words: &[&str], address: Option<String>) -> (Verdict, Option<Upload>) {
     let Some(count) = number(count) else {
         return (Verdict::Refused, None);
     };
-    let (min, max) = if kind == Kind::Object {
-        (0.0, 22.0)
-    } else {
-        (2.0, 128.0)
-    };
-    let direct = other.map_or(Verdict::Accepted, |direct| {
-        within_or_refused(direct, 0.0, 27e3)
-    });
+    let (min, max) = if kind == Kind::Object { (0.0, 22.0) } else { (2.0, 128.0) };
+    let direct = other.map_or(Verdict::Accepted, |direct| within_or_refused(direct, 0.0, 27e3));
     let verdict = Verdict::all([whole_within(count, min, max), direct]);
     (verdict, Some(upload(kind, count)))
 }
@@ -326,10 +308,9 @@ fn hold(words: &[&str]) -> Verdict {
         _ => return Verdict::Refused,
     };
     match (number(celsius), number(rate)) {
-        (Some(celsius), Some(rate)) => Verdict::all([
-            Verdict::within(celsius, 15.0, 42.0),
-            Verdict::within(rate, 0.01, 100.0),
-        ]),
+        (Some(celsius), Some(rate)) => {
+            Verdict::all([Verdict::within(celsius, 15.0, 42.0), Verdict::within(rate, 0.01, 100.0)])
+        }
         _ => Verdict::Refused,
     }
 }
@@ -346,12 +327,8 @@ fn pulse(words: &[&str]) -> Verdict {
     let way = (target - base).abs();
     // Each flank lasts at least 1 ms.
     let (rise_s, back_s) = ((way / rise).max(1e-3), (way / back).max(1e-3));
-    let points = [
-        [0.0, base],
-        [rise_s, target],
-        [rise_s + hold, target],
-        [rise_s + hold + back_s, base],
-    ];
+    let points =
+        [[0.0, base], [rise_s, target], [rise_s + hold, target], [rise_s + hold + back_s, base]];
     Verdict::all([
         Verdict::within(base, 15.0, 42.0),
         Verdict::within(target, 15.0, 42.0),
@@ -365,13 +342,9 @@ fn pulse(words: &[&str]) -> Verdict {
 
 /// A number as the standard library reads it; the protocol has neither names such as `inf` nor exponents of more than 32 bits.
 fn number(word: &str) -> Option<f64> {
-    let exponent = word
-        .split_once(['e', 'E'])
-        .map_or("0", |(_, exponent)| exponent);
+    let exponent = word.split_once(['e', 'E']).map_or("0", |(_, exponent)| exponent);
     exponent.parse::<i32>().ok()?;
-    word.parse()
-        .ok()
-        .filter(|_| !word.ends_with(['f', 'F', 'n', 'N', 'y', 'Y']))
+    word.parse().ok().filter(|_| !word.ends_with(['f', 'F', 'n', 'N', 'y', 'Y']))
 }
 
 fn within_or_refused(word: &str, min: f64, max: f64) -> Verdict {
@@ -390,13 +363,13 @@ fn whole_within(value: f64, min: f64, max: f64) -> Verdict {
 /// CEM43 of a course above 39 °C, s: on each line the integral of `4^(T - 43)`.
 fn dose_s(points: &[[f64; 2]]) -> f64 {
     let weight = |celsius: f64| 4f64.powf(celsius - 43.0);
-    let first = points.first().map_or(0.0, |[time_s, celsius]| {
-        if *celsius < 39.0 {
-            0.0
-        } else {
-            time_s * weight(*celsius)
-        }
-    });
+    let first =
+        points.first().map_or(
+            0.0,
+            |[time_s, celsius]| {
+                if *celsius < 39.0 { 0.0 } else { time_s * weight(*celsius) }
+            },
+        );
     let lines = points.windows(2).map(|pair| {
         let ([from_s, a], [to_s, b]) = (pair[0], pair[1]);
         let (low, high) = (a.min(b), a.max(b));
@@ -439,9 +412,7 @@ pub fn exclusive_or(bytes: &[u8]) -> u8 {
 
 /// CRC-32 (ISO-HDLC), bit by bit.
 fn crc_32(bytes: &[u8]) -> u32 {
-    let bits = bytes
-        .iter()
-        .flat_map(|byte| (0..8).map(move |bit| byte >> bit & 1));
+    let bits = bytes.iter().flat_map(|byte| (0..8).map(move |bit| byte >> bit & 1));
     !bits.fold(u32::MAX, |register, bit| {
         let feedback = (register ^ u32::from(bit)) & 1;
         (register >> 1) ^ (0xedb8_8320 * feedback)

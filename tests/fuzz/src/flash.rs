@@ -117,10 +117,7 @@ fn play<const FINGERS: usize>(starts: &OnceLock<Vec<History<FINGERS>>>, input: &
 
 impl<const FINGERS: usize> History<FINGERS> {
     fn new() -> Self {
-        Self {
-            cells: FlashCells::new(vec![0xff; BYTES]),
-            written: vec![None],
-        }
+        Self { cells: FlashCells::new(vec![0xff; BYTES]), written: vec![None] }
     }
 
     fn saved(mut self, number: u32) -> Self {
@@ -154,24 +151,13 @@ impl<const FINGERS: usize> History<FINGERS> {
                 let fit = bytes.len().min(BYTES - at);
                 assert!(self.cells.load(at, &bytes[..fit]));
             }
-            Event::Record {
-                values,
-                is_version_1,
-                persons,
-                header,
-                length,
-            } => {
-                let count = if *is_version_1 {
-                    VALUES_IN_VERSION_1
-                } else {
-                    VALUES.len()
-                };
+            Event::Record { values, is_version_1, persons, header, length } => {
+                let count = if *is_version_1 { VALUES_IN_VERSION_1 } else { VALUES.len() };
                 self.append_record(&values[..count], persons, *header, *length);
             }
             Event::Save { number, cut } => {
                 if let Some((nth, seed)) = cut {
-                    self.cells
-                        .cut_power_at(u64::from(*nth) + 1, u64::from(*seed));
+                    self.cells.cut_power_at(u64::from(*nth) + 1, u64::from(*seed));
                 }
                 let settings = numbered(u32::from(*number));
                 let done = self.save(settings.clone());
@@ -200,11 +186,7 @@ impl<const FINGERS: usize> History<FINGERS> {
                 (0.5 * (min + max) + 0.6 * (max - min) * f64::from(*fraction) / 32768.0) as i32
             })
             .collect();
-        let version = if units.len() == VALUES_IN_VERSION_1 {
-            1
-        } else {
-            2
-        };
+        let version = if units.len() == VALUES_IN_VERSION_1 { 1 } else { 2 };
         let header = header.unwrap_or([version, 0, 1, FINGERS as u8]);
         let mut content = header.to_vec();
         (0..FINGERS).for_each(|_| content.extend(units.iter().flat_map(|unit| unit.to_le_bytes())));
@@ -213,13 +195,9 @@ impl<const FINGERS: usize> History<FINGERS> {
             for (code, finger) in persons {
                 // Any bytes, or the code of that many letters.
                 let code = match code {
-                    [0, letters, ..] => std::array::from_fn(|i| {
-                        if i < usize::from(letters % 9) {
-                            b'A'
-                        } else {
-                            0
-                        }
-                    }),
+                    [0, letters, ..] => {
+                        std::array::from_fn(|i| if i < usize::from(letters % 9) { b'A' } else { 0 })
+                    }
                     any => *any,
                 };
                 content.extend(code);
@@ -268,10 +246,7 @@ fn settings_in<const FINGERS: usize>(content: &[u8]) -> Option<Option<StoredDevi
     let (units, _) = values.as_chunks::<4>();
     let units: Vec<_> = units.iter().map(|unit| i32::from_le_bytes(*unit)).collect();
     let fingers: Option<Vec<_>> = units.chunks(count).map(finger_of).collect();
-    Some(Some(StoredDevice {
-        fingers: fingers?.try_into().ok()?,
-        persons: persons_in(persons)?,
-    }))
+    Some(Some(StoredDevice { fingers: fingers?.try_into().ok()?, persons: persons_in(persons)? }))
 }
 
 /// The persons at the end of a record.
@@ -324,14 +299,10 @@ fn finger_of(units: &[i32]) -> Option<StoredSettings> {
             }),
         },
         tile: Tile::from_array_rounded(std::array::from_fn(|_| next())),
-        flux_sensor: Some(FluxSensor::from_array_rounded(std::array::from_fn(|_| {
-            next()
-        })))
-        .filter(|_| has_flux_sensor),
-        display: Some(DisplaySurface::from_array_rounded(std::array::from_fn(
-            |_| next(),
-        )))
-        .filter(|_| has_surface)
-        .unwrap_or(DisplaySurface::NOMINAL),
+        flux_sensor: Some(FluxSensor::from_array_rounded(std::array::from_fn(|_| next())))
+            .filter(|_| has_flux_sensor),
+        display: Some(DisplaySurface::from_array_rounded(std::array::from_fn(|_| next())))
+            .filter(|_| has_surface)
+            .unwrap_or(DisplaySurface::NOMINAL),
     })
 }

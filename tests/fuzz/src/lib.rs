@@ -24,34 +24,10 @@ pub struct Target {
 
 /// All targets.
 pub const TARGETS: [Target; 6] = [
-    Target {
-        name: "wire",
-        run: wire::run,
-        show: wire::show,
-    },
-    Target {
-        name: "lines",
-        run: lines::run,
-        show: lines::show,
-    },
-    Target {
-        name: "station",
-        run: station::run,
-        show: station::show,
-    },
-    Target {
-        name: "settings",
-        run: settings::run,
-        show: settings::show,
-    },
-    Target {
-        name: "flash",
-        run: flash::run,
-        show: flash::show,
-    },
-    Target {
-        name: "scene",
-        run: scene::run,
-        show: scene::show,
-    },
+    Target { name: "wire", run: wire::run, show: wire::show },
+    Target { name: "lines", run: lines::run, show: lines::show },
+    Target { name: "station", run: station::run, show: station::show },
+    Target { name: "settings", run: settings::run, show: settings::show },
+    Target { name: "flash", run: flash::run, show: flash::show },
+    Target { name: "scene", run: scene::run, show: scene::show },
 ];

@@ -145,10 +145,6 @@ impl<const FINGERS: usize> Host<FINGERS> {
 fn in_another_form(line: &str) -> String {
     let (content, _) = line.split_once('*').unwrap_or((line, ""));
     let words: Vec<_> = content.split_ascii_whitespace().collect();
-    let content = if words.contains(&"upload") {
-        content.into()
-    } else {
-        words.join(" ")
-    };
+    let content = if words.contains(&"upload") { content.into() } else { words.join(" ") };
     format!("{content}*{:02x}", exclusive_or(content.as_bytes()))
 }

@@ -27,9 +27,5 @@ fuzz_target!(|input: &[u8]| -> Corpus {
     if std::env::var_os("FUZZ_SHOW").is_some() {
         eprintln!("{}", (target.show)(input));
     }
-    if (target.run)(input) {
-        Corpus::Keep
-    } else {
-        Corpus::Reject
-    }
+    if (target.run)(input) { Corpus::Keep } else { Corpus::Reject }
 });

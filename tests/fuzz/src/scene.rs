@@ -26,18 +26,13 @@ pub fn show(input: &[u8]) -> String {
 }
 
 fn check_error(error: &str, text: &str) {
-    let place = error
-        .strip_prefix(FILE)
-        .and_then(|rest| rest.strip_prefix(':')?.split_once(": "));
+    let place = error.strip_prefix(FILE).and_then(|rest| rest.strip_prefix(':')?.split_once(": "));
     let Some((line, problem)) = place else {
         panic!("no file and line: {error:?}");
     };
     let line: usize = line.parse().unwrap_or_default();
     let lines = 1 + text.matches('\n').count();
-    assert!(
-        (1..=lines).contains(&line),
-        "line {line} of {lines}: {error:?}"
-    );
+    assert!((1..=lines).contains(&line), "line {line} of {lines}: {error:?}");
     assert!(!problem.trim().is_empty(), "no problem: {error:?}");
 }
 
@@ -47,11 +42,7 @@ fn check_scene(scene: &Scene) {
     let preset_c = scene.exact_setpoint_c(0.0, 1.0);
     assert!((15.0..=42.0).contains(&preset_c), "set-point {preset_c} C");
     for force in &scene.forces {
-        for t_s in [
-            force.t_s,
-            force.t_s + 0.5 * force.ramp_s,
-            force.t_s + force.ramp_s,
-        ] {
+        for t_s in [force.t_s, force.t_s + 0.5 * force.ramp_s, force.t_s + force.ramp_s] {
             let force_n = scene.force_n(t_s);
             assert!((0.0..=10.0).contains(&force_n), "{force_n} N at {t_s} s");
         }
@@ -77,13 +68,9 @@ fn check_plant(mut plant: Plant) {
     for _ in 0..3 {
         plant.step(&BridgeOutputs::default());
     }
-    for celsius in [
-        plant.display_c(),
-        plant.skin_c(),
-        plant.skin_real_c(),
-        plant.object_c(),
-        plant.sink_c(),
-    ] {
+    for celsius in
+        [plant.display_c(), plant.skin_c(), plant.skin_real_c(), plant.object_c(), plant.sink_c()]
+    {
         assert!((-60.0..=150.0).contains(&celsius), "{celsius} C");
     }
 }

@@ -26,29 +26,15 @@ impl Input {
         let fraction = |value: i16, max: f64| max * (f64::from(value) / 16384.0).clamp(-1.0, 1.0);
         let mut lines = Vec::new();
         for (line, steps) in self.steps.chunks(7).enumerate() {
-            let steps = steps
-                .iter()
-                .map(|step| format!(" {:.3}", fraction(*step, 4.0)));
-            lines.push(format!(
-                "set steps {}{}",
-                10 + 7 * line,
-                steps.collect::<String>()
-            ));
+            let steps = steps.iter().map(|step| format!(" {:.3}", fraction(*step, 4.0)));
+            lines.push(format!("set steps {}{}", 10 + 7 * line, steps.collect::<String>()));
         }
         for (name, [offset, slope, curvature]) in THERMISTOR_WORDS.iter().zip(self.corrections) {
             let (offset, slope) = (fraction(offset, 1.2), fraction(slope, 0.05));
             let curvature = fraction(curvature, 0.002);
-            lines.push(format!(
-                "set correction {name} {offset:.6} {slope:.7} {curvature:.8}"
-            ));
+            lines.push(format!("set correction {name} {offset:.6} {slope:.7} {curvature:.8}"));
         }
-        let ranges = [
-            (0.1, 15.0),
-            (0.0, 0.5),
-            (0.0, 5.0),
-            (0.001, 5.0),
-            (0.0, 1.0),
-        ];
+        let ranges = [(0.1, 15.0), (0.0, 0.5), (0.0, 5.0), (0.001, 5.0), (0.0, 1.0)];
         let tile = self.tile.iter().zip(ranges).map(|(value, (min, max))| {
             format!(" {:.6}", min + (max - min) * f64::from(*value) / 65535.0)
         });

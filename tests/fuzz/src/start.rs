@@ -61,14 +61,7 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
             let answer = identified.clone().line("@0 tune result");
             assert!(answer.is_ok(), "{answer:?}");
             let streaming = device_after(
-                &[
-                    "law pi",
-                    "object 20",
-                    "material foam",
-                    "arm",
-                    "start",
-                    "stream 1",
-                ],
+                &["law pi", "object 20", "material foam", "arm", "start", "stream 1"],
                 0.5,
                 50,
             );
@@ -97,10 +90,8 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
                 waiting,
                 learning,
             ];
-            let states: Vec<_> = all
-                .iter_mut()
-                .map(|device| device.state(FingerIndex::FIRST))
-                .collect();
+            let states: Vec<_> =
+                all.iter_mut().map(|device| device.state(FingerIndex::FIRST)).collect();
             let expected = [
                 StateName::Off,
                 StateName::SelfTest,

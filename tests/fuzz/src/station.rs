@@ -38,19 +38,11 @@ enum Event {
     /// A tick with these sums, bridge fault and emergency stop.
     Sums([u16; ADC_CHANNELS_PER_FINGER], bool, bool),
     /// A tick with these conversions, the second ones in the last scan.
-    Scans(
-        [u16; ADC_CHANNELS_PER_FINGER],
-        [u16; ADC_CHANNELS_PER_FINGER],
-    ),
+    Scans([u16; ADC_CHANNELS_PER_FINGER], [u16; ADC_CHANNELS_PER_FINGER]),
     /// Ticks on the tile in which one channel is stuck at a sum.
     Stuck { channel: u8, sum: u16, ticks: u8 },
     /// Ticks on the tile in which one channel has an offset that grows.
-    Offset {
-        channel: u8,
-        start: i16,
-        per_tick: i8,
-        ticks: u8,
-    },
+    Offset { channel: u8, start: i16, per_tick: i8, ticks: u8 },
     /// A tick in which the bridge reports a fault.
     BridgeFault,
     /// Force, 1/16 N.
@@ -203,17 +195,8 @@ const WORDS: [&str; 36] = [
     "flux set 0.1192 2048 5 30",
 ];
 
-const MATERIALS: [&str; 9] = [
-    "copper",
-    "bronze",
-    "stainless-steel",
-    "granite",
-    "g10",
-    "abs",
-    "foam",
-    "baf2",
-    "zns",
-];
+const MATERIALS: [&str; 9] =
+    ["copper", "bronze", "stainless-steel", "granite", "g10", "abs", "foam", "baf2", "zns"];
 
 /// The element at an index modulo their number.
 fn element<T: Copy>(all: &[T], index: u8) -> T {
@@ -242,15 +225,9 @@ impl Line {
             Self::Hold(half_c) => format!("hold {}", 0.5 * f64::from(*half_c)),
             Self::Stream(ms) => format!("stream {ms}"),
             Self::Steps(border, steps) => {
-                let steps = steps
-                    .iter()
-                    .take(7)
-                    .map(|step| format!(" {}", f64::from(*step) / 32.0));
-                format!(
-                    "set steps {}{}",
-                    10 + border % 13,
-                    steps.collect::<String>()
-                )
+                let steps =
+                    steps.iter().take(7).map(|step| format!(" {}", f64::from(*step) / 32.0));
+                format!("set steps {}{}", 10 + border % 13, steps.collect::<String>())
             }
             Self::Correction(sensor, [offset, slope, curvature]) => {
                 let fraction = |value: &i16, max: f64| max * f64::from(*value) / 32768.0;
@@ -270,11 +247,7 @@ impl Line {
                     .map(|(value, max)| format!(" {:.6}", fraction(*value, max)));
                 format!("set tile{}", values.collect::<String>())
             }
-            Self::Slab {
-                tenths_mm,
-                back,
-                film,
-            } => {
+            Self::Slab { tenths_mm, back, film } => {
                 let film = format!("film {film}");
                 let back = element(&["insulated", "held", &film], *back);
                 format!("object slab {:.1}mm {back}", f64::from(*tenths_mm) / 10.0)
@@ -332,16 +305,7 @@ pub fn run(input: &[u8]) -> bool {
         match *event {
             Event::Run(ticks) => device.run(limited(ticks)),
             Event::Sums(
-                [
-                    display,
-                    display_check,
-                    sink,
-                    skin,
-                    room,
-                    force,
-                    current,
-                    supply,
-                ],
+                [display, display_check, sink, skin, room, force, current, supply],
                 bridge_fault,
                 emergency_stop,
             ) => {
@@ -367,33 +331,20 @@ pub fn run(input: &[u8]) -> bool {
                 };
                 let mut scans = [scan(counts); SCANS_PER_TICK];
                 scans[SCANS_PER_TICK - 1] = scan(last);
-                let broken = scan(last)[..5]
-                    .iter()
-                    .any(|count| matches!(count, 0 | 4095));
-                let outputs = device.step(
-                    FINGER,
-                    &Samples::from_scans(&scans, DigitalInputs::default(), true),
-                );
+                let broken = scan(last)[..5].iter().any(|count| matches!(count, 0 | 4095));
+                let outputs = device
+                    .step(FINGER, &Samples::from_scans(&scans, DigitalInputs::default(), true));
                 assert!(
                     !broken || outputs.drive == Drive::Off,
                     "driven in the tick in which a wire broke"
                 );
             }
-            Event::Stuck {
-                channel: index,
-                sum,
-                ticks,
-            } => {
+            Event::Stuck { channel: index, sum, ticks } => {
                 for _ in 0..limited(ticks) {
                     device.tick_with(FINGER, |samples| *channel(samples, index) = sum);
                 }
             }
-            Event::Offset {
-                channel: index,
-                start,
-                per_tick,
-                ticks,
-            } => {
+            Event::Offset { channel: index, start, per_tick, ticks } => {
                 for tick in 0..limited(ticks) as i32 {
                     let offset = i32::from(start) + tick * i32::from(per_tick);
                     device.tick_with(FINGER, |samples| {

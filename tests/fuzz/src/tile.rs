@@ -86,11 +86,7 @@ impl Tile {
             room: room + noise(8),
             force: self.force + noise(10),
             current: self.current + noise(12),
-            supply: if self.comparator_tripped {
-                CUT_SUPPLY
-            } else {
-                SUPPLY
-            },
+            supply: if self.comparator_tripped { CUT_SUPPLY } else { SUPPLY },
             bridge_fault: self.comparator_tripped,
             emergency_stop: false,
             comparator_side_differs: false,

@@ -69,10 +69,7 @@ fn play<const FINGERS: usize>(mut device: CheckedDevice<FINGERS>, bytes: &[u8]) 
                 }
                 line.clear();
             }
-            0xd5 | 0xd6 => device.trigger(TriggerEdge {
-                us: 437,
-                ticks_ago: byte & 1 ^ 1,
-            }),
+            0xd5 | 0xd6 => device.trigger(TriggerEdge { us: 437, ticks_ago: byte & 1 ^ 1 }),
             byte => {
                 device.byte(&mut reader, byte);
                 if LineReader::is_line_end(byte) {

@@ -17,21 +17,13 @@ fn brought_up<E: Engine>(name: &str, start: impl FnOnce(World) -> E) -> Report {
     let mut engine = LossyLine::new(engine, interval);
     let mut client = Client::new(SimulatedBoard::new(&mut engine, bench));
     let mut hands = EmulatedBench { watch: &mut |_| () };
-    bring_up(
-        &mut client,
-        &mut hands,
-        Report::default(),
-        None,
-        &mut |_| (),
-    )
-    .expect("the same device")
+    bring_up(&mut client, &mut hands, Report::default(), None, &mut |_| ())
+        .expect("the same device")
 }
 
 fn on_the_image(name: &str) -> Report {
     let firmware = Firmware::from_file(image()).expect("an image for this chip");
-    brought_up(name, |world| {
-        OneFingerBoard::new(&firmware, world).expect("a chip")
-    })
+    brought_up(name, |world| OneFingerBoard::new(&firmware, world).expect("a chip"))
 }
 
 /// Names of the checks that failed.
@@ -48,10 +40,7 @@ fn failed(report: &Report) -> Vec<&str> {
 fn the_image_is_brought_up_as_the_native_device_is() {
     let step = one_case_in(9);
     for board in BROKEN_BOARDS.iter().step_by(step) {
-        let (image, native) = (
-            on_the_image(board.name),
-            brought_up(board.name, NativeEngine::new),
-        );
+        let (image, native) = (on_the_image(board.name), brought_up(board.name, NativeEngine::new));
         assert!(!image.passed(), "{}", board.name);
         let (image, native) = (failed(&image), failed(&native));
         assert_eq!(image.first(), native.first(), "{}", board.name);

@@ -30,9 +30,7 @@ fn fault(device: &mut Bare) -> String {
 fn value_of(answer: &str, key: &str) -> String {
     let mut words = answer.split(' ');
     let value = words.find_map(|word| word.strip_prefix(key)?.strip_prefix('='));
-    value
-        .unwrap_or_else(|| panic!("no {key} in {answer}"))
-        .to_owned()
+    value.unwrap_or_else(|| panic!("no {key} in {answer}")).to_owned()
 }
 
 fn board(device: &mut Bare, key: &str) -> String {
@@ -56,10 +54,7 @@ fn a_prepared_board_reports_that_it_is() {
 #[test]
 fn a_brown_out_level_other_than_the_highest_trips_until_it_is_set() {
     for (brown_out_code, level) in [(3, "0"), (2, "1"), (1, "2")] {
-        let mut device = started(&ChipState {
-            brown_out_code,
-            ..ChipState::default()
-        });
+        let mut device = started(&ChipState { brown_out_code, ..ChipState::default() });
         assert_eq!(fault(&mut device), "brown-out-level");
         assert_eq!(board(&mut device, "bor"), level);
         assert!(device.answer("clear").starts_with("err fault "));
@@ -70,10 +65,7 @@ fn a_brown_out_level_other_than_the_highest_trips_until_it_is_set() {
 
 #[test]
 fn a_clock_that_comes_late_restarts_the_device_without_a_fault() {
-    let mut device = started(&ChipState {
-        external_clock: false,
-        ..ChipState::default()
-    });
+    let mut device = started(&ChipState { external_clock: false, ..ChipState::default() });
     assert_eq!(fault(&mut device), "clock");
     assert_eq!(board(&mut device, "clock"), "hsi");
     assert!(device.answer("clear").starts_with("err fault "));
@@ -83,10 +75,7 @@ fn a_clock_that_comes_late_restarts_the_device_without_a_fault() {
     for _ in 0..3 {
         device.0.start_hse();
         device.run(900 * MS);
-        device
-            .0
-            .stop_hse()
-            .expect("the device does not depend on it");
+        device.0.stop_hse().expect("the device does not depend on it");
         device.run(200 * MS);
     }
     assert_eq!(reset_causes(&device), [ResetCause::PowerOn]);
@@ -96,10 +85,7 @@ fn a_clock_that_comes_late_restarts_the_device_without_a_fault() {
     device.run(990 * MS);
     assert_eq!(reset_causes(&device), [ResetCause::PowerOn]);
     device.run(20 * MS + START);
-    assert_eq!(
-        reset_causes(&device),
-        [ResetCause::PowerOn, ResetCause::Software]
-    );
+    assert_eq!(reset_causes(&device), [ResetCause::PowerOn, ResetCause::Software]);
     assert_eq!(board(&mut device, "clock"), "hse");
     assert_eq!(board(&mut device, "reset"), "software");
     assert_eq!(fault(&mut device), NO_SENSORS, "neither clock nor reset");
@@ -142,11 +128,7 @@ fn debug_freeze_bits_trip_and_a_start_clears_them() {
         device.0.flip_register_bit(register, bit).expect("injected");
         device.run(5 * MS);
         assert_eq!(board(&mut device, "watchdogs"), "frozen");
-        assert_eq!(
-            fault(&mut device),
-            "watchdogs-frozen",
-            "{register:#x} {bit}"
-        );
+        assert_eq!(fault(&mut device), "watchdogs-frozen", "{register:#x} {bit}");
         device.0.pull_reset_pin().expect("starts anew");
         device.run(START);
         assert_eq!(board(&mut device, "watchdogs"), "running");
@@ -159,17 +141,11 @@ fn a_debugger_that_halts_the_core_ends_in_a_reset_unless_it_freezes_the_watchdog
     let mut device = started(&ChipState::default());
     device.0.halt_by_debugger();
     device.run(50 * MS);
-    assert_eq!(
-        reset_causes(&device),
-        [ResetCause::PowerOn, ResetCause::WindowWatchdog]
-    );
+    assert_eq!(reset_causes(&device), [ResetCause::PowerOn, ResetCause::WindowWatchdog]);
 
     let mut device = started(&ChipState::default());
     for bit in [11, 12] {
-        device
-            .0
-            .flip_register_bit(APB1_FREEZE, bit)
-            .expect("injected");
+        device.0.flip_register_bit(APB1_FREEZE, bit).expect("injected");
     }
     device.0.halt_by_debugger();
     device.run(1000 * MS);
@@ -184,10 +160,7 @@ fn pwm_settings_that_change_in_spite_of_their_lock_trip() {
         let firmware = Firmware::from_file(image()).expect("an image for this chip");
         let mut device = Bare::switched_on(&firmware, &erased());
         device.run_until(100, |machine| machine.wiring().converted_at > 0);
-        device
-            .0
-            .flip_register_bit(TIM1_BDTR, bit)
-            .expect("injected");
+        device.0.flip_register_bit(TIM1_BDTR, bit).expect("injected");
         device.run(5 * MS);
         assert_eq!(fault(&mut device), "pwm-settings", "bit {bit}");
     }
@@ -198,11 +171,7 @@ fn pwm_settings_that_change_in_spite_of_their_lock_trip() {
 fn the_image_runs_at_both_ends_of_the_internal_oscillator() {
     for lsi_hz in [17_000, 32_000, 47_000] {
         for external_clock in [true, false] {
-            let mut device = started(&ChipState {
-                lsi_hz,
-                external_clock,
-                ..ChipState::default()
-            });
+            let mut device = started(&ChipState { lsi_hz, external_clock, ..ChipState::default() });
             // A second of lines, sent as fast as the line carries them.
             for _ in 0..40 {
                 let lines = "settings 1\nstate\ncause\n".repeat(4);

@@ -72,15 +72,10 @@ fn assert_golden_values(material: &str, outcome: &Outcome) {
         if !(0.1..10.0).contains(&since_s) {
             continue;
         }
-        let row = between(outcome, LANDED_S + since_s - 1e-6, 11.0)
-            .next()
-            .expect("a row");
+        let row = between(outcome, LANDED_S + since_s - 1e-6, 11.0).next().expect("a row");
         let setpoint_c = row.device.as_ref().and_then(|device| device.setpoint_c);
         let error_k = setpoint_c.expect("a set-point in contact") - exact_c;
-        assert!(
-            error_k.abs() < 0.002,
-            "{material} after {since_s} s: {error_k} K"
-        );
+        assert!(error_k.abs() < 0.002, "{material} after {since_s} s: {error_k} K");
         seen += 1;
     }
     assert!(seen >= 4, "{material}: {seen} golden values");
@@ -99,10 +94,7 @@ fn granite_is_displayed_within_20_mk_of_the_skin() {
     let (instructions, cycles) = (figures.instructions_per_tick, figures.cycles_per_tick);
     for (key, measured) in [
         ("tick.instructions_mean", instructions.mean),
-        (
-            "tick.instructions_max",
-            instructions.max.map(|max| max as f64),
-        ),
+        ("tick.instructions_max", instructions.max.map(|max| max as f64)),
         ("tick.cycles_mean", cycles.mean),
         ("tick.cycles_max", cycles.max.map(|max| max as f64)),
         ("tick.load", figures.cpu_load.map(|load| 100.0 * load)),
@@ -123,16 +115,11 @@ fn the_flash_makes_ticks_longer_and_changes_nothing_else() {
     for flash in [FlashTiming::Accelerated, FlashTiming::Unaccelerated] {
         scene.chip.flash = flash;
         let outcome = on_image(&scene);
-        assert!(
-            ideal.trace.rows() == outcome.trace.rows(),
-            "{}",
-            flash.name()
-        );
+        assert!(ideal.trace.rows() == outcome.trace.rows(), "{}", flash.name());
         let cycles = figures(&scene, &outcome).cycles_per_tick;
-        for (statistic, measured) in [
-            ("mean", cycles.mean),
-            ("max", cycles.max.map(|max| max as f64)),
-        ] {
+        for (statistic, measured) in
+            [("mean", cycles.mean), ("max", cycles.max.map(|max| max as f64))]
+        {
             let key = format!("tick.cycles_{statistic}_{}", flash.name());
             assert_compiled(&key, measured.expect("emulated"), &compiler);
         }

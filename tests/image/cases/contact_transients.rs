@@ -24,12 +24,7 @@ fn displayed(scenario: Scenario, material: &str) -> (Scene, Outcome) {
     let outcome = on_image(&scene);
     for row in outcome.trace.rows() {
         let device = row.device.as_ref().expect("telemetry of every tick");
-        assert_ne!(
-            device.state.name(),
-            "tripped",
-            "{material} at {} s",
-            row.t_s
-        );
+        assert_ne!(device.state.name(), "tripped", "{material} at {} s", row.t_s);
     }
     (scene, outcome)
 }
@@ -80,10 +75,7 @@ fn ten_contacts_with_granite_are_displayed_within_50_mk() {
         let row = between(&outcome, t_s, 21.0).next().expect("a row");
         row.skin_real_c
     };
-    assert!(
-        at_landing(19.0) < at_landing(1.0) - 0.5,
-        "the skin has cooled by the tenth contact"
-    );
+    assert!(at_landing(19.0) < at_landing(1.0) - 0.5, "the skin has cooled by the tenth contact");
 }
 
 /// 0.1 N to 2 N within a second, and back: contact resistance falls to a tenth.

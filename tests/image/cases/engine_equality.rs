@@ -39,15 +39,9 @@ fn reported_edges_us(outcome: &Outcome) -> Vec<i64> {
 fn native_and_image_write_the_same_trace_over_two_contacts() {
     let two = forces(&[(2.0, 2.0), (20.0, 0.0), (30.0, 0.5), (55.0, 0.0)]);
     let scene = scene("granite", 60.0, "", &two);
-    let (native, image) = (
-        csv(&natively(&scene), "native"),
-        csv(&on_image(&scene), "image"),
-    );
+    let (native, image) = (csv(&natively(&scene), "native"), csv(&on_image(&scene), "image"));
     assert_eq!(native.lines().count(), 60_002);
-    let differ = native
-        .lines()
-        .zip(image.lines())
-        .position(|(native, image)| native != image);
+    let differ = native.lines().zip(image.lines()).position(|(native, image)| native != image);
     assert_eq!(differ, None, "first line that differs");
     assert_eq!(native.len(), image.len());
     // Two traces of blank cells would be equal, too.
@@ -158,18 +152,13 @@ fn both_engines_play_a_course_from_the_same_trigger_and_report_the_same_events()
         (2.6, "play trigger"),
     ]);
     let edges_s: Vec<_> = (0..100).map(|n| 3.0 + 0.021_037 * f64::from(n)).collect();
-    let triggers: String = (edges_s.iter())
-        .map(|t_s| format!("[[trigger]]\nt_s = {t_s:.6}\n"))
-        .collect();
+    let triggers: String =
+        (edges_s.iter()).map(|t_s| format!("[[trigger]]\nt_s = {t_s:.6}\n")).collect();
     let touched = forces(&[(0.5, 2.0)]) + &triggers + &lines;
     let scene = scene("copper", 5.5, "", &touched);
     let (native, image) = (natively(&scene), on_image(&scene));
     let told = |outcome: &Outcome| -> Vec<String> {
-        outcome
-            .events
-            .iter()
-            .map(|(_, line)| line.clone())
-            .collect()
+        outcome.events.iter().map(|(_, line)| line.clone()).collect()
     };
     assert_eq!(told(&native), told(&image));
     assert!(csv(&native, "native-course") == csv(&image, "image-course"));
@@ -240,19 +229,12 @@ fn the_trigger_output_marks_events_in_the_tick_that_finds_them() {
             (number(tick) * 1e-3 + number(us) * 1e-6, kind)
         })
         .collect();
-    let reported_edge_s = times
-        .iter()
-        .find(|(_, kind)| *kind == "trigger")
-        .expect("an edge")
-        .0;
+    let reported_edge_s = times.iter().find(|(_, kind)| *kind == "trigger").expect("an edge").0;
     let zero_s = scene.settle_s;
     let rises_s: Vec<_> = (board.trigger_output_rises_s().iter())
         .map(|rise_s| rise_s - zero_s - EDGE_S + reported_edge_s)
         .collect();
-    let marked: Vec<_> = times
-        .iter()
-        .filter(|(_, kind)| *kind != "trigger")
-        .collect();
+    let marked: Vec<_> = times.iter().filter(|(_, kind)| *kind != "trigger").collect();
     assert_eq!(rises_s.len(), marked.len(), "{times:?} {rises_s:?}");
     let mut latest_us = 0.0_f64;
     for ((tick_s, kind), rise_s) in marked.into_iter().zip(rises_s) {
@@ -284,21 +266,16 @@ fn a_run_repeats_bit_for_bit_and_another_seed_changes_it() {
 fn the_image_engine_runs_the_image_that_it_is_given() {
     let mut bytes = std::fs::read(image()).expect("the image");
     let name = b"copper";
-    let places: Vec<_> = (0..bytes.len() - name.len())
-        .filter(|&at| bytes[at..].starts_with(name))
-        .collect();
+    let places: Vec<_> =
+        (0..bytes.len() - name.len()).filter(|&at| bytes[at..].starts_with(name)).collect();
     assert!(!places.is_empty());
     for at in places {
         bytes[at] = b'k';
     }
     let altered = Firmware::from_elf(&bytes).expect("still an image");
     let contact = forces(&[(0.5, 2.0)]);
-    let refused = on(&altered, &scene("copper", 2.0, "", &contact))
-        .expect_err("copper is gone")
-        .to_string();
-    assert!(
-        refused.contains("err unknown material 'copper'; known: kopper"),
-        "{refused}"
-    );
+    let refused =
+        on(&altered, &scene("copper", 2.0, "", &contact)).expect_err("copper is gone").to_string();
+    assert!(refused.contains("err unknown material 'copper'; known: kopper"), "{refused}");
     on(&altered, &scene("abs", 1.0, "", &contact)).expect("the rest still works");
 }

@@ -103,9 +103,7 @@ const STIMULI: [&str; 19] = [
 ];
 
 /// Lines to a finger that has tripped, with a good bridge again.
-const TRIPPED: [&str; 8] = [
-    "state", "cause", "arm", "clear", "clear", "arm", "abort", "arm",
-];
+const TRIPPED: [&str; 8] = ["state", "cause", "arm", "clear", "clear", "arm", "abort", "arm"];
 
 /// A device for five fingers on which the scenes of five uploads have run.
 struct Session {
@@ -123,10 +121,7 @@ impl Session {
         let image = Firmware::from_file(elf()).expect("an image for this chip");
         let mut device = FiveFingerBoard::new(&image, worlds(&scenes)).expect("the image starts");
         run(&scenes, &mut device, |_| ()).expect("the image runs to the end");
-        let mut session = Self {
-            device,
-            longest_lock: (0.0, String::new()),
-        };
+        let mut session = Self { device, longest_lock: (0.0, String::new()) };
         for finger in 0..FINGERS {
             session.ask(finger, "stream 0");
         }
@@ -169,9 +164,7 @@ impl Session {
             self.wait_ms(1);
             self.device.receive(&mut received);
             let text = String::from_utf8_lossy(&received);
-            let mut lines = text
-                .split_inclusive('\n')
-                .filter(|line| line.ends_with('\n'));
+            let mut lines = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
             if let Some(line) =
                 lines.find(|line| answers.iter().any(|answer| line.starts_with(answer)))
             {
@@ -223,16 +216,13 @@ impl Session {
         self.device.world(3).connect_supply();
         self.wait_ms(100);
         TRIPPED[3..].iter().for_each(|line| drop(self.ask(3, line)));
-        self.device
-            .world(4)
-            .set_force_and_faults(0.0, iter::empty());
+        self.device.world(4).set_force_and_faults(0.0, iter::empty());
         self.wait_ms(100);
         self.ask(4, "arm");
         self.wait_ms(600);
         self.ask(4, "calibrate room 25");
-        let settings: Vec<_> = (1..=SETTINGS_LINES)
-            .map(|line| self.ask(4, &format!("settings {line}")))
-            .collect();
+        let settings: Vec<_> =
+            (1..=SETTINGS_LINES).map(|line| self.ask(4, &format!("settings {line}"))).collect();
         self.ask(4, "hold 30");
         for line in settings {
             assert!(self.ask(4, "tune").starts_with("@4 ok"));
@@ -261,11 +251,8 @@ fn commands_lock_the_tick_out_briefly() {
     }
 }
 
-const FLASH_TIMINGS: [FlashTiming; 3] = [
-    FlashTiming::Ideal,
-    FlashTiming::Accelerated,
-    FlashTiming::Unaccelerated,
-];
+const FLASH_TIMINGS: [FlashTiming; 3] =
+    [FlashTiming::Ideal, FlashTiming::Accelerated, FlashTiming::Unaccelerated];
 
 /// The command that locks longest if the flash needs no wait states.
 const LONGEST: &str = "finger thesis";
@@ -276,10 +263,7 @@ fn switches_in_time(flash: FlashTiming) -> f64 {
     const STEP_PS: u64 = 500_000;
     const TURN_PS: u64 = 200_000_000;
     let mut session = Session::after_uploads(flash);
-    session
-        .device
-        .world(4)
-        .set_force_and_faults(0.0, iter::empty());
+    session.device.world(4).set_force_and_faults(0.0, iter::empty());
     session.wait_ms(100);
     session.ask(4, "arm");
     for ps in (0..TURN_PS).step_by(STEP_PS as usize) {

@@ -24,9 +24,7 @@ pub fn elf() -> &'static Path {
 }
 
 pub fn worlds(scenes: &[Scene; FINGERS]) -> [World; FINGERS] {
-    scenes
-        .each_ref()
-        .map(|scene| World::of_five_fingers(scene).expect("a plant for the scene"))
+    scenes.each_ref().map(|scene| World::of_five_fingers(scene).expect("a plant for the scene"))
 }
 
 fn on_image(scenes: &[Scene; FINGERS]) -> ([Outcome; FINGERS], FiveFingerBoard) {
@@ -39,25 +37,15 @@ fn on_image(scenes: &[Scene; FINGERS]) -> ([Outcome; FINGERS], FiveFingerBoard) 
 /// Scenes with different materials, forces, times of landing and noise.
 fn five_contacts() -> [Scene; FINGERS] {
     let mut seed = 0;
-    [
-        ("copper", 2.0),
-        ("granite", 0.5),
-        ("abs", 1.0),
-        ("foam", 0.25),
-        ("stainless-steel", 0.1),
-    ]
-    .map(|(material, force_n)| {
-        seed += 1;
-        let landing_s = 0.5 + 0.1 * f64::from(seed as u32);
-        let mut scene = scene(
-            material,
-            3.0,
-            "",
-            &forces(&[(landing_s, force_n), (2.7, 0.0)]),
-        );
-        scene.seed = seed;
-        scene
-    })
+    [("copper", 2.0), ("granite", 0.5), ("abs", 1.0), ("foam", 0.25), ("stainless-steel", 0.1)].map(
+        |(material, force_n)| {
+            seed += 1;
+            let landing_s = 0.5 + 0.1 * f64::from(seed as u32);
+            let mut scene = scene(material, 3.0, "", &forces(&[(landing_s, force_n), (2.7, 0.0)]));
+            scene.seed = seed;
+            scene
+        },
+    )
 }
 
 /// Objects of layers, which are uploaded, and one half-space between them; fingers of layers and the thesis's.
@@ -97,15 +85,8 @@ fn equal_on_both_engines(scenes: &[Scene; FINGERS]) -> [Outcome; FINGERS] {
             image.iter().filter(|row| row.device.is_some()).count() >= image.len() / 10,
             "telemetry"
         );
-        let differ = image
-            .iter()
-            .zip(native)
-            .position(|(image, native)| image != native);
-        assert_eq!(
-            differ.map(|row| (&image[row], &native[row])),
-            None,
-            "finger {finger}"
-        );
+        let differ = image.iter().zip(native).position(|(image, native)| image != native);
+        assert_eq!(differ.map(|row| (&image[row], &native[row])), None, "finger {finger}");
     }
     image
 }
@@ -130,15 +111,8 @@ fn five_uploaded_objects_reach_their_fingers() {
 #[test]
 fn an_edge_of_the_trigger_reaches_all_fingers_with_the_same_time_on_both_engines() {
     let mut scenes = five_contacts().map(|mut scene| {
-        let lines = [
-            (0.3, "events on"),
-            (0.4, "pulse 33 30 5 0.2 5"),
-            (1.2, "play trigger"),
-        ];
-        let lines = lines.map(|(t_s, line)| HostLine {
-            t_s,
-            line: line.into(),
-        });
+        let lines = [(0.3, "events on"), (0.4, "pulse 33 30 5 0.2 5"), (1.2, "play trigger")];
+        let lines = lines.map(|(t_s, line)| HostLine { t_s, line: line.into() });
         scene.host.extend(lines);
         scene
     });
@@ -148,18 +122,11 @@ fn an_edge_of_the_trigger_reaches_all_fingers_with_the_same_time_on_both_engines
     let native = run(&scenes, &mut native, |_| ()).expect("runs");
     for (image, native) in image.iter().zip(&native) {
         let told = |outcome: &Outcome| -> Vec<String> {
-            outcome
-                .events
-                .iter()
-                .map(|(_, line)| line.clone())
-                .collect()
+            outcome.events.iter().map(|(_, line)| line.clone()).collect()
         };
         assert_eq!(told(image), told(native));
         let edges = told(image);
-        let edges: Vec<_> = edges
-            .iter()
-            .filter(|line| line.ends_with("trigger"))
-            .collect();
+        let edges: Vec<_> = edges.iter().filter(|line| line.ends_with("trigger")).collect();
         assert_eq!(edges.len(), 3, "{edges:?}");
     }
 }
@@ -186,10 +153,7 @@ fn each_of_five_fingers_behaves_like_a_finger_alone() {
                 farthest_k = farthest_k.max((row.skin_c - alone.skin_c).abs());
             }
         }
-        println!(
-            "draw {draw}: {:.2} mK from a finger alone",
-            1e3 * farthest_k
-        );
+        println!("draw {draw}: {:.2} mK from a finger alone", 1e3 * farthest_k);
         farthest_k
     };
     let mean_k = (0..DRAWS).map(farthest_k).sum::<f64>() / DRAWS as f64;
@@ -210,10 +174,7 @@ fn five_fingers_take_less_than_a_ninth_of_the_cpu() {
         assert_compiled(key, measured, &compiler);
     }
     // A tick ends before the next finger's samples come.
-    assert!(
-        (cost.cycles_max as f64) < MILLISECOND / FINGERS as f64,
-        "{cost:?}"
-    );
+    assert!((cost.cycles_max as f64) < MILLISECOND / FINGERS as f64, "{cost:?}");
 }
 
 /// A tripped bridge driver and an `abort` each stop one finger; the others go on.
@@ -222,12 +183,7 @@ fn a_fault_and_an_abort_stop_only_their_own_finger() {
     let mut scenes = five_contacts();
     let fault = "[[fault]]\nkind = \"bridge-shorted\"\nt_s = 1.5\n";
     scenes[1] = scene("granite", 3.0, "", &(forces(&[(0.7, 2.0)]) + fault));
-    scenes[3] = scene(
-        "foam",
-        3.0,
-        "",
-        &(forces(&[(0.9, 2.0)]) + &host(&[(2.0, "abort")])),
-    );
+    scenes[3] = scene("foam", 3.0, "", &(forces(&[(0.9, 2.0)]) + &host(&[(2.0, "abort")])));
     let (outcomes, _) = on_image(&scenes);
     let state_at = |finger: usize, t_s: f64| {
         let outcome: &Outcome = &outcomes[finger];
@@ -245,12 +201,7 @@ fn a_fault_and_an_abort_stop_only_their_own_finger() {
         assert_eq!(state_at(finger, 2.2), late, "finger {finger}");
     }
     for (finger, from_s) in [(1, 1.51), (3, 2.02)] {
-        for row in outcomes[finger]
-            .trace
-            .rows()
-            .iter()
-            .filter(|row| row.t_s > from_s)
-        {
+        for row in outcomes[finger].trace.rows().iter().filter(|row| row.t_s > from_s) {
             assert_eq!(row.current_a, 0.0, "finger {finger} at {} s", row.t_s);
         }
     }

@@ -60,12 +60,7 @@ fn the_set_point_of_an_object_of_44_c_is_limited_to_42_c_and_reported() {
             assert_eq!(reported, (state, Some("limited")), "at {} s", row.t_s);
             assert_eq!(device.setpoint_c, Some(LIMIT_C), "at {} s", row.t_s);
         }
-        assert!(
-            row.skin_c < LIMIT_C,
-            "skin {} C at {} s",
-            row.skin_c,
-            row.t_s
-        );
+        assert!(row.skin_c < LIMIT_C, "skin {} C at {} s", row.skin_c, row.t_s);
         warmest_c = warmest_c.max(row.display_c);
     }
     println!("display {warmest_c:.3} C at most");

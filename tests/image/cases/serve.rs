@@ -20,11 +20,7 @@ const END_MS: u64 = 5000;
 /// A finger that lands when the device has been on for 4 s.
 fn scene() -> Scene {
     let mut scene = read_scene(None).expect("a scene");
-    scene.forces = vec![Force {
-        t_s: -4.0,
-        force_n: 2.0,
-        ramp_s: 0.0,
-    }];
+    scene.forces = vec![Force { t_s: -4.0, force_n: 2.0, ramp_s: 0.0 }];
     scene
 }
 
@@ -70,13 +66,8 @@ struct Received {
 
 fn received(device: &mut impl ServedDevice, lines: &[(u64, &str)]) -> Received {
     let stop = AtomicBool::new(false);
-    let mut script = Script {
-        lines,
-        ms: 0,
-        waiting: Vec::new(),
-        received: Vec::new(),
-        stop: &stop,
-    };
+    let mut script =
+        Script { lines, ms: 0, waiting: Vec::new(), received: Vec::new(), stop: &stop };
     let mut clock = Clock::start(Speed::Max);
     // The clock of a client that is there from the start.
     clock.wait_for_next_ms(true);

@@ -16,9 +16,7 @@ const EARLY: u64 = 100_000;
 /// The name of the stored fault: [`NO_RESET_FAULT`] if the reset caused none, as the device has no sensors.
 fn cause(device: &mut Bare) -> String {
     let answer = device.answer("cause");
-    let name = answer
-        .strip_prefix("ok cause=")
-        .and_then(|rest| rest.split(' ').next());
+    let name = answer.strip_prefix("ok cause=").and_then(|rest| rest.split(' ').next());
     name.unwrap_or_else(|| panic!("{answer}")).to_owned()
 }
 
@@ -28,10 +26,7 @@ const NO_RESET_FAULT: &str = "excitation";
 fn with_a_failed_start() -> Bare {
     let mut device = Bare::switched_on(&firmware(), &erased());
     device.run(EARLY);
-    device
-        .0
-        .flip_core_bit(CoreRegister::Pc, 20)
-        .expect("injected");
+    device.0.flip_core_bit(CoreRegister::Pc, 20).expect("injected");
     device.run(2 * START);
     device
 }
@@ -74,11 +69,7 @@ fn the_first_fault_survives_resets_and_not_a_power_cycle() {
         };
         reset.expect("starts anew");
         device.run(START);
-        let expected = if step == 3 {
-            NO_RESET_FAULT
-        } else {
-            "hard-fault"
-        };
+        let expected = if step == 3 { NO_RESET_FAULT } else { "hard-fault" };
         assert_eq!(cause(&mut device), expected, "{step}");
     }
 }
@@ -87,10 +78,7 @@ fn the_first_fault_survives_resets_and_not_a_power_cycle() {
 fn a_start_that_fails_before_the_watchdogs_run_is_repeated() {
     let mut device = with_a_failed_start();
     let causes: Vec<_> = device.0.resets().iter().map(|reset| reset.cause).collect();
-    assert_eq!(
-        causes,
-        [ResetCause::PowerOn, ResetCause::IndependentWatchdog]
-    );
+    assert_eq!(causes, [ResetCause::PowerOn, ResetCause::IndependentWatchdog]);
     assert_eq!(cause(&mut device), "hard-fault");
 }
 
@@ -112,9 +100,7 @@ fn every_resource_of_the_tasks_is_written_at_the_start() {
         let contents = |device: &Bare| -> Vec<_> {
             (resources.iter())
                 .map(|symbol| {
-                    let bytes = device
-                        .0
-                        .memory(symbol.address() as u32, symbol.size() as usize);
+                    let bytes = device.0.memory(symbol.address() as u32, symbol.size() as usize);
                     bytes.expect("in the RAM")
                 })
                 .collect()

@@ -5,23 +5,12 @@ use system_tests::{between, forces, host, scene};
 
 /// Sends lines during a contact and returns the answers in their order; asserts that the contact goes on.
 fn answers(lines: &[&str], more: &str) -> Vec<String> {
-    let timed: Vec<_> = lines
-        .iter()
-        .enumerate()
-        .map(|(i, line)| (1.0 + 0.01 * i as f64, *line))
-        .collect();
-    let scene = scene(
-        "abs",
-        3.0,
-        "",
-        &(forces(&[(0.5, 2.0)]) + &host(&timed) + more),
-    );
+    let timed: Vec<_> =
+        lines.iter().enumerate().map(|(i, line)| (1.0 + 0.01 * i as f64, *line)).collect();
+    let scene = scene("abs", 3.0, "", &(forces(&[(0.5, 2.0)]) + &host(&timed) + more));
     let outcome = on_image(&scene);
     for row in between(&outcome, 2.5, 3.0) {
-        assert_eq!(
-            row.device.as_ref().map(|device| device.state.name()),
-            Some("contact")
-        );
+        assert_eq!(row.device.as_ref().map(|device| device.state.name()), Some("contact"));
     }
     let after_set_up = outcome.answers.iter().filter(|(t_s, _)| *t_s >= 1.0);
     after_set_up.map(|(_, line)| line.clone()).collect()
@@ -42,26 +31,11 @@ fn id_and_state_are_answered() {
 fn each_wrong_line_is_answered_with_its_error_and_the_contact_goes_on() {
     let long = "x".repeat(300);
     let cases = [
-        (
-            "frobnicate",
-            "err unknown command 'frobnicate'; known: id board state",
-        ),
-        (
-            "material gold",
-            "err unknown material 'gold'; known: copper bronze",
-        ),
-        (
-            "mode loud",
-            "err unknown mode 'loud'; known: contact semi-infinite",
-        ),
-        (
-            "object hot",
-            "err object 'hot': slab, half-space, room, or -20 to 60 C",
-        ),
-        (
-            "object 99",
-            "err object temperature '99' out of range; -20 to 60 C",
-        ),
+        ("frobnicate", "err unknown command 'frobnicate'; known: id board state"),
+        ("material gold", "err unknown material 'gold'; known: copper bronze"),
+        ("mode loud", "err unknown mode 'loud'; known: contact semi-infinite"),
+        ("object hot", "err object 'hot': slab, half-space, room, or -20 to 60 C"),
+        ("object 99", "err object temperature '99' out of range; -20 to 60 C"),
         ("stream", "err interval missing; 0 to 60000 ms"),
         ("id id", "err unexpected 'id' after the command"),
         ("start", "err already started"),
@@ -82,14 +56,9 @@ fn binary_garbage_is_refused_and_the_next_line_is_answered() {
         "[[fault]]\nkind = \"host-garbage\"\nt_s = 1.5\n[[host]]\nt_s = 1.6\nline = \"id\"\n";
     let answers = answers(&[], garbage);
     assert!(answers.len() >= 2, "{answers:?}");
+    assert!(answers[0].starts_with("err byte 0x00 is not printable ASCII"), "{answers:?}");
     assert!(
-        answers[0].starts_with("err byte 0x00 is not printable ASCII"),
-        "{answers:?}"
-    );
-    assert!(
-        answers
-            .last()
-            .is_some_and(|line| line.starts_with("ok thermal-display")),
+        answers.last().is_some_and(|line| line.starts_with("ok thermal-display")),
         "{answers:?}"
     );
 }

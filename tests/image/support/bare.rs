@@ -97,10 +97,7 @@ impl Bare {
     /// Takes the lines received from the device.
     pub fn received(&mut self) -> Vec<String> {
         let bytes = std::mem::take(&mut self.0.wiring_mut().received);
-        String::from_utf8_lossy(&bytes)
-            .lines()
-            .map(str::to_owned)
-            .collect()
+        String::from_utf8_lossy(&bytes).lines().map(str::to_owned).collect()
     }
 
     /// Sends a line, runs for a number of cycles, and takes the lines received.
@@ -124,9 +121,7 @@ impl Bare {
 
     /// The answers to `settings 1` to `settings 8`.
     pub fn settings(&mut self) -> Vec<String> {
-        (1..=9)
-            .map(|line| self.answer(&format!("settings {line}")))
-            .collect()
+        (1..=9).map(|line| self.answer(&format!("settings {line}"))).collect()
     }
 
     /// The settings' sectors.

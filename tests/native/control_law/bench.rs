@@ -40,21 +40,13 @@ pub const IDENTIFIED: settings::Tile = settings::Tile {
 
 /// Settings for the nominal tile with this thermistor lag, s.
 pub fn settings(sensor_lag_s: f64) -> Settings {
-    settings_of(settings::Tile {
-        sensor_lag_s,
-        ..IDENTIFIED
-    })
+    settings_of(settings::Tile { sensor_lag_s, ..IDENTIFIED })
 }
 
 /// Settings with the gains that follow from an identified tile.
 pub fn settings_of(tile: settings::Tile) -> Settings {
     let [gains, gains_10hz] = settings::PiGains::for_1khz_and_10hz_laws(&tile);
-    Settings {
-        gains,
-        gains_10hz,
-        tile,
-        ..Settings::default()
-    }
+    Settings { gains, gains_10hz, tile, ..Settings::default() }
 }
 
 /// A first-order lag, exact for an input that is linear between ticks.
@@ -67,11 +59,7 @@ pub struct Sensor {
 
 impl Sensor {
     pub fn new(lag_s: f64, at_c: f64) -> Self {
-        Self {
-            lag_s,
-            input_c: at_c,
-            reading_c: at_c,
-        }
+        Self { lag_s, input_c: at_c, reading_c: at_c }
     }
 
     pub fn update(&mut self, input_c: f64) {
@@ -109,8 +97,7 @@ impl ControlLoop {
     /// The current, A, for a target, the readings of the display's and the sink's thermistors, and a known load, W.
     pub fn step(&mut self, target_c: f64, (reading_c, sink_c): (f64, f64), load_w: f64) -> f64 {
         let (display, sink) = (celsius(reading_c), celsius(sink_c));
-        self.observer
-            .update_disturbance_and_correction(display, sink, Watt::from_num(load_w));
+        self.observer.update_disturbance_and_correction(display, sink, Watt::from_num(load_w));
         let reference = Reference::at(setpoint(target_c).celsius());
         let current = (self.controller).choose_current(&reference, display, sink, &self.observer);
         self.observer.advance_model(current);
@@ -168,10 +155,7 @@ impl Bench {
         self.sensor.update(self.display_c());
         let sensed_c = (self.sensor.reading_c, self.tile.sink_c());
         self.current_a = (self.control).step(target_c, sensed_c, self.known_load_w);
-        Tick {
-            display_c: self.display_c(),
-            current_a: self.current_a,
-        }
+        Tick { display_c: self.display_c(), current_a: self.current_a }
     }
 
     pub fn run(&mut self, target_c: f64, seconds: f64) -> Vec<Tick> {
@@ -182,10 +166,7 @@ impl Bench {
 /// Advances the tile by one step with a current, A, and a heat flow into its patch, W.
 pub fn advance(tile: &mut Tile, current_a: f64, load_w: f64) {
     tile.prepare(STEP_S);
-    tile.drive(Current {
-        mean_a: current_a,
-        ..Current::default()
-    });
+    tile.drive(Current { mean_a: current_a, ..Current::default() });
     tile.first_stage(STEP_S, load_w, 0.0, 0.0);
     tile.second_stage(0.0);
 }

@@ -52,10 +52,7 @@ fn the_model_based_controller_changes_gains_without_a_bump() {
     let mut largest = Largest::default();
     for factor in [0.8, 0.9, 1.1, 1.25] {
         let mut bench = loaded();
-        let tile = Tile {
-            gain_k_s_a: factor * IDENTIFIED.gain_k_s_a,
-            ..IDENTIFIED
-        };
+        let tile = Tile { gain_k_s_a: factor * IDENTIFIED.gain_k_s_a, ..IDENTIFIED };
         retune(&mut bench, tile);
         largest.observe(&format!("gain x {factor}"), &mut bench);
     }
@@ -72,10 +69,7 @@ fn the_pi_controllers_change_gains_without_a_bump() {
             let mut bench = loaded();
             bench.control.controller.select_law(law);
             bench.run(TARGET_C, 60.0);
-            let tile = Tile {
-                gain_k_s_a: factor * IDENTIFIED.gain_k_s_a,
-                ..IDENTIFIED
-            };
+            let tile = Tile { gain_k_s_a: factor * IDENTIFIED.gain_k_s_a, ..IDENTIFIED };
             retune(&mut bench, tile);
             largest.observe(&format!("{}, gain x {factor}", law.name()), &mut bench);
         }
@@ -90,13 +84,7 @@ fn the_sensor_lag_changes_without_a_bump() {
     let mut largest = Largest::default();
     for sensor_lag_s in [0.02, 0.05, 0.2, 0.5] {
         let mut bench = loaded();
-        retune(
-            &mut bench,
-            Tile {
-                sensor_lag_s,
-                ..IDENTIFIED
-            },
-        );
+        retune(&mut bench, Tile { sensor_lag_s, ..IDENTIFIED });
         largest.observe(&format!("lag {sensor_lag_s} s"), &mut bench);
     }
     assert_figure("law.relag_current", 1e3 * largest.step_a);

@@ -10,10 +10,7 @@ use super::bench::{ControlLoop, ROOM_C, Sensor, advance, settings, ticks};
 
 #[test]
 fn the_models_constants_are_those_that_the_generator_prints() {
-    let script = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/native/control_law/plate_relaxations.py"
-    );
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/native/control_law/plate_relaxations.py");
     let source = include_str!("../../../src/device/src/estimate/plate_model.rs");
     for line in run_generator(script, &[]).unwrap_or_default().lines() {
         assert!(source.contains(line), "plate_model.rs lacks `{line}`");
@@ -48,10 +45,8 @@ fn responses(current_a: f64, load_w: f64, seconds: f64) -> Vec<(f64, f64, f64)> 
         let sensed_c = (predicted.reading_c, tile.sink_c());
         let given_a = control.step(target_c, sensed_c, load_w);
         advance(&mut tile, given_a, load_w);
-        let legs = control
-            .observer
-            .leg_end_and_mean_temperatures()
-            .expect("after the first reading");
+        let legs =
+            control.observer.leg_end_and_mean_temperatures().expect("after the first reading");
         let model_c: f64 = legs.cold.to_num();
         predicted.update(model_c);
         let tile_c = tile.patch_c() + load_w * tile.patch_half_k_w();
@@ -79,14 +74,9 @@ fn difference_percent(what: &str, answer: &[(f64, f64, f64)], beyond_k: f64) -> 
 #[test]
 fn the_model_follows_the_tile_under_a_current() {
     let mut most = 0.0f64;
-    for (current_a, seconds) in [
-        (0.3, 40.0),
-        (3.0, 0.3),
-        (6.0, 0.3),
-        (-0.3, 40.0),
-        (-3.0, 0.3),
-        (-6.0, 0.3),
-    ] {
+    for (current_a, seconds) in
+        [(0.3, 40.0), (3.0, 0.3), (6.0, 0.3), (-0.3, 40.0), (-3.0, 0.3), (-6.0, 0.3)]
+    {
         let answer = responses(current_a, 0.0, seconds);
         let (what, beyond_k) = (format!("{current_a} A"), 3e-3 * current_a.abs());
         most = most.max(difference_percent(&what, &answer, beyond_k));
@@ -114,17 +104,12 @@ fn the_model_follows_the_tile_under_a_finger() {
 fn the_models_steady_state_obeys_the_module_equation() {
     let class = TileParams::NOMINAL;
     for current_a in [0.1, -0.1] {
-        let (_, model_k, _) = *responses(current_a, 0.0, 100.0)
-            .last()
-            .expect("the last time");
+        let (_, model_k, _) = *responses(current_a, 0.0, 100.0).last().expect("the last time");
         let cold_k = ZERO_C_K + ROOM_C + model_k;
         let joule_w = class.resistance_ohm() * current_a * current_a;
         let pumped_w = class.seebeck_v_k() * current_a * cold_k - 0.5 * joule_w;
         let expected_k = -pumped_w / class.conductance_w_k();
         println!("{current_a} A: model {model_k:.4} K, module {expected_k:.4} K");
-        assert!(
-            (model_k / expected_k - 1.0).abs() < 0.02,
-            "{model_k} K, {expected_k} K"
-        );
+        assert!((model_k / expected_k - 1.0).abs() < 0.02, "{model_k} K, {expected_k} K");
     }
 }

@@ -12,13 +12,8 @@ const LAGS_S: [f64; 3] = [0.02, 0.1, 0.5];
 fn a_step_of_the_target_is_followed_with_little_overshoot() {
     let (mut most_k, mut small_k, mut most_part) = (0.0f64, 0.0f64, 0.0f64);
     for lag_s in LAGS_S {
-        for (from_c, to_c) in [
-            (30.0, 29.9),
-            (30.0, 28.0),
-            (34.0, 24.0),
-            (24.0, 24.1),
-            (24.0, 40.0),
-        ] {
+        for (from_c, to_c) in [(30.0, 29.9), (30.0, 28.0), (34.0, 24.0), (24.0, 24.1), (24.0, 40.0)]
+        {
             let mut bench = Bench::settled_at(lag_s, from_c);
             let answer = bench.run(to_c, 10.0);
             let sign = f64::signum(to_c - from_c);
@@ -49,14 +44,8 @@ fn a_step_of_the_target_is_followed_with_little_overshoot() {
 fn the_current_limit_causes_no_windup() {
     let mut longest_s = 0.0f64;
     let class = TileParams::NOMINAL;
-    let weak = TileParams {
-        vmax_v: 0.9 * class.vmax_v,
-        ..class
-    };
-    let heavy = TileParams {
-        ceramic_j_m3k: 1.1 * class.ceramic_j_m3k,
-        ..class
-    };
+    let weak = TileParams { vmax_v: 0.9 * class.vmax_v, ..class };
+    let heavy = TileParams { ceramic_j_m3k: 1.1 * class.ceramic_j_m3k, ..class };
     let mut settings = settings(0.1);
     settings.module.current_limit_a = 0.3;
     for (name, params) in [("class", class), ("weak", weak), ("heavy", heavy)] {
@@ -64,14 +53,8 @@ fn the_current_limit_causes_no_windup() {
             let mut bench = Bench::new(&settings, params);
             bench.run(from_c, 60.0);
             let limited = bench.run(target_c, 5.0);
-            let at_limit = limited
-                .iter()
-                .filter(|tick| tick.current_a.abs() > 0.2999)
-                .count();
-            assert!(
-                at_limit > ticks(4.9),
-                "{name}: {at_limit} ticks at the limit"
-            );
+            let at_limit = limited.iter().filter(|tick| tick.current_a.abs() > 0.2999).count();
+            assert!(at_limit > ticks(4.9), "{name}: {at_limit} ticks at the limit");
             // The same controller without its past.
             let mut afresh = bench.clone();
             afresh.control.observer.invalidate();
@@ -103,8 +86,7 @@ fn a_known_load_disturbs_a_tenth_of_an_unknown_one() {
         (bench.load_w, bench.known_load_w) = (1.0, known_load_w);
         let answer = bench.run(26.0, 3.0);
         let late = answer.iter().skip(50);
-        late.map(|tick| (tick.display_c - 26.0).abs())
-            .fold(0.0, f64::max)
+        late.map(|tick| (tick.display_c - 26.0).abs()).fold(0.0, f64::max)
     };
     let (known_k, unknown_k) = (largest_k(1.0), largest_k(0.0));
     assert_figure("law.known_load", 1e3 * known_k);

@@ -40,10 +40,7 @@ fn a_parameter_off_by_10_percent_leaves_no_steady_state_error() {
                 1e3 * disturbed_k,
                 1e3 * left_k
             );
-            assert!(
-                disturbed_k > 0.02,
-                "{name}: the load disturbs by {disturbed_k} K"
-            );
+            assert!(disturbed_k > 0.02, "{name}: the load disturbs by {disturbed_k} K");
             most_left_k = most_left_k.max(left_k);
             assert!(current_a < 0.02, "{name} x {factor}: {current_a} A");
         }

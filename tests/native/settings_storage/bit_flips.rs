@@ -31,11 +31,7 @@ fn flip_each_bit<const FINGERS: usize>(saves: u32) {
         flipped += 1;
         if in_header(bit) || bit % STRIDE == 0 {
             let after = saved(&flash.cells(), next.as_ref(), None);
-            assert_eq!(
-                loaded(&after),
-                next,
-                "{saves} saves, bit {bit}, one more save"
-            );
+            assert_eq!(loaded(&after), next, "{saves} saves, bit {bit}, one more save");
             stored += 1;
         }
         flash.flip(bit);

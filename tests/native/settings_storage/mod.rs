@@ -41,10 +41,7 @@ fn campaign<const FINGERS: usize>(saves: u32, stride: u32) -> Coverage {
                 let next = numbered::<FINGERS>(number + 1000);
                 let again = saved(&cut, next.as_ref(), Some((1 + seed % operations, !seed)));
                 let later = loaded::<FINGERS>(&again);
-                assert!(
-                    later == found || later == next,
-                    "save {number}, cut in {nth}, then again"
-                );
+                assert!(later == found || later == next, "save {number}, cut in {nth}, then again");
                 let healed = saved(&again, next.as_ref(), None);
                 assert_eq!(
                     loaded::<FINGERS>(&healed),
@@ -88,9 +85,8 @@ fn settings_of_ten_fingers_with_heat_flux_sensors_can_be_stored() {
 #[test]
 fn settings_can_be_stored_after_damage_to_any_byte_of_the_flash() {
     // After 40 saves a sector is full and closed, the next is in use, and the third is empty.
-    let cells = (0..40).fold(erased(), |cells, number| {
-        saved::<1>(&cells, numbered(number).as_ref(), None)
-    });
+    let cells =
+        (0..40).fold(erased(), |cells, number| saved::<1>(&cells, numbered(number).as_ref(), None));
     let next = numbered(200);
     // The headers and trailers of all sectors, and every 61st byte between them.
     let places = (0..BYTES).filter(|place| {

@@ -43,30 +43,19 @@ pub struct Kept {
 
 // SAFETY: the start-up code does not initialise the section, which holds nothing else; all bit patterns are valid.
 #[unsafe(link_section = ".uninit.after_reset")]
-pub static KEPT: Kept = Kept {
-    step: AtomicU32::new(0),
-    number: AtomicU32::new(0),
-};
+pub static KEPT: Kept = Kept { step: AtomicU32::new(0), number: AtomicU32::new(0) };
 
 /// The next reset continues with `step`, and the probe does not halt at it.
 pub fn continue_with(step: Step) {
     KEPT.step.store(WAITS_MAGIC | step as u32, Relaxed);
     // SAFETY: nothing else uses the register.
-    unsafe {
-        Peripherals::steal()
-            .DCB
-            .demcr
-            .modify(|bits| bits & !CATCH_RESETS)
-    };
+    unsafe { Peripherals::steal().DCB.demcr.modify(|bits| bits & !CATCH_RESETS) };
 }
 
 /// Goes on with the step that waits for this reset, if one does, and ends the test.
 pub fn continue_if_expected() {
     let waiting = KEPT.step.swap(0, Relaxed);
-    let Some(step) = STEPS
-        .into_iter()
-        .find(|step| WAITS_MAGIC | *step as u32 == waiting)
-    else {
+    let Some(step) = STEPS.into_iter().find(|step| WAITS_MAGIC | *step as u32 == waiting) else {
         return;
     };
     // SAFETY: loads without side effects.

@@ -105,11 +105,7 @@ mod tests {
         let reference = statistics(&adc, REFERENCE);
         let supply_mv = supply_mv(&adc);
         report::figure("supply", format_args!("{supply_mv:.0}"), "mV");
-        report::figure(
-            "converter_noise",
-            format_args!("{:.2}", reference.deviation),
-            "counts rms",
-        );
+        report::figure("converter_noise", format_args!("{:.2}", reference.deviation), "counts rms");
         report::figure("converter_spread", reference.spread, "counts");
         assert!((3200.0..3400.0).contains(&supply_mv), "{supply_mv} mV");
         assert!(reference.deviation < 3.0 && reference.spread < 40);
@@ -136,10 +132,7 @@ mod tests {
         select_internal_signal(false);
         report::figure("quarter_of_supply", format_args!("{quarter:.2}"), "counts");
         // The divider has 1 % (data sheet, VBAT monitoring).
-        assert!(
-            (1024.0 - 12.0..1024.0 + 12.0).contains(&quarter),
-            "{quarter} counts"
-        );
+        assert!((1024.0 - 12.0..1024.0 + 12.0).contains(&quarter), "{quarter} counts");
     }
 
     /// Both converters have a straight characteristic between their ends; their offsets and gains do not count.
@@ -148,9 +141,8 @@ mod tests {
         /// The data sheet allows 4 counts to the DAC and 3 to ADC1.
         const DEVIATION_MAX: f32 = 7.0;
         /// Without its buffer the DAC has 15 kOhm, and is not exact at the ends of its range.
-        const CODES: [u16; 15] = [
-            128, 400, 672, 944, 1216, 1488, 1760, 2032, 2304, 2576, 2848, 3120, 3392, 3664, 3936,
-        ];
+        const CODES: [u16; 15] =
+            [128, 400, 672, 944, 1216, 1488, 1760, 2032, 2304, 2576, 2848, 3120, 3392, 3664, 3936];
         const DAC_CHANNEL: u8 = 4;
         // SAFETY: nothing else uses them.
         let (rcc, port, dac) = unsafe { (RCC::steal(), GPIOA::steal(), DAC::steal()) };
@@ -178,9 +170,7 @@ mod tests {
             .map(|(code, counts)| (counts - first - slope * (f32::from(*code) - ends.0)).abs());
         let worst = deviations.fold(0.0, f32::max);
         report::figure("converter_linearity", format_args!("{worst:.2}"), "counts");
-        report::line(format_args!(
-            "{slope:.4} counts of ADC1 for a count of the DAC"
-        ));
+        report::line(format_args!("{slope:.4} counts of ADC1 for a count of the DAC"));
         assert!(worst <= DEVIATION_MAX && (slope - 1.0).abs() < 0.02);
     }
 }

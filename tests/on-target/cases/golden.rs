@@ -52,11 +52,7 @@ mod tests {
             costs.add(cost);
             worst = worst.max((f64::from(result.to_bits()) - expected * UNITS).abs());
         }
-        report::figure(
-            "kernel_error_max",
-            format_args!("{worst:.4}"),
-            "units of 2^-32",
-        );
+        report::figure("kernel_error_max", format_args!("{worst:.4}"), "units of 2^-32");
         report::figure("kernel_cycles_mean", costs.mean(), "cycles");
         report::figure("kernel_cycles_max", costs.max, "cycles");
         assert!(ERFCX.len() > 100 && worst <= KERNEL_ERROR_MAX, "{worst}");
@@ -69,10 +65,8 @@ mod tests {
             let object = find(golden.material).expect("a material of the thesis");
             let pair = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, golden.t_s);
             let log2_pressure = libm::log2(golden.pressure_pa / SKIN_MICROHARDNESS_PA);
-            let response = pair
-                .expect("a pair of the thesis")
-                .at_pressure(Log2::from_num(log2_pressure))
-                .at(
+            let response =
+                pair.expect("a pair of the thesis").at_pressure(Log2::from_num(log2_pressure)).at(
                     1,
                     Celsius::from_num(golden.skin_before_c),
                     Celsius::from_num(golden.object_before_c),
@@ -89,11 +83,7 @@ mod tests {
         let [skin, object, display] = worst;
         let [of_skin, of_display] = [skin.max(object), display];
         report::figure("contact_skin_error_max", format_args!("{of_skin:.3}"), "uK");
-        report::figure(
-            "contact_display_error_max",
-            format_args!("{of_display:.3}"),
-            "uK",
-        );
+        report::figure("contact_display_error_max", format_args!("{of_display:.3}"), "uK");
         assert!(CONTACTS.len() > 100);
         assert!(of_skin <= SKIN_ERROR_MAX_UK && of_display <= DISPLAY_ERROR_MAX_UK);
     }

@@ -73,11 +73,7 @@ mod tests {
                 worst = worst.max((high - expected).abs());
             }
         }
-        report::figure(
-            "pwm_duty_error_max",
-            format_args!("{:.2}", 100.0 * worst),
-            "%",
-        );
+        report::figure("pwm_duty_error_max", format_args!("{:.2}", 100.0 * worst), "%");
         assert!(worst < 0.01, "{worst}");
         drive(&mut board, Drive::Off);
         assert_eq!(high_shares(&mut board), [0.0; 2], "off");
@@ -92,16 +88,11 @@ mod tests {
         board.control_loop.stages[0].poll_fault_line_low();
         drive(&mut board, Drive::On(Duty::saturating(I1F15::lit("0.5"))));
         assert!(timer().bdtr().read().moe().bit_is_set(), "PWM is on");
-        pins()
-            .pupdr()
-            .modify(|_, w| w.pupdr(FAULT_LINE as u8).pull_down());
+        pins().pupdr().modify(|_, w| w.pupdr(FAULT_LINE as u8).pull_down());
         let ((), waited) = cycles::measure(|| while timer().bdtr().read().moe().bit_is_set() {});
         report::figure("break_delay", waited, "cycles");
         assert_eq!(high_shares(&mut board), [0.0; 2], "idle level");
-        assert!(
-            board.control_loop.stages[0].poll_fault_line_low(),
-            "and the firmware sees it"
-        );
+        assert!(board.control_loop.stages[0].poll_fault_line_low(), "and the firmware sees it");
         pull_fault_line(true);
         assert!(timer().bdtr().read().moe().bit_is_clear(), "it stays off");
         // The pull of 40 kOhm discharges a pin within some microseconds.
@@ -117,9 +108,7 @@ mod tests {
             w.bke().disabled();
             w.lock().off()
         });
-        timer()
-            .ccmr1_output()
-            .modify(|_, w| w.oc1m().force_active());
+        timer().ccmr1_output().modify(|_, w| w.oc1m().force_active());
         assert!(FingerPowerStage::pwm_settings_are_locked());
         assert_eq!(timer().ccmr1_output().read().bits(), mode);
     }

@@ -51,9 +51,6 @@ mod tests {
         let took = last.wrapping_sub(first.expect("a first byte"));
         let per_byte = took as f32 / TEXT.len() as f32;
         report::figure("serial_byte", format_args!("{per_byte:.1}"), "cycles");
-        assert!(
-            (per_byte - CYCLES_PER_BYTE as f32).abs() < 10.0,
-            "{per_byte} cycles"
-        );
+        assert!((per_byte - CYCLES_PER_BYTE as f32).abs() < 10.0, "{per_byte} cycles");
     }
 }

@@ -26,10 +26,7 @@ const FIRST_ON_ERASED: usize = 8;
 fn settings(number: usize) -> [StoredSettings; FINGERS] {
     let mut settings = Settings::default();
     let gain_k_s_a = Tile::FACTORY_DEFAULT.gain_k_s_a * (1.0 + 0.001 * number as f64);
-    settings.set_tile(Tile {
-        gain_k_s_a,
-        ..Tile::FACTORY_DEFAULT
-    });
+    settings.set_tile(Tile { gain_k_s_a, ..Tile::FACTORY_DEFAULT });
     [StoredSettings::from_settings(&settings); FINGERS]
 }
 
@@ -77,10 +74,7 @@ fn restart(number: usize, step: Step) -> ! {
 pub fn find_saved() {
     let number = KEPT.number.load(Relaxed) as usize;
     let result = save_pending_and_load(&flash());
-    assert!(
-        matches!(result.save_result, Some(Ok(()))),
-        "it stores what waits"
-    );
+    assert!(matches!(result.save_result, Some(Ok(()))), "it stores what waits");
     assert!(stored() == record(number), "and finds it");
     restore_factory_defaults();
 }
@@ -121,10 +115,7 @@ pub fn recover(cause: ResetCause) {
         // The first attempt had ended.
         None => was_stored,
     };
-    assert!(
-        is_stored && stored() == record(number),
-        "the second attempt stores them"
-    );
+    assert!(is_stored && stored() == record(number), "the second attempt stores them");
     report::line(format_args!(
         "reset {} ms after the start of the save: the {} settings were there",
         MOMENTS_MS[number],

@@ -98,12 +98,7 @@ impl ToyDisplay {
             self.display_c = self.plate_c;
             return;
         }
-        let Tile {
-            gain_k_s_a,
-            joule_per_a,
-            leak_1_s,
-            ..
-        } = Tile::FACTORY_DEFAULT;
+        let Tile { gain_k_s_a, joule_per_a, leak_1_s, .. } = Tile::FACTORY_DEFAULT;
         let pumped_k_s =
             gain_k_s_a * (self.demanded_a - joule_per_a * self.demanded_a * self.demanded_a);
         let leak_k_s = leak_1_s * (self.plate_c - SINK_C);

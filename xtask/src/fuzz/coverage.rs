@@ -49,9 +49,7 @@ pub fn report(targets: &[Target]) -> Result<()> {
 
 fn run(command: &mut Command) -> Result<()> {
     let name = command.get_program().to_string_lossy().into_owned();
-    let status = command
-        .status()
-        .with_context(|| format!("{name}: did not start"))?;
+    let status = command.status().with_context(|| format!("{name}: did not start"))?;
     if !status.success() {
         bail!("{name} failed ({status})");
     }
@@ -63,15 +61,9 @@ fn tools() -> Result<PathBuf> {
     let ask = |args: &[&'static str]| Invocation::new("rustc", args.iter().copied()).answer();
     let root = ask(&["--print", "sysroot"]).context("rustc --print sysroot")?;
     let host = ask(&["--print", "host-tuple"]).context("rustc --print host-tuple")?;
-    let folder = Path::new(root.trim())
-        .join("lib/rustlib")
-        .join(host.trim())
-        .join("bin");
+    let folder = Path::new(root.trim()).join("lib/rustlib").join(host.trim()).join("bin");
     if !folder.join("llvm-cov").is_file() {
-        bail!(
-            "{}: no llvm-cov there; rustup component add llvm-tools",
-            folder.display()
-        );
+        bail!("{}: no llvm-cov there; rustup component add llvm-tools", folder.display());
     }
     Ok(folder)
 }

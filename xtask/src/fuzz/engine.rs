@@ -72,18 +72,11 @@ impl Process {
                 output.last.push(line);
             }
         });
-        Ok(Self {
-            child,
-            output,
-            reader,
-        })
+        Ok(Self { child, output, reader })
     }
 
     fn progress(&self) -> Progress {
-        self.output
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .progress
+        self.output.lock().unwrap_or_else(PoisonError::into_inner).progress
     }
 }
 
@@ -150,12 +143,7 @@ impl Engine {
             }
             if reported.elapsed() >= REPORT_INTERVAL {
                 reported = Instant::now();
-                let Progress {
-                    executions,
-                    edges,
-                    features,
-                    inputs,
-                } = together(&processes);
+                let Progress { executions, edges, features, inputs } = together(&processes);
                 let seconds = start.elapsed().as_secs();
                 eprintln!(
                     "{name}: {seconds} s, {executions} executions, {edges} edges, {features} features, {inputs} inputs"
@@ -172,10 +160,7 @@ impl Engine {
         let mut all = Vec::new();
         for (i, process) in processes.into_iter().enumerate() {
             let _ = process.reader.join();
-            let output = process
-                .output
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner);
+            let output = process.output.lock().unwrap_or_else(PoisonError::into_inner);
             all.push(output.progress);
             if failed == Some(i) {
                 bail!(
@@ -253,14 +238,12 @@ fn together(processes: &[Process]) -> Progress {
 
 /// The command that replays the input that libFuzzer says it has written.
 fn how_to_replay(target: Target, lines: &[String]) -> String {
-    let written = lines
-        .iter()
-        .find_map(|line| Some(line.split_once("Test unit written to ")?.1.trim()));
+    let written =
+        lines.iter().find_map(|line| Some(line.split_once("Test unit written to ")?.1.trim()));
     match written {
-        Some(file) => format!(
-            "to replay: cargo xtask fuzz --target {} --replay {file}",
-            target.name()
-        ),
+        Some(file) => {
+            format!("to replay: cargo xtask fuzz --target {} --replay {file}", target.name())
+        }
         None => "no input was written".into(),
     }
 }

@@ -101,9 +101,7 @@ pub fn compile_if_called_as_compiler() -> Option<ExitCode> {
     let mut args = std::env::args_os();
     let name = PathBuf::from(args.next()?);
     let name = Path::new(name.file_name()?).to_string_lossy().into_owned();
-    let kind = Instrumented::ALL
-        .into_iter()
-        .find(|kind| kind.program() == name)?;
+    let kind = Instrumented::ALL.into_iter().find(|kind| kind.program() == name)?;
     let compiler = args.next()?;
     let args: Vec<_> = args.collect();
     let place = args.iter().position(|arg| arg == "--crate-name");
@@ -131,9 +129,6 @@ mod tests {
             assert!(kind.flags("build_script_build").is_empty());
             assert!(!kind.flags("thermal_display").is_empty());
         }
-        assert_ne!(
-            Instrumented::Fuzzing.program(),
-            Instrumented::Coverage.program()
-        );
+        assert_ne!(Instrumented::Fuzzing.program(), Instrumented::Coverage.program());
     }
 }

@@ -125,10 +125,7 @@ fn create(path: &Path) -> Result<()> {
 
 /// `cargo xtask fuzz`
 pub fn run(permission: Permission, options: &Options) -> Result<()> {
-    let needs = Needs {
-        fuzzer: true,
-        ..Needs::default()
-    };
+    let needs = Needs { fuzzer: true, ..Needs::default() };
     setup::prepare(needs, permission)?;
     let targets = match options.target.as_slice() {
         [] => Target::value_variants(),

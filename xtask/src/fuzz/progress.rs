@@ -37,9 +37,7 @@ impl Progress {
                 _ => continue,
             };
             let number = words.next().and_then(|word| word.split('/').next());
-            *place = number
-                .and_then(|number| number.parse().ok())
-                .unwrap_or(*place);
+            *place = number.and_then(|number| number.parse().ok()).unwrap_or(*place);
         }
     }
 
@@ -66,17 +64,9 @@ pub struct Reached {
 /// Formats a row of the table.
 impl fmt::Display for Reached {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Progress {
-            executions,
-            edges,
-            features,
-            inputs,
-        } = self.progress;
+        let Progress { executions, edges, features, inputs } = self.progress;
         let per_s = executions as f64 / self.time.as_secs_f64().max(1e-3);
-        write!(
-            f,
-            "{executions:>14}{per_s:>10.0}{edges:>8}{features:>10}{inputs:>8}"
-        )
+        write!(f, "{executions:>14}{per_s:>10.0}{edges:>8}{features:>10}{inputs:>8}")
     }
 }
 
@@ -93,12 +83,7 @@ mod tests {
         progress.take("#2\tINITED cov: 3 ft: 3 corp: 1/1b exec/s: 0 rss: 24Mb");
         progress
             .take("#3811\tNEW    cov: 4 ft: 5 corp: 2/2b lim: 4 exec/s: 0 rss: 25Mb L: 1/1 MS: 5 ChangeBit-");
-        let expected = Progress {
-            executions: 3811,
-            edges: 4,
-            features: 5,
-            inputs: 2,
-        };
+        let expected = Progress { executions: 3811, edges: 4, features: 5, inputs: 2 };
         assert_eq!(progress, expected);
         progress.take("stat::number_of_executed_units: 5000");
         assert_eq!(progress.executions, 5000);

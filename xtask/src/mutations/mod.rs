@@ -33,21 +33,11 @@ struct Mutation {
 
 impl Mutation {
     fn fingers(&self) -> &'static str {
-        if self.fingers.is_empty() {
-            "1"
-        } else {
-            self.fingers
-        }
+        if self.fingers.is_empty() { "1" } else { self.fingers }
     }
 
     fn apply(&self, text: &str) -> Result<String> {
-        let Self {
-            detector,
-            file,
-            before,
-            after,
-            ..
-        } = self;
+        let Self { detector, file, before, after, .. } = self;
         let count = text.matches(before).count();
         ensure!(
             count == 1,
@@ -72,10 +62,7 @@ fn mutations() -> Result<Vec<Mutation>> {
             continue;
         }
         if let Some(name) = line.strip_prefix('[') {
-            all.push(Mutation {
-                detector: name.trim_end_matches(']'),
-                ..Mutation::default()
-            });
+            all.push(Mutation { detector: name.trim_end_matches(']'), ..Mutation::default() });
             continue;
         }
         let last = all.last_mut().context("a line before the first detector")?;
@@ -110,27 +97,18 @@ pub fn run(names: &[String]) -> Result<()> {
         faults.sort_unstable();
         faults.dedup();
         if !faults.is_empty() {
-            matrix(&copy, (engine, fingers), &faults)
-                .run_to_stderr()
-                .context(UNCHANGED)?;
+            matrix(&copy, (engine, fingers), &faults).run_to_stderr().context(UNCHANGED)?;
         }
     }
     let mut tests: Vec<_> = mutations.iter().filter_map(|one| one.tests).collect();
     tests.sort_unstable();
     tests.dedup();
     for tests in tests {
-        unit_tests(&copy, tests, &[])
-            .run_to_stderr()
-            .context(UNCHANGED)?;
+        unit_tests(&copy, tests, &[]).run_to_stderr().context(UNCHANGED)?;
     }
     let mut unrevealed = Vec::new();
     for (number, mutation) in mutations.iter().enumerate() {
-        eprintln!(
-            "mutation {} of {}: {}",
-            number + 1,
-            mutations.len(),
-            mutation.detector
-        );
+        eprintln!("mutation {} of {}: {}", number + 1, mutations.len(), mutation.detector);
         let path = copy.join(mutation.file);
         let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
         fs::write(&path, mutation.apply(&text)?)?;
@@ -158,11 +136,7 @@ pub fn run(names: &[String]) -> Result<()> {
         .run_to_stderr()
         .is_err();
         fs::write(&path, text)?;
-        println!(
-            "{:20} {}",
-            mutation.detector,
-            if revealed { "revealed" } else { "NOT revealed" }
-        );
+        println!("{:20} {}", mutation.detector, if revealed { "revealed" } else { "NOT revealed" });
         if !revealed {
             unrevealed.push(mutation.detector);
         }
@@ -222,11 +196,8 @@ fn unit_tests(copy: &Path, (package, name): (&str, &str), options: &[&str]) -> I
             .args(options.iter().map(OsString::from))
             .env("CARGO_TARGET_DIR", target.to_string_lossy());
     }
-    let mut line: Vec<_> = [&["test", "--package", package], kind]
-        .concat()
-        .into_iter()
-        .map(OsString::from)
-        .collect();
+    let mut line: Vec<_> =
+        [&["test", "--package", package], kind].concat().into_iter().map(OsString::from).collect();
     line.extend(["--manifest-path".into(), copy.join("Cargo.toml").into()]);
     line.extend(["--target-dir".into(), target.into()]);
     line.extend(options.iter().map(OsString::from));
@@ -238,12 +209,7 @@ fn unit_tests(copy: &Path, (package, name): (&str, &str), options: &[&str]) -> I
 fn matrix(copy: &Path, (engine, fingers): (&str, &str), faults: &[&str]) -> Invocation {
     let mut line = hil_sim(copy, "run");
     let options = ["--", "faults", "--engine", engine, "--moments", "4"];
-    line.extend(
-        options
-            .into_iter()
-            .chain(["--fingers", fingers])
-            .map(OsString::from),
-    );
+    line.extend(options.into_iter().chain(["--fingers", fingers]).map(OsString::from));
     line.push("--only".into());
     line.extend(faults.iter().map(OsString::from));
     Invocation::cargo(line)

@@ -36,11 +36,7 @@ everything from its headers, tile and power stage first.";
 
 /// `cargo xtask on-target`
 pub fn run(permission: Permission, options: &Options) -> Result<()> {
-    let needs = if options.emulated {
-        Needs::EMULATOR
-    } else {
-        Needs::default()
-    };
+    let needs = if options.emulated { Needs::EMULATOR } else { Needs::default() };
     let toolchain = setup::prepare(needs, permission)?;
     if options.no_run {
         println!("{}", build(&toolchain)?);
@@ -52,9 +48,7 @@ pub fn run(permission: Permission, options: &Options) -> Result<()> {
         Invocation::run_package("hil-sim", ["embedded-tests", &elf]).args(filter)
     } else {
         find_board(permission)?;
-        firmware::tests(&toolchain, "test")
-            .args(["--"])
-            .args(filter)
+        firmware::tests(&toolchain, "test").args(["--"]).args(filter)
     };
     let mut figures = Vec::new();
     tests.run_line_by_line(|line| {
@@ -64,11 +58,7 @@ pub fn run(permission: Permission, options: &Options) -> Result<()> {
     if options.check || options.filter.is_some() {
         return Ok(());
     }
-    let column = if options.emulated {
-        Column::Emulated
-    } else {
-        Column::Board
-    };
+    let column = if options.emulated { Column::Emulated } else { Column::Board };
     let path = workspace().join(page::PATH);
     let text = std::fs::read_to_string(&path).with_context(|| page::PATH.to_owned())?;
     let filled = page::fill(&text, column, &figures, &origin(&toolchain))?;
@@ -84,9 +74,8 @@ fn build(toolchain: &Toolchain) -> Result<String> {
         .args(["--no-run", "--message-format", "json-render-diagnostics"])
         .run_line_by_line(|message| {
             let path = message.split_once("\"executable\":\"");
-            elf = path
-                .and_then(|(_, rest)| Some(rest.split_once('"')?.0.to_owned()))
-                .or(elf.take());
+            elf =
+                path.and_then(|(_, rest)| Some(rest.split_once('"')?.0.to_owned())).or(elf.take());
         })?;
     elf.context("cargo names no test program")
 }
@@ -97,9 +86,7 @@ fn find_board(permission: Permission) -> Result<()> {
         on_path("probe-rs").is_some(),
         "probe-rs is not installed: cargo install probe-rs-tools; without a board, --emulated runs the same tests"
     );
-    let probes = Invocation::new("probe-rs", ["list"])
-        .answer()
-        .unwrap_or_default();
+    let probes = Invocation::new("probe-rs", ["list"]).answer().unwrap_or_default();
     ensure!(
         probes.to_lowercase().contains("st-link"),
         "probe-rs finds no ST-LINK; `probe-rs list` prints: {probes}\nWithout a board, --emulated runs the same tests"
@@ -108,10 +95,7 @@ fn find_board(permission: Permission) -> Result<()> {
     if permission.yes {
         return Ok(());
     }
-    ensure!(
-        std::io::stdin().is_terminal(),
-        "there is no terminal to ask on; --yes agrees"
-    );
+    ensure!(std::io::stdin().is_terminal(), "there is no terminal to ask on; --yes agrees");
     eprint!("Is it bare? [y/N] ");
     std::io::stderr().flush()?;
     let mut answer = String::new();
@@ -128,8 +112,5 @@ fn origin(toolchain: &Toolchain) -> String {
     let commit = answer(Invocation::new("git", ["rev-parse", "--short", "HEAD"]));
     let changed = !answer(Invocation::new("git", ["status", "--porcelain", "-uno"])).is_empty();
     let compiler = answer(toolchain.rustc_version());
-    format!(
-        "{compiler}, commit {commit}{}",
-        if changed { " with changes" } else { "" }
-    )
+    format!("{compiler}, commit {commit}{}", if changed { " with changes" } else { "" })
 }

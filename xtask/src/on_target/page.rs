@@ -19,10 +19,7 @@ pub struct Measured {
 pub fn figure(line: &str) -> Option<Measured> {
     let (_, words) = line.split_once(PREFIX)?;
     let mut words = words.split_whitespace();
-    Some(Measured {
-        key: words.next()?.into(),
-        value: words.next()?.into(),
-    })
+    Some(Measured { key: words.next()?.into(), value: words.next()?.into() })
 }
 
 /// A kind of run.
@@ -71,17 +68,9 @@ pub fn fill(page: &str, column: Column, figures: &[Measured], origin: &str) -> R
         cells.join("|")
     });
     let filled = lines.collect::<Vec<_>>().join("\n") + "\n";
-    ensure!(
-        missing.is_empty(),
-        "no test has printed {}",
-        missing.join(", ")
-    );
+    ensure!(missing.is_empty(), "no test has printed {}", missing.join(", "));
     let unknown: Vec<_> = left.iter().map(|figure| figure.key.as_str()).collect();
-    ensure!(
-        unknown.is_empty(),
-        "{PATH} has no row for {}",
-        unknown.join(", ")
-    );
+    ensure!(unknown.is_empty(), "{PATH} has no row for {}", unknown.join(", "));
     Ok(filled)
 }
 
@@ -108,14 +97,10 @@ On a board: nobody.
 ";
 
     fn measured() -> Vec<Measured> {
-        [
-            "figure tick 12.5 cycles",
-            "test a::b ... figure lock 3 cycles",
-            "test a::b ... ok",
-        ]
-        .iter()
-        .filter_map(|line| figure(line))
-        .collect()
+        ["figure tick 12.5 cycles", "test a::b ... figure lock 3 cycles", "test a::b ... ok"]
+            .iter()
+            .filter_map(|line| figure(line))
+            .collect()
     }
 
     #[test]

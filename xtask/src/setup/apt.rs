@@ -31,11 +31,9 @@ enum Consent {
 fn consent(situation: &Situation) -> Consent {
     match situation {
         Situation { apt: false, .. } => Consent::Refused("there is no apt-get to install it with"),
-        Situation {
-            root: false,
-            sudo: false,
-            ..
-        } => Consent::Refused("installing needs root, and there is no sudo"),
+        Situation { root: false, sudo: false, .. } => {
+            Consent::Refused("installing needs root, and there is no sudo")
+        }
         Situation { agreed: true, .. } => Consent::Given,
         Situation { terminal: true, .. } => Consent::Ask,
         _ => Consent::Refused(
@@ -46,9 +44,7 @@ fn consent(situation: &Situation) -> Consent {
 
 /// Installs the missing packages, after asking if necessary; an error names the commands to run.
 pub fn install(missing: &[Missing], yes: bool) -> Result<()> {
-    let root = Invocation::new("id", ["-u"])
-        .answer()
-        .is_some_and(|uid| uid.trim() == "0");
+    let root = Invocation::new("id", ["-u"]).answer().is_some_and(|uid| uid.trim() == "0");
     let situation = Situation {
         apt: on_path("apt-get").is_some(),
         root,
@@ -90,10 +86,8 @@ pub fn install(missing: &[Missing], yes: bool) -> Result<()> {
 
 /// The missing tools and the commands that install them, indented for the end of a message.
 pub fn advice(missing: &[Missing]) -> String {
-    let mut lines: Vec<String> = missing
-        .iter()
-        .map(|missing| format!("  {}", missing.what))
-        .collect();
+    let mut lines: Vec<String> =
+        missing.iter().map(|missing| format!("  {}", missing.what)).collect();
     // One line for each command, in the order of first use.
     let apt = "apt-get update && apt-get install -y --no-install-recommends";
     let mut ways: Vec<(&str, Vec<&str>)> = vec![(apt, packages(missing))];
@@ -108,26 +102,17 @@ pub fn advice(missing: &[Missing]) -> String {
     ways.retain(|(_, operands)| !operands.is_empty());
     lines.push("provided by (whichever your system has)".into());
     lines.extend(
-        ways.iter()
-            .map(|(command, operands)| format!("  {command} {}", operands.join(" "))),
+        ways.iter().map(|(command, operands)| format!("  {command} {}", operands.join(" "))),
     );
     lines.join("\n")
 }
 
 fn names(missing: &[Missing]) -> String {
-    missing
-        .iter()
-        .map(|missing| missing.what)
-        .collect::<Vec<_>>()
-        .join(", ")
+    missing.iter().map(|missing| missing.what).collect::<Vec<_>>().join(", ")
 }
 
 fn packages(missing: &[Missing]) -> Vec<&'static str> {
-    missing
-        .iter()
-        .flat_map(|missing| missing.apt)
-        .copied()
-        .collect()
+    missing.iter().flat_map(|missing| missing.apt).copied().collect()
 }
 
 /// The commands that update the package lists and install, each with a time limit.
@@ -140,23 +125,16 @@ fn commands(packages: &[&str], root: bool) -> [Invocation; 2] {
         APT_LIMIT_S,
         "apt-get",
     ];
-    let options = [
-        "-o",
-        "Acquire::http::Timeout=30",
-        "-o",
-        "DPkg::Lock::Timeout=120",
-    ];
-    [
-        &["update"][..],
-        &[&["install", "-y", "--no-install-recommends"], packages].concat(),
-    ]
-    .map(|verb| {
-        let mut words = [&bounded[..], &options, verb].concat();
-        if !root {
-            words.insert(0, "sudo");
-        }
-        Invocation::new(words[0], words[1..].iter().copied())
-    })
+    let options = ["-o", "Acquire::http::Timeout=30", "-o", "DPkg::Lock::Timeout=120"];
+    [&["update"][..], &[&["install", "-y", "--no-install-recommends"], packages].concat()].map(
+        |verb| {
+            let mut words = [&bounded[..], &options, verb].concat();
+            if !root {
+                words.insert(0, "sudo");
+            }
+            Invocation::new(words[0], words[1..].iter().copied())
+        },
+    )
 }
 
 #[cfg(test)]
@@ -198,10 +176,7 @@ mod tests {
         let (user, root) = (install(false), install(true));
         assert!(user.starts_with("sudo env "), "{user}");
         assert!(root.starts_with("env "), "{root}");
-        assert!(
-            root.ends_with(" install -y --no-install-recommends cmake"),
-            "{root}"
-        );
+        assert!(root.ends_with(" install -y --no-install-recommends cmake"), "{root}");
     }
 
     #[test]
@@ -217,10 +192,7 @@ mod tests {
             elsewhere: &["dnf install c", "xcode-select --install"],
         };
         let advice = advice(&[one, two]);
-        assert!(
-            advice.contains("install -y --no-install-recommends a-dev b c\n"),
-            "{advice}"
-        );
+        assert!(advice.contains("install -y --no-install-recommends a-dev b c\n"), "{advice}");
         assert_eq!(advice.matches("xcode-select").count(), 1, "{advice}");
         assert!(advice.contains("\n  dnf install a c"), "{advice}");
     }

@@ -24,11 +24,7 @@ const C_COMPILER: Missing = Missing {
 const LIBCLANG: Missing = Missing {
     what: "libclang with its headers",
     apt: &["libclang-dev"],
-    elsewhere: &[
-        "dnf install clang-devel",
-        "pacman -S clang",
-        "brew install llvm",
-    ],
+    elsewhere: &["dnf install clang-devel", "pacman -S clang", "brew install llvm"],
 };
 const CPP_COMPILER: Missing = Missing {
     what: "a C++ compiler",
@@ -61,9 +57,7 @@ pub fn missing(needs: Needs) -> Vec<Missing> {
 fn has_libclang() -> bool {
     if let Some(path) = env::var_os("LIBCLANG_PATH").map(PathBuf::from) {
         return holds_libclang(&path)
-            || path
-                .file_name()
-                .is_some_and(|name| is_libclang(&name.to_string_lossy()));
+            || path.file_name().is_some_and(|name| is_libclang(&name.to_string_lossy()));
     }
     let folders = library_folders();
     folders.iter().any(|folder| holds_libclang(folder))
@@ -78,18 +72,8 @@ fn library_folders() -> Vec<PathBuf> {
         .map(|text| text.trim().into())
         .into_iter()
         .collect();
-    folders.extend(
-        env::var_os("LD_LIBRARY_PATH")
-            .iter()
-            .flat_map(env::split_paths),
-    );
-    for root in [
-        "/usr/lib",
-        "/usr/lib64",
-        "/usr/local/lib",
-        "/usr/local/lib64",
-    ]
-    .map(PathBuf::from)
+    folders.extend(env::var_os("LD_LIBRARY_PATH").iter().flat_map(env::split_paths));
+    for root in ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64"].map(PathBuf::from)
     {
         // Such as /usr/lib/x86_64-linux-gnu and /usr/lib/llvm-14/lib.
         for folder in entries(&root).filter(|folder| folder.is_dir()) {
@@ -110,18 +94,12 @@ fn library_folders() -> Vec<PathBuf> {
 }
 
 fn entries(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
-    fs::read_dir(folder)
-        .into_iter()
-        .flatten()
-        .flatten()
-        .map(|entry| entry.path())
+    fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path())
 }
 
 fn holds_libclang(folder: &Path) -> bool {
-    entries(folder).any(|path| {
-        path.file_name()
-            .is_some_and(|name| is_libclang(&name.to_string_lossy()))
-    })
+    entries(folder)
+        .any(|path| path.file_name().is_some_and(|name| is_libclang(&name.to_string_lossy())))
 }
 
 /// Whether `folder/clang/VERSION/include` has the compiler's headers, without which libclang cannot parse C.
@@ -134,10 +112,8 @@ fn is_libclang(name: &str) -> bool {
     let Some(rest) = name.strip_prefix("libclang") else {
         return false;
     };
-    let (shared, cpp) = (
-        rest.contains(".so") || rest.ends_with(".dylib"),
-        rest.starts_with("-cpp"),
-    );
+    let (shared, cpp) =
+        (rest.contains(".so") || rest.ends_with(".dylib"), rest.starts_with("-cpp"));
     shared && !cpp && rest.starts_with(['.', '-'])
 }
 

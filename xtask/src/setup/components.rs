@@ -15,17 +15,11 @@ pub struct Lints {
 
 impl Lints {
     /// Both tools.
-    pub const ALL: Self = Self {
-        rustfmt: true,
-        clippy: true,
-    };
+    pub const ALL: Self = Self { rustfmt: true, clippy: true };
 
     fn probe() -> Self {
         let runs = |tool: &str| Invocation::cargo([tool, "--version"]).answer().is_some();
-        Self {
-            rustfmt: runs("fmt"),
-            clippy: runs("clippy"),
-        }
+        Self { rustfmt: runs("fmt"), clippy: runs("clippy") }
     }
 
     fn missing(self) -> Vec<&'static str> {
@@ -38,10 +32,7 @@ impl Lints {
     fn accept(self, ci: bool) -> Result<Self> {
         let missing = self.missing();
         if ci && !missing.is_empty() {
-            bail!(
-                "CI is set, and {0} missing: rustup component add {0}",
-                missing.join(" ")
-            );
+            bail!("CI is set, and {0} missing: rustup component add {0}", missing.join(" "));
         }
         Ok(self)
     }
@@ -54,10 +45,7 @@ pub fn prepare(ci: bool) -> Result<Lints> {
     if missing.is_empty() || on_path("rustup").is_none() {
         return found.accept(ci);
     }
-    let add = Invocation::new(
-        "rustup",
-        ["component", "add"].iter().chain(&missing).copied(),
-    );
+    let add = Invocation::new("rustup", ["component", "add"].iter().chain(&missing).copied());
     eprintln!("fetching: {add} (at most {} s)", RUSTUP_LIMIT.as_secs());
     if let Err(error) = add.run_bounded(RUSTUP_LIMIT) {
         eprintln!("{error}");
@@ -71,10 +59,7 @@ mod tests {
 
     #[test]
     fn a_missing_tool_is_an_error_in_continuous_integration_only() {
-        let no_clippy = Lints {
-            clippy: false,
-            ..Lints::ALL
-        };
+        let no_clippy = Lints { clippy: false, ..Lints::ALL };
         assert_eq!(Lints::ALL.accept(true).unwrap(), Lints::ALL);
         assert_eq!(no_clippy.accept(false).unwrap(), no_clippy);
         let error = no_clippy.accept(true).unwrap_err().to_string();

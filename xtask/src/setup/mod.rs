@@ -116,10 +116,9 @@ pub fn prepare(needs: Needs, permission: Permission) -> Result<Toolchain> {
                 eprintln!("cross compiler: {toolchain}");
                 return Ok(toolchain);
             }
-            _ if packages_tried => bail!(
-                "still missing after the installation:\n{}",
-                apt::advice(&missing)
-            ),
+            _ if packages_tried => {
+                bail!("still missing after the installation:\n{}", apt::advice(&missing))
+            }
             _ => apt::install(&missing, permission.yes)?,
         }
         packages_tried = true;

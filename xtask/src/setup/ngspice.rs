@@ -5,11 +5,7 @@ use crate::process::on_path;
 const NGSPICE: Missing = Missing {
     what: "ngspice",
     apt: &["ngspice"],
-    elsewhere: &[
-        "dnf install ngspice",
-        "pacman -S ngspice",
-        "brew install ngspice",
-    ],
+    elsewhere: &["dnf install ngspice", "pacman -S ngspice", "brew install ngspice"],
 };
 
 /// Installs ngspice if it is missing. Where that fails, as without a network, says so: the benches are then skipped.

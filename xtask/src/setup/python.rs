@@ -22,11 +22,7 @@ const PACKAGE_NEEDS: &str = "python/pyproject.toml";
 const VENV: Missing = Missing {
     what: "Python 3.10 or later with its module venv",
     apt: &["python3-venv"],
-    elsewhere: &[
-        "dnf install python3",
-        "pacman -S python",
-        "brew install python",
-    ],
+    elsewhere: &["dnf install python3", "pacman -S python", "brew install python"],
 };
 
 /// Installs mpmath in a virtual environment, unless there is a Python that has it. Where that fails, as without a network,
@@ -139,10 +135,7 @@ mod tests {
         let [venv, build, needs] = package_commands().map(|command| command.to_string());
         assert_eq!(venv, "python3 -m venv --clear target/python-package");
         for pip in [build, needs] {
-            assert!(
-                pip.contains("/target/python-package/bin/python3 -m pip"),
-                "{pip}"
-            );
+            assert!(pip.contains("/target/python-package/bin/python3 -m pip"), "{pip}");
         }
     }
 }

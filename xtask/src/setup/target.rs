@@ -75,16 +75,11 @@ pub fn decide(choice: Choice, found: &Found, lints: bool, rustup_tried: bool) ->
     let needed = needed_version();
     let new_enough = |version: Option<(u32, u32)>| version.is_some_and(|version| version >= needed);
     let compiles = new_enough(found.rustc) && new_enough(found.cargo) && found.source;
-    let lacks = [
-        (compiles, COMPILER),
-        (found.linker.is_some(), LINKER),
-        (found.clippy || !lints, CLIPPY),
-    ];
+    let lacks =
+        [(compiles, COMPILER), (found.linker.is_some(), LINKER), (found.clippy || !lints, CLIPPY)];
     match &found.linker {
         Some(linker) if lacks.iter().all(|(there, _)| *there) => {
-            Decision::Use(Toolchain::Distribution(Distribution {
-                linker: linker.clone(),
-            }))
+            Decision::Use(Toolchain::Distribution(Distribution { linker: linker.clone() }))
         }
         _ if choice == Choice::Auto && found.rustup && !rustup_tried => Decision::AddWithRustup,
         _ => Decision::Lacks(super::missing(&lacks)),
@@ -97,20 +92,15 @@ pub fn probe() -> Found {
     let print =
         |program: &str, args: &[&str]| Invocation::new(program, args.iter().copied()).answer();
     let folder = |text: Option<String>| text.map(|text| PathBuf::from(text.trim()));
-    let target_libraries = folder(print(
-        &rustc,
-        &["--print", "target-libdir", "--target", TARGET],
-    ));
+    let target_libraries = folder(print(&rustc, &["--print", "target-libdir", "--target", TARGET]));
     let distribution_root = folder(print(RUSTC, &["--print", "sysroot"]));
     Found {
         active_has_target: target_libraries.is_some_and(|path| path.is_dir()),
         rustup: on_path("rustup").is_some(),
         rustc: print(RUSTC, &["--version"]).as_deref().and_then(version),
         cargo: print(CARGO, &["--version"]).as_deref().and_then(version),
-        source: distribution_root.is_some_and(|root| {
-            root.join("lib/rustlib/src/rust/library/Cargo.toml")
-                .is_file()
-        }),
+        source: distribution_root
+            .is_some_and(|root| root.join("lib/rustlib/src/rust/library/Cargo.toml").is_file()),
         clippy: Path::new(CARGO_CLIPPY).is_file(),
         linker: folder(print(&rustc, &["--print", "target-libdir"]))
             .and_then(|libraries| Some(libraries.parent()?.join("bin/rust-lld")))
@@ -122,10 +112,7 @@ pub fn probe() -> Found {
 /// Has rustup fetch the target for the active toolchain.
 pub fn add_with_rustup() -> Result<()> {
     let add = Invocation::new("rustup", ["target", "add", TARGET]);
-    eprintln!(
-        "fetching the target: {add} (at most {} s)",
-        RUSTUP_LIMIT.as_secs()
-    );
+    eprintln!("fetching the target: {add} (at most {} s)", RUSTUP_LIMIT.as_secs());
     add.run_bounded(RUSTUP_LIMIT)
 }
 
@@ -161,9 +148,7 @@ mod tests {
     }
 
     fn distribution() -> Decision {
-        Decision::Use(Toolchain::Distribution(Distribution {
-            linker: "/lib/rust-lld".into(),
-        }))
+        Decision::Use(Toolchain::Distribution(Distribution { linker: "/lib/rust-lld".into() }))
     }
 
     #[test]
@@ -194,24 +179,15 @@ mod tests {
 
     #[test]
     fn clippy_is_required_only_for_lints() {
-        let found = Found {
-            clippy: false,
-            ..complete()
-        };
+        let found = Found { clippy: false, ..complete() };
         assert_eq!(decide(Choice::Auto, &found, false, true), distribution());
-        assert_eq!(
-            decide(Choice::Auto, &found, true, true),
-            Decision::Lacks(vec![CLIPPY])
-        );
+        assert_eq!(decide(Choice::Auto, &found, true, true), Decision::Lacks(vec![CLIPPY]));
     }
 
     #[test]
     fn versions_are_parsed_from_the_tools_output() {
         let cases = [
-            (
-                "rustc 1.96.0 (ac68faa20 2026-05-25) (built from a source tarball)",
-                Some((1, 96)),
-            ),
+            ("rustc 1.96.0 (ac68faa20 2026-05-25) (built from a source tarball)", Some((1, 96))),
             ("cargo 1.98.0-nightly (f298b8c82 2026-05-22)", Some((1, 98))),
             ("rustc 2.0", Some((2, 0))),
             ("rustc", None),
@@ -220,9 +196,6 @@ mod tests {
         for (answer, expected) in cases {
             assert_eq!(version(answer), expected, "{answer}");
         }
-        assert!(
-            needed_version() > (1, 85),
-            "the 2024 edition needs 1.85 at least"
-        );
+        assert!(needed_version() > (1, 85), "the 2024 edition needs 1.85 at least");
     }
 }

@@ -90,19 +90,13 @@ impl Distribution {
     pub fn cargo(&self, subcommand: &str) -> Invocation {
         let (program, args) = match subcommand {
             // Called directly: cargo would prefer a clippy in the user's own folder of cargo programs.
-            "clippy" => (
-                CARGO_CLIPPY,
-                ["clippy", "-Zbuild-std=core,compiler_builtins"],
-            ),
+            "clippy" => (CARGO_CLIPPY, ["clippy", "-Zbuild-std=core,compiler_builtins"]),
             _ => (CARGO, [subcommand, "-Zbuild-std=core,compiler_builtins"]),
         };
         Invocation::new(program, args)
             .env("RUSTC", RUSTC)
             .env("RUSTC_BOOTSTRAP", "1")
-            .env(
-                "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER",
-                self.linker.to_string_lossy(),
-            )
+            .env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", self.linker.to_string_lossy())
             .without(&[
                 "RUSTUP_TOOLCHAIN",
                 "RUSTDOC",
@@ -123,10 +117,9 @@ impl fmt::Display for Toolchain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Active => write!(f, "the active toolchain with {TARGET}"),
-            Self::Distribution(_) => write!(
-                f,
-                "the distribution's {RUSTC}, core library built for {TARGET}"
-            ),
+            Self::Distribution(_) => {
+                write!(f, "the distribution's {RUSTC}, core library built for {TARGET}")
+            }
         }
     }
 }
@@ -137,15 +130,8 @@ mod tests {
 
     #[test]
     fn the_distributions_tools_are_called_by_absolute_paths() {
-        let line = Distribution {
-            linker: "/lib/rust-lld".into(),
-        }
-        .cargo("build")
-        .to_string();
-        assert!(
-            line.contains("RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 "),
-            "{line}"
-        );
+        let line = Distribution { linker: "/lib/rust-lld".into() }.cargo("build").to_string();
+        assert!(line.contains("RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 "), "{line}");
         assert!(
             line.ends_with(" /usr/bin/cargo build -Zbuild-std=core,compiler_builtins"),
             "{line}"

@@ -56,10 +56,7 @@ pub fn run(lanes: &[Lane], steps: &mut Steps) -> Result<()> {
         Ok(())
     };
     thread::scope(|scope| {
-        let lanes: Vec<_> = lanes
-            .iter()
-            .map(|lane| scope.spawn(|| run_lane(lane)))
-            .collect();
+        let lanes: Vec<_> = lanes.iter().map(|lane| scope.spawn(|| run_lane(lane))).collect();
         let results = lanes.into_iter().map(|lane| lane.join());
         results
             .map(|result| result.unwrap_or_else(|_| Err(anyhow!("a lane of the suite panicked"))))
@@ -97,18 +94,13 @@ mod tests {
     use super::*;
 
     fn check(title: &'static str, script: &str) -> Check {
-        Check {
-            title,
-            commands: Ok(vec![Invocation::new("sh", ["-c", script])]),
-        }
+        Check { title, commands: Ok(vec![Invocation::new("sh", ["-c", script])]) }
     }
 
     #[test]
     fn a_failure_is_reported_with_its_output_and_stops_its_lane() {
-        let failing = vec![
-            check("test fails", "echo reason; exit 1"),
-            check("test after", "exit 0"),
-        ];
+        let failing =
+            vec![check("test fails", "echo reason; exit 1"), check("test after", "exit 0")];
         let passing = vec![check("test passes", "true")];
         let mut steps = Steps::new(3);
         let error = run(&[failing, passing], &mut steps).unwrap_err();

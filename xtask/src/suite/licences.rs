@@ -46,10 +46,7 @@ pub fn check(tree: &str, with_emulator: bool) -> Result<()> {
 
 /// Whether allowed licences are enough for an SPDX expression; `None` if it is none. Its older form has `/` for `OR`.
 fn permits(expression: &str, allowed: &dyn Fn(&str) -> bool) -> Option<bool> {
-    let spaced = expression
-        .replace('/', " OR ")
-        .replace('(', " ( ")
-        .replace(')', " ) ");
+    let spaced = expression.replace('/', " OR ").replace('(', " ( ").replace(')', " ) ");
     let mut words = spaced.split_ascii_whitespace().peekable();
     let permitted = any_of(&mut words, allowed)?;
     words.next().is_none().then_some(permitted)
@@ -104,17 +101,8 @@ mod tests {
                 ALLOWED.join(", ")
             )
         );
-        for forbidden in [
-            "LGPL-2.1-or-later",
-            "GPL-3.0-only",
-            "MPL-2.0",
-            "",
-            "MIT AND GPL-2.0",
-        ] {
-            assert!(
-                check(&format!("x v1.0.0|{forbidden}"), false).is_err(),
-                "{forbidden}"
-            );
+        for forbidden in ["LGPL-2.1-or-later", "GPL-3.0-only", "MPL-2.0", "", "MIT AND GPL-2.0"] {
+            assert!(check(&format!("x v1.0.0|{forbidden}"), false).is_err(), "{forbidden}");
         }
         assert!(check("a line without a licence", true).is_err());
     }

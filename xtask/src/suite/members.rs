@@ -12,13 +12,8 @@ use crate::setup::TARGET;
 const EMULATOR: &str = "unicorn-engine";
 /// Packages that may depend on it; every other member of the workspace may not. A build of the whole workspace would not
 /// notice if one did.
-const WITH_EMULATOR: [&str; 5] = [
-    "stm32-emulator",
-    "hil-sim",
-    "image-proof",
-    "image-tests",
-    "model-bench",
-];
+const WITH_EMULATOR: [&str; 5] =
+    ["stm32-emulator", "hil-sim", "image-proof", "image-tests", "model-bench"];
 
 /// A package of the workspace.
 #[derive(Clone, Debug)]
@@ -31,9 +26,7 @@ pub struct Member {
 /// All members.
 pub fn all() -> Result<Vec<Member>> {
     let tree = Invocation::cargo("tree --workspace --depth 0 --prefix none".split(' '));
-    let tree = tree
-        .answer()
-        .context("cargo cannot list the workspace's members")?;
+    let tree = tree.answer().context("cargo cannot list the workspace's members")?;
     let lines = tree.lines().filter(|line| !line.is_empty());
     lines.map(member).collect()
 }
@@ -44,10 +37,7 @@ fn member(line: &str) -> Result<Member> {
     let ((name, _), (_, folder)) = parts.with_context(|| format!("no member: {line}"))?;
     let folder = Path::new(folder.trim_end_matches([')', '*', ' ']));
     let folder = folder.strip_prefix(workspace()).context(line.to_owned())?;
-    Ok(Member {
-        name: name.into(),
-        folder: folder.into(),
-    })
+    Ok(Member { name: name.into(), folder: folder.into() })
 }
 
 impl Member {
@@ -79,10 +69,7 @@ pub fn options(members: &[Member], chosen: fn(&Member) -> bool) -> String {
 pub fn check_dependencies(members: &[Member]) -> Result<()> {
     for member in members {
         let name = &member.name;
-        check_package(
-            &format!("--package {name} --all-features"),
-            member.is_native(),
-        )?;
+        check_package(&format!("--package {name} --all-features"), member.is_native())?;
     }
     check_package("--package hil-sim --no-default-features", true)?;
     auxiliary_image::fetch_foreign()?;

@@ -21,10 +21,7 @@ const NO_CLIPPY: &str = "the active toolchain has no clippy";
 
 /// A check by command lines of cargo.
 fn check<const N: usize>(title: &'static str, lines: [&str; N]) -> Check {
-    Check {
-        title,
-        commands: Ok(lines.map(cargo).into()),
-    }
+    Check { title, commands: Ok(lines.map(cargo).into()) }
 }
 
 /// A command line of cargo. Where it runs tests and the set-up has found or installed mpmath, the generators of golden
@@ -49,11 +46,7 @@ fn only_if(there: bool, why: &'static str, check: Check) -> Check {
 
 fn formatting(lints: Lints) -> Check {
     let why = "the active toolchain has no rustfmt";
-    only_if(
-        lints.rustfmt,
-        why,
-        check("formatting", ["fmt --all --check"]),
-    )
+    only_if(lints.rustfmt, why, check("formatting", ["fmt --all --check"]))
 }
 
 /// Figures in the documents are those of `docs/figures.toml`, and tests assert them.
@@ -81,10 +74,7 @@ fn package(python: Option<&str>) -> Check {
             tests.env("THERMAL_DISPLAY_HIL_SIM", hil_sim.to_string_lossy()),
         ]
     });
-    Check {
-        title: "package for Python",
-        commands,
-    }
+    Check { title: "package for Python", commands }
 }
 
 /// What the windows show, without a display. The windows themselves are checked by a job of `cargo xtask soak`. `hil-sim` is
@@ -107,20 +97,13 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
     let small = vec![
         formatting(lints),
         figures(),
-        only_if(
-            lints.clippy,
-            NO_CLIPPY,
-            check("lints of model, firmware and xtask", [&clippy]),
-        ),
+        only_if(lints.clippy, NO_CLIPPY, check("lints of model, firmware and xtask", [&clippy])),
         units(members),
     ];
     // The power cuts and flipped bits of stored settings are left out for the sake of the quick suite's time.
     let native =
         "test --release --quiet --package system-tests --test native -- --skip settings_storage";
-    vec![vec![
-        small,
-        vec![check("native device on the simulated plant", [native])],
-    ]]
+    vec![vec![small, vec![check("native device on the simulated plant", [native])]]]
 }
 
 /// All checks: phases, in each of which lanes run side by side. Programs of the host are compiled in the release profile only,
@@ -132,10 +115,7 @@ fn whole(
     python: Option<&str>,
 ) -> Vec<Vec<Lane>> {
     let firmware_lints = lints.clippy || matches!(toolchain, Toolchain::Distribution(_));
-    let image = |title, line| Check {
-        title,
-        commands: Ok(vec![choice.handed_to(cargo(line))]),
-    };
+    let image = |title, line| Check { title, commands: Ok(vec![choice.handed_to(cargo(line))]) };
     let images = vec![
         image("image for one finger", "xtask firmware"),
         image("image for five fingers", "xtask firmware --fingers 5"),
@@ -164,19 +144,12 @@ fn whole(
         formatting(lints),
         figures(),
         check("hil-sim without the emulator", [without_emulator]),
-        only_if(
-            lints.clippy,
-            NO_CLIPPY,
-            check("lints of the host's code", [lints_of_all]),
-        ),
+        only_if(lints.clippy, NO_CLIPPY, check("lints of the host's code", [lints_of_all])),
         Check {
             title: "documentation",
             commands: Ok(vec![documentation.env("RUSTDOCFLAGS", "-Dwarnings")]),
         },
-        check(
-            "test programs",
-            ["test --release --workspace --tests --no-run --quiet"],
-        ),
+        check("test programs", ["test --release --workspace --tests --no-run --quiet"]),
     ];
     let tests = |which: &str| {
         let line = format!("test --release --no-fail-fast {which}");
@@ -192,24 +165,15 @@ fn whole(
         vec![host, images],
         vec![
             vec![
-                Check {
-                    title: "units, and the whole system natively",
-                    commands: tests(others),
-                },
+                Check { title: "units, and the whole system natively", commands: tests(others) },
                 windows(),
             ],
             vec![
-                Check {
-                    title: "image on the emulated microcontroller",
-                    commands: tests(on_image),
-                },
+                Check { title: "image on the emulated microcontroller", commands: tests(on_image) },
                 // It waits for devices in real time, so while the other lane has enough to do.
                 package(python),
                 check("fuzzers: inputs of the repository, 2 s a target", [&fuzz]),
-                Check {
-                    title: "circuits",
-                    commands: tests(circuits),
-                },
+                Check { title: "circuits", commands: tests(circuits) },
                 Check {
                     title: "tests for a bare board, on the emulated one",
                     commands: Ok(vec![on_target]),
@@ -248,9 +212,8 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
             };
             Ok((setup::prepare(needs, permission)?, setup::lints()?))
         })?;
-        steps.run("dependencies and their licences", "", || {
-            members::check_dependencies(&members)
-        })?;
+        steps
+            .run("dependencies and their licences", "", || members::check_dependencies(&members))?;
         let mut phases = phases(&toolchain, lints).into_iter();
         phases.try_for_each(|lanes| lanes::run(&lanes, &mut steps))
     })();
@@ -282,10 +245,7 @@ mod tests {
     fn a_missing_tool_leaves_out_its_own_checks_only() {
         let skipped = |rustfmt, clippy, python| {
             let checks = checks(Lints { rustfmt, clippy }, python);
-            checks
-                .iter()
-                .filter(|check| check.commands.is_err())
-                .count()
+            checks.iter().filter(|check| check.commands.is_err()).count()
         };
         let python = Some("python3");
         assert_eq!(skipped(true, true, python), 0);

@@ -13,11 +13,7 @@ pub const BENCH: Bench = Bench {
     title: "current measurement against 400 counts/A: error and ripple over duty and direction",
     parts: &[run],
     // Without the capacitors the converter samples one phase of the ripple.
-    broken: |netlists| {
-        netlists
-            .scaled("c_sum", 1e-3)?
-            .scaled("c_shunt_filter", 1e-3)
-    },
+    broken: |netlists| netlists.scaled("c_sum", 1e-3)?.scaled("c_shunt_filter", 1e-3),
     pictures: &[("mirror-ripple", scene)],
 };
 
@@ -32,11 +28,7 @@ fn deck(henry: f64, current_a: f64, duty: f64) -> String {
     let ripple_a = 12.0 * duty * (1.0 - duty) * PERIOD_S / henry;
     let (on_s, off_s) = (duty * PERIOD_S, (1.0 - duty) * PERIOD_S);
     let size_a = current_a.abs();
-    let (always, sometimes) = if current_a >= 0.0 {
-        ("sb", "sa")
-    } else {
-        ("sa", "sb")
-    };
+    let (always, sometimes) = if current_a >= 0.0 { ("sb", "sa") } else { ("sa", "sb") };
     format!(
         "V3 v3 0 3.3\nV5 v5 0 5\nRa sa 0 {{r_shunt}}\nRb sb 0 {{r_shunt}}\n\
          Vt tri 0 PULSE(-0.5 0.5 0 {on_s:e} {off_s:e} 1n {PERIOD_S:e})\n\
@@ -56,22 +48,14 @@ fn reading(netlists: &Netlists, current_a: f64, duty: f64) -> Result<[f64; 2]> {
         );
     let measured = ngspice::run("current", netlists, &lines)?;
     let ampere = |volt: f64| volt * COUNTS_PER_V / COUNTS_PER_A;
-    Ok([
-        ampere(measured.get("mean")?),
-        0.5 * ampere(measured.get("ripple")?),
-    ])
+    Ok([ampere(measured.get("mean")?), 0.5 * ampere(measured.get("ripple")?)])
 }
 
 fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let mut all = Vec::new();
-    for (current_a, duty) in [
-        (1.0, 0.1),
-        (3.0, 0.3),
-        (6.0, 0.55),
-        (6.0, 0.85),
-        (-6.0, 0.55),
-        (9.0, 0.8),
-    ] {
+    for (current_a, duty) in
+        [(1.0, 0.1), (3.0, 0.3), (6.0, 0.55), (6.0, 0.85), (-6.0, 0.55), (9.0, 0.8)]
+    {
         let [mean_a, ripple_a] = reading(netlists, current_a, duty)?;
         // The plant's box: 7.5 % of gain and 0.05 A of offset.
         let allowed_a = 0.05 + 0.02 * f64::abs(current_a);
@@ -96,12 +80,7 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
         0.05,
     ));
     let [offset_a, _] = reading(&netlists.with("vos_sense", 25e-6)?, 0.0, 0.01)?;
-    all.push(Quantity::at_most(
-        "reading of 0 A, offset of 25 uV",
-        offset_a,
-        "A",
-        0.05,
-    ));
+    all.push(Quantity::at_most("reading of 0 A, offset of 25 uV", offset_a, "A", 0.05));
     let [most_a, _] = reading(netlists, 10.0, 0.9)?;
     all.push(Quantity::between(
         "reading of 10 A: above the 9 A of over-current, below the end of the range",

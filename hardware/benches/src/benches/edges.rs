@@ -64,10 +64,8 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let cooling = simulate(netlists, -0.6)?;
     let against = simulate(netlists, 12.6)?;
     // 50 % more dead time than recalled, and half of the drive current.
-    let slow = netlists.with_line(
-        "X3 i1 i2 vbr",
-        &format!("{DRIVER} t_dead=360n i_src=75m i_snk=150m"),
-    )?;
+    let slow = netlists
+        .with_line("X3 i1 i2 vbr", &format!("{DRIVER} t_dead=360n i_src=75m i_snk=150m"))?;
     let slow = simulate(&slow, -0.6)?;
     let loss_w = cooling.get("input")? - cooling.get("output")?;
     Ok(vec![
@@ -120,10 +118,7 @@ fn scene() -> Scene {
                     ("gate of its lower switch", "v(x1.gl1)", 1.0),
                 ],
             ),
-            (
-                "A",
-                &[("inductor", "i(l.x1.l1)", 1.0), ("tile", "i(vi)", 1.0)],
-            ),
+            ("A", &[("inductor", "i(l.x1.l1)", 1.0), ("tile", "i(vi)", 1.0)]),
         ],
     }
 }

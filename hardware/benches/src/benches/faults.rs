@@ -64,16 +64,11 @@ fn missing_supplies(netlists: &Netlists) -> Result<Vec<Quantity>> {
         ".meas tran open_at when v(on)=1 fall=1 td=45m\n.meas tran left find v(vbr) at=58m";
     // The latch is cleared at 40 ms; 3.3 V goes at 46 ms, shorted to ground, or open with what hangs on it as its load.
     let shorted = "PWL(0 0 1m 3.3 46m 3.3 46.5m 0)";
-    let open = netlists.with_line(
-        "R5 v3 level",
-        "R5 v3 level {r_test_top}\nRload v3 0 1k\nCload v3 0 10u",
-    )?;
+    let open = netlists
+        .with_line("R5 v3 level", "R5 v3 level {r_test_top}\nRload v3 0 1k\nCload v3 0 10u")?;
     let open_lines = format!("{measure}\nRopen v3s v3 1");
     let missing = [
-        (
-            "3.3 V shorted to ground",
-            self_test::simulate(netlists, shorted, warm, measure)?,
-        ),
+        ("3.3 V shorted to ground", self_test::simulate(netlists, shorted, warm, measure)?),
         ("3.3 V open", simulate_open(&open, warm, &open_lines)?),
     ];
     for (what, measured) in missing {
@@ -93,12 +88,8 @@ fn missing_supplies(netlists: &Netlists) -> Result<Vec<Quantity>> {
         "V",
         0.5,
     ));
-    let sound = self_test::simulate(
-        netlists,
-        v3,
-        warm,
-        ".meas tran most max v(vbr) from=0 to=20m",
-    )?;
+    let sound =
+        self_test::simulate(netlists, v3, warm, ".meas tran most max v(vbr) from=0 to=20m")?;
     all.push(Quantity::at_most(
         "power-on: bridge supply until the first test, at most",
         sound.get("most")?,
@@ -197,13 +188,7 @@ fn trip_scene() -> Scene {
                     ("hot threshold", "v(x2.hot)", 1.0),
                 ],
             ),
-            (
-                "V",
-                &[
-                    ("latch: high closes the switch", "v(on)", 1.0),
-                    ("nFAULT", "v(nfault)", 1.0),
-                ],
-            ),
+            ("V", &[("latch: high closes the switch", "v(on)", 1.0), ("nFAULT", "v(nfault)", 1.0)]),
             ("V", &[("bridge supply", "v(vbr)", 1.0)]),
         ],
     }
@@ -215,13 +200,7 @@ fn stop_scene() -> Scene {
         time: ("time, ms; the button is pressed at 0.1 ms", 1e3),
         range: 0.0..1.0,
         charts: &[
-            (
-                "V",
-                &[
-                    ("bridge supply", "v(vbr)", 1.0),
-                    ("sense line (PC13)", "v(stopped)", 1.0),
-                ],
-            ),
+            ("V", &[("bridge supply", "v(vbr)", 1.0), ("sense line (PC13)", "v(stopped)", 1.0)]),
             ("A", &[("tile current", "i(vi)", 1.0)]),
         ],
     }

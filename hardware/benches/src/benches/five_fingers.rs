@@ -99,12 +99,7 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
             "V",
             still_on_v,
         ),
-        Quantity::at_most(
-            "sense line (low below 0.99 V)",
-            idle.get("sensed")?,
-            "V",
-            0.5,
-        ),
+        Quantity::at_most("sense line (low below 0.99 V)", idle.get("sensed")?, "V", 0.5),
         Quantity::at_least(
             format!("contact welded: bridge supply {late_ms} ms after the button shows it"),
             welded.get("late")?,
@@ -189,10 +184,7 @@ fn scene() -> Scene {
         charts: &[
             (
                 "V",
-                &[
-                    ("coil of the relay", "v(xr.coil)", 1.0),
-                    ("sense line (PC13)", "v(sense)", 1.0),
-                ],
+                &[("coil of the relay", "v(xr.coil)", 1.0), ("sense line (PC13)", "v(sense)", 1.0)],
             ),
             ("V", &[("bridge supply of a finger", "v(vbr0)", 1.0)]),
             ("A", &[("12 V supply", "i(v12)", -1.0)]),

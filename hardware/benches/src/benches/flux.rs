@@ -152,12 +152,7 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let noise_w_m2 = noise_v(netlists)? * COUNTS_PER_V / counts_per_w_m2;
     let [reached_s, delay_s] = lag_s(netlists, zero, counts_per_w_m2)?;
     let mut all = vec![
-        Quantity::between(
-            "gain",
-            1e3 * counts_per_w_m2,
-            "counts/(kW/m2)",
-            (118.0, 120.4),
-        ),
+        Quantity::between("gain", 1e3 * counts_per_w_m2, "counts/(kW/m2)", (118.0, 120.4)),
         Quantity::between(
             "straight line, error from -16 to 16 kW/m2",
             f64::max(
@@ -179,12 +174,7 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
             "W/m2",
             60.0,
         ),
-        Quantity::between(
-            "step of the flux to 63 %",
-            1e3 * reached_s,
-            "ms",
-            (4.5, 5.5),
-        ),
+        Quantity::between("step of the flux to 63 %", 1e3 * reached_s, "ms", (4.5, 5.5)),
         Quantity::between("mean delay", 1e3 * delay_s, "ms", (4.2, 5.5)),
         Quantity::at_most(
             "ripple by the PWM through ceramic and layer",

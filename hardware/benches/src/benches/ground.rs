@@ -37,24 +37,14 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let host = error_k(netlists, "xg.star", false)?;
     let isolated = error_k(netlists, "xg.star", true)?;
     Ok(vec![
-        Quantity::at_most(
-            "return on the analog ground, host isolated",
-            milli(right),
-            "mK",
-            1.0,
-        ),
+        Quantity::at_most("return on the analog ground, host isolated", milli(right), "mK", 1.0),
         Quantity::at_most(
             "return on the power ground (wrong), host isolated",
             milli(power_board),
             "mK",
             11.0,
         ),
-        Quantity::at_most(
-            "return at the star, host isolated",
-            milli(isolated),
-            "mK",
-            1.0,
-        ),
+        Quantity::at_most("return at the star, host isolated", milli(isolated), "mK", 1.0),
         Quantity::at_least(
             "return at the star, host earthed and not isolated: why USB is isolated",
             milli(host),

@@ -100,10 +100,7 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
 fn scene() -> Scene {
     Scene {
         lines: deck(1.0, ".tran 20n 1.22m 1.19m 20n"),
-        time: (
-            "time, us; the neighbour's connector is shorted, switched at 1200 us",
-            1e6,
-        ),
+        time: ("time, us; the neighbour's connector is shorted, switched at 1200 us", 1e6),
         range: 1198.0..1204.0,
         charts: &[(
             "V",

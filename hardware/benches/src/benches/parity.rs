@@ -101,20 +101,12 @@ struct Outcome {
 
 fn simulate(netlists: &Netlists, fault: LineFault) -> Result<Outcome> {
     let measured = ngspice::run("parity", netlists, &deck(fault))?;
-    let mut outcome = Outcome {
-        wrong: 0,
-        unnoticed: 0,
-        from_rail_v: 0.0,
-    };
+    let mut outcome = Outcome { wrong: 0, unnoticed: 0, from_rail_v: 0.0 };
     for finger in 0..FINGERS {
         let adc_v = measured.get(&format!("adc{finger}"))?;
         let odd_v = measured.get(&format!("odd{finger}"))?;
         let is_odd = finger.count_ones() % 2 == 1;
-        let parity_is_right = if is_odd {
-            odd_v > LOW_V
-        } else {
-            odd_v < HIGH_V
-        };
+        let parity_is_right = if is_odd { odd_v > LOW_V } else { odd_v < HIGH_V };
         if (adc_v - signal_v(finger)).abs() > 0.05 {
             outcome.wrong += 1;
             outcome.unnoticed += usize::from(parity_is_right);
@@ -144,10 +136,8 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     for line in 0..3 {
         faults.push((format!("line {line} broken"), LineFault::Broken(line)));
         for (level, volt) in [("ground", 0.0), ("3.3 V", 3.3)] {
-            faults.push((
-                format!("line {line} shorted to {level}"),
-                LineFault::Shorted(line, volt),
-            ));
+            faults
+                .push((format!("line {line} shorted to {level}"), LineFault::Shorted(line, volt)));
         }
     }
     for pair in [[0, 1], [0, 2], [1, 2]] {

@@ -15,10 +15,7 @@ pub const BENCH: Bench = Bench {
     parts: &[lines_alone, boot_loader, supplies],
     // Pull-downs of IN1, IN2 and enable too weak.
     broken: |netlists| netlists.scaled("r_in_down", 20.0),
-    pictures: &[
-        ("boot-loader", boot_loader_scene),
-        ("supplies", supplies_scene),
-    ],
+    pictures: &[("boot-loader", boot_loader_scene), ("supplies", supplies_scene)],
 };
 
 /// The bridge's three lines, and the pull-down of each.
@@ -69,10 +66,7 @@ fn supplies(netlists: &Netlists) -> Result<Vec<Quantity>> {
         ));
     }
     // The same with the parts removed that prevent it.
-    let slow = Ramps {
-        v12: "PWL(0 0 50m 6.7 350m 7.3 400m 12)",
-        v3: "PWL(0 0 1m 3.3)",
-    };
+    let slow = Ramps { v12: "PWL(0 0 50m 6.7 350m 7.3 400m 12)", v3: "PWL(0 0 1m 3.3)" };
     let undetected = netlists.with_line(DETECTOR, "* no detector")?;
     all.push(Quantity::at_most(
         "3.3 V first, 12 V turned up by hand: bridge supply, highest",
@@ -102,12 +96,7 @@ fn lines_alone(netlists: &Netlists) -> Result<Vec<Quantity>> {
     ] {
         let measured = bridge_alone(netlists, pins)?;
         for (name, _) in LINES {
-            all.push(Quantity::at_most(
-                format!("{what}: {name}"),
-                measured.get(name)?,
-                "V",
-                LOW_V,
-            ));
+            all.push(Quantity::at_most(format!("{what}: {name}"), measured.get(name)?, "V", LOW_V));
         }
         all.push(Quantity::at_most(
             format!("{what}: tile current with 12 V on the bridge"),
@@ -125,9 +114,9 @@ fn lines_alone(netlists: &Netlists) -> Result<Vec<Quantity>> {
             2.0,
         ));
     }
-    let without = LINES.iter().try_fold(netlists.clone(), |all, line| {
-        all.with_line(line.1, "* no pull-down")
-    })?;
+    let without = LINES
+        .iter()
+        .try_fold(netlists.clone(), |all, line| all.with_line(line.1, "* no pull-down"))?;
     // IN2 alone without its pull-up: both high would stop the tile too.
     let one_side = pull_ups.replace("Rupin2 in2 v3", "Rupin2 in2 0");
     all.push(Quantity::at_least(
@@ -147,41 +136,17 @@ struct Ramps {
 
 fn orders() -> [(&'static str, Ramps); 5] {
     [
-        (
-            "3.3 V first",
-            Ramps {
-                v12: "PWL(0 0 100m 0 101m 12)",
-                v3: "PWL(0 0 1m 3.3)",
-            },
-        ),
-        (
-            "12 V first",
-            Ramps {
-                v12: "PWL(0 0 1m 12)",
-                v3: "PWL(0 0 100m 0 101m 3.3)",
-            },
-        ),
+        ("3.3 V first", Ramps { v12: "PWL(0 0 100m 0 101m 12)", v3: "PWL(0 0 1m 3.3)" }),
+        ("12 V first", Ramps { v12: "PWL(0 0 1m 12)", v3: "PWL(0 0 100m 0 101m 3.3)" }),
         (
             "12 V first, 3.3 V in 200 ms",
-            Ramps {
-                v12: "PWL(0 0 1m 12)",
-                v3: "PWL(0 0 100m 0 300m 3.3)",
-            },
+            Ramps { v12: "PWL(0 0 1m 12)", v3: "PWL(0 0 100m 0 300m 3.3)" },
         ),
         (
             "3.3 V first, 12 V in 300 ms",
-            Ramps {
-                v12: "PWL(0 0 100m 0 400m 12)",
-                v3: "PWL(0 0 1m 3.3)",
-            },
+            Ramps { v12: "PWL(0 0 100m 0 400m 12)", v3: "PWL(0 0 1m 3.3)" },
         ),
-        (
-            "3.3 V missing",
-            Ramps {
-                v12: "PWL(0 0 1m 12)",
-                v3: "0",
-            },
-        ),
+        ("3.3 V missing", Ramps { v12: "PWL(0 0 1m 12)", v3: "0" }),
     ]
 }
 
@@ -212,12 +177,7 @@ fn boot_loader(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let after = reset_into_boot_loader(netlists)?;
     let without = netlists.with_line("D1 out reset bat54", "* NRST not connected")?;
     Ok(vec![
-        Quantity::at_least(
-            "reset: bridge supply before",
-            after.get("before")?,
-            "V",
-            11.0,
-        ),
+        Quantity::at_least("reset: bridge supply before", after.get("before")?, "V", 11.0),
         Quantity::at_most(
             "reset: NRST low to switch open",
             after.get("opened")? * 1e3 - 60.0,
@@ -259,11 +219,8 @@ fn loss(netlists: &Netlists) -> Result<Vec<Quantity>> {
         "{cleared}\
         Bin1 in1 0 V=V(v3)\nBin2 in2 0 V=0\nBen enable 0 V=V(v3)*0.5*(1+tanh((time-0.055)/1e-4))"
     );
-    let lines = path(
-        "PULSE(0 12 0 1m)",
-        "PWL(0 0 1m 3.3 60m 3.3 60.1m 0)",
-        drives,
-    ) + ".tran 20u 80m 0 20u uic\n.meas tran before find i(vi) at=59.9m\n.meas tran gone when i(vi)=0.3 fall=1 td=60m\n";
+    let lines = path("PULSE(0 12 0 1m)", "PWL(0 0 1m 3.3 60m 3.3 60.1m 0)", drives)
+        + ".tran 20u 80m 0 20u uic\n.meas tran before find i(vi) at=59.9m\n.meas tran gone when i(vi)=0.3 fall=1 td=60m\n";
     let lost = ngspice::run("loss-3v3", netlists, &lines)?;
     let lines = path("PWL(0 0 1m 12 60m 12 160m 0)", "PULSE(0 3.3 0 1m)", drives)
         + ".tran 20u 200m 0 50u uic\n.meas tran back max i(vi) from=170m to=200m\n.meas tran most max i(vi) from=60m to=200m\n";
@@ -290,12 +247,7 @@ fn loss(netlists: &Netlists) -> Result<Vec<Quantity>> {
             "V",
             11.0,
         ),
-        Quantity::at_least(
-            "tile current before 3.3 V goes",
-            lost.get("before")?,
-            "A",
-            5.0,
-        ),
+        Quantity::at_least("tile current before 3.3 V goes", lost.get("before")?, "A", 5.0),
         Quantity::at_most(
             "3.3 V goes while the bridge drives: until the tile current is below 0.3 A",
             lost.get("gone")? * 1e3 - 60.0,
@@ -308,12 +260,7 @@ fn loss(netlists: &Netlists) -> Result<Vec<Quantity>> {
             "A",
             12.0,
         ),
-        Quantity::at_most(
-            "12 V faded: tile current",
-            faded.get("back")?.abs(),
-            "A",
-            0.05,
-        ),
+        Quantity::at_most("12 V faded: tile current", faded.get("back")?.abs(), "A", 0.05),
     ])
 }
 
@@ -321,10 +268,7 @@ fn boot_loader_scene() -> Scene {
     Scene {
         lines: path("PULSE(0 12 0 1m)", "PULSE(0 3.3 0 1m)", BOOT_LOADER)
             + ".tran 20u 100m 0 20u uic",
-        time: (
-            "time, ms; latch cleared at 44 ms, reset at 60 ms, ROM boot loader at 70 ms",
-            1e3,
-        ),
+        time: ("time, ms; latch cleared at 44 ms, reset at 60 ms, ROM boot loader at 70 ms", 1e3),
         range: 0.0..100.0,
         charts: &[
             (
@@ -351,14 +295,7 @@ fn supplies_scene() -> Scene {
         time: ("time, ms; 12 V turned up by hand", 1e3),
         range: 0.0..500.0,
         charts: &[
-            (
-                "V",
-                &[
-                    ("12 V", "v(v12)", 1.0),
-                    ("5 V", "v(v5)", 1.0),
-                    ("3.3 V", "v(v3)", 1.0),
-                ],
-            ),
+            ("V", &[("12 V", "v(v12)", 1.0), ("5 V", "v(v5)", 1.0), ("3.3 V", "v(v3)", 1.0)]),
             (
                 "V",
                 &[

@@ -64,13 +64,7 @@ fn scene() -> Scene {
         time: ("time, ms", 1e3),
         range: 0.0..140.0,
         charts: &[
-            (
-                "V",
-                &[
-                    ("test line", "v(test)", 1.0),
-                    ("side: low hot, high cold", "v(side)", 1.0),
-                ],
-            ),
+            ("V", &[("test line", "v(test)", 1.0), ("side: low hot, high cold", "v(side)", 1.0)]),
             (
                 "V",
                 &[
@@ -128,30 +122,19 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     }
     let check_k = (sound.get("check_high")? - sound.get("check_low")?) / SLOPE_V_K;
     all.extend([
-        Quantity::between(
-            "sensed 12 V at the pin",
-            sound.get("sense")?,
-            "V",
-            (2.6, 3.0),
-        ),
+        Quantity::between("sensed 12 V at the pin", sound.get("sense")?, "V", (2.6, 3.0)),
         Quantity::at_most(
             "disturbance of the second display thermistor's reading",
             check_k,
             "K",
             0.25,
         ),
-        Quantity::at_most(
-            "inrush when the switch closes",
-            -sound.get("inrush")?,
-            "A",
-            5.0,
-        ),
+        Quantity::at_most("inrush when the switch closes", -sound.get("inrush")?, "A", 5.0),
     ]);
     for (which, tolerance, falling) in [("slowest", 1.15, 0.5), ("fastest", 0.85, 1.2)] {
-        let changed = netlists.scaled("c_clear", tolerance)?.with_line(
-            "X5 slow clk",
-            &format!("X5 slow clk v5 schmitt vtn={falling}"),
-        )?;
+        let changed = netlists
+            .scaled("c_clear", tolerance)?
+            .with_line("X5 slow clk", &format!("X5 slow clk v5 schmitt vtn={falling}"))?;
         let measured = simulate(&changed, SOUND.0, SOUND.1, "")?;
         all.push(Quantity::between(
             format!("test line to nFAULT high, {which} (15 % and the gate's thresholds)"),

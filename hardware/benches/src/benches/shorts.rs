@@ -76,13 +76,7 @@ fn scene() -> Scene {
         range: 40.0..220.0,
         charts: &[
             ("A", &[("inductor", "i(l.x1.l1)", 1.0)]),
-            (
-                "V",
-                &[
-                    ("nFAULT", "v(nfault)", 1.0),
-                    ("break input", "v(x1.break)", 1.0),
-                ],
-            ),
+            ("V", &[("nFAULT", "v(nfault)", 1.0), ("break input", "v(x1.break)", 1.0)]),
         ],
     }
 }

@@ -32,11 +32,8 @@ const RELATIVE: [(&str, f64); 8] = [
     ("r_cold_hysteresis", ORDINARY),
 ];
 /// Offsets at most, V: follower, comparators.
-const OFFSETS: [(&str, f64); 3] = [
-    ("vos_follower", 1.6e-3),
-    ("vos_hot", 3.5e-3),
-    ("vos_cold", 3.5e-3),
-];
+const OFFSETS: [(&str, f64); 3] =
+    [("vos_follower", 1.6e-3), ("vos_hot", 3.5e-3), ("vos_cold", 3.5e-3)];
 
 /// Supplies and thermistor around the block.
 #[derive(Clone, Copy)]
@@ -47,12 +44,7 @@ struct Surroundings {
     beta: f64,
 }
 
-const NOMINAL: Surroundings = Surroundings {
-    v3: 3.3,
-    v5: 5.0,
-    r25: 10e3,
-    beta: 3950.0,
-};
+const NOMINAL: Surroundings = Surroundings { v3: 3.3, v5: 5.0, r25: 10e3, beta: 3950.0 };
 
 /// Cold and hot threshold, °C, with the temperature falling or rising away from the middle.
 fn thresholds(netlists: &Netlists, around: Surroundings) -> Result<[f64; 2]> {
@@ -97,27 +89,14 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
         add(&mut circuit, thresholds(&changed, NOMINAL)?);
     }
     for (name, volt) in OFFSETS {
-        add(
-            &mut circuit,
-            thresholds(&netlists.with(name, volt)?, NOMINAL)?,
-        );
+        add(&mut circuit, thresholds(&netlists.with(name, volt)?, NOMINAL)?);
     }
-    for around in [
-        Surroundings { v3: 3.2, ..NOMINAL },
-        Surroundings { v5: 5.1, ..NOMINAL },
-    ] {
+    for around in [Surroundings { v3: 3.2, ..NOMINAL }, Surroundings { v5: 5.1, ..NOMINAL }] {
         add(&mut circuit, thresholds(netlists, around)?);
     }
-    for around in [
-        Surroundings {
-            r25: 10.1e3,
-            ..NOMINAL
-        },
-        Surroundings {
-            beta: 3950.0 * 1.01,
-            ..NOMINAL
-        },
-    ] {
+    for around in
+        [Surroundings { r25: 10.1e3, ..NOMINAL }, Surroundings { beta: 3950.0 * 1.01, ..NOMINAL }]
+    {
         add(&mut thermistor, thresholds(netlists, around)?);
     }
     let mut all = Vec::new();

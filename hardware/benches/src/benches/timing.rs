@@ -59,12 +59,7 @@ fn disable(netlists: &Netlists) -> Result<Vec<Quantity>> {
     Ok(vec![
         Quantity::at_most(
             "enable low to both switches of the pulse off",
-            measured
-                .find("high_off")
-                .unwrap_or(200e-6)
-                .max(measured.get("low_off")?)
-                * 1e6
-                - 200.0,
+            measured.find("high_off").unwrap_or(200e-6).max(measured.get("low_off")?) * 1e6 - 200.0,
             "us",
             1.5,
         ),
@@ -134,17 +129,8 @@ fn break_deck() -> String {
 fn break_scene() -> Scene {
     Scene {
         lines: break_deck(),
-        time: (
-            "time, us; glitch at 10, coupled edge at 20, fault from 30 to 60 us",
-            1e6,
-        ),
+        time: ("time, us; glitch at 10, coupled edge at 20, fault from 30 to 60 us", 1e6),
         range: 5.0..75.0,
-        charts: &[(
-            "V",
-            &[
-                ("nFAULT", "v(nfault)", 1.0),
-                ("break input", "v(x1.break)", 1.0),
-            ],
-        )],
+        charts: &[("V", &[("nFAULT", "v(nfault)", 1.0), ("break input", "v(x1.break)", 1.0)])],
     }
 }

@@ -37,12 +37,7 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let trip_at_s = ngspice::run("over-current", netlists, &ramp)?.get("trip_at")?;
     let trip_a = (trip_at_s - 20e-6) * 60.0 / 200e-6;
     let trip_hot_a = trip_a / (HOT_MOSFET * LIMIT_TOLERANCE);
-    all.push(Quantity::between(
-        "over-current trip, MOSFETs at 25 °C",
-        trip_a,
-        "A",
-        (25.0, 60.0),
-    ));
+    all.push(Quantity::between("over-current trip, MOSFETs at 25 °C", trip_a, "A", (25.0, 60.0)));
     all.push(Quantity::at_least(
         "the same, hot MOSFETs and lowest limit (estimated from it)",
         trip_hot_a,
@@ -68,12 +63,7 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
             ("peak at enable", measured.get("enable_peak")?),
             ("peak at reversal", -measured.get("reversal_peak")?),
         ] {
-            all.push(Quantity::at_most(
-                format!("{which}: {what}"),
-                peak_a,
-                "A",
-                most_a,
-            ));
+            all.push(Quantity::at_most(format!("{which}: {what}"), peak_a, "A", most_a));
         }
         all.push(Quantity::between(
             format!("{which}: tile current before"),
@@ -133,7 +123,4 @@ fn reversal_scene() -> Scene {
 }
 
 /// What both pictures show.
-const CURRENTS: &[Chart] = &[(
-    "A",
-    &[("inductor", "i(l.x1.l1)", 1.0), ("tile", "i(vi)", 1.0)],
-)];
+const CURRENTS: &[Chart] = &[("A", &[("inductor", "i(l.x1.l1)", 1.0), ("tile", "i(vi)", 1.0)])];

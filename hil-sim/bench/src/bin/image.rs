@@ -41,12 +41,8 @@ enum Work {
     Scene(Scene, u32),
 }
 
-static MEASUREMENT: Mutex<RefCell<Measurement>> = Mutex::new(RefCell::new(Measurement {
-    work: None,
-    station: None,
-    value: None,
-    set_point: 0,
-}));
+static MEASUREMENT: Mutex<RefCell<Measurement>> =
+    Mutex::new(RefCell::new(Measurement { work: None, station: None, value: None, set_point: 0 }));
 
 #[exception]
 fn PendSV() {
@@ -73,9 +69,9 @@ fn measure(work: Work) -> u64 {
     free(|section| {
         let measurement = MEASUREMENT.borrow(section).borrow();
         match (&measurement.work, &measurement.station) {
-            (Some(Work::Scene(scene, _)), Some(station)) => station
-                .set_point_c(scene.arithmetic, measurement.set_point)
-                .to_bits(),
+            (Some(Work::Scene(scene, _)), Some(station)) => {
+                station.set_point_c(scene.arithmetic, measurement.set_point).to_bits()
+            }
             _ => measurement.value.map_or(0, Value::to_bits),
         }
     })

@@ -43,9 +43,7 @@ impl Truth {
     /// The inputs with the numbers 0 to `count` - 1.
     pub fn new(count: u32) -> Self {
         let inputs = (0..count).filter_map(Input::nth);
-        Self {
-            cases: inputs.map(|input| (input, exact(&input))).collect(),
-        }
+        Self { cases: inputs.map(|input| (input, exact(&input))).collect() }
     }
 
     /// The inputs.
@@ -109,10 +107,7 @@ mod tests {
     /// 50-digit values of the model's test data.
     #[test]
     fn the_exact_kernel_agrees_with_golden_values() {
-        let path = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../model/tests/data/erfcx.csv"
-        );
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../model/tests/data/erfcx.csv");
         let mut reader = csv::Reader::from_path(path).unwrap();
         let mut checked = 0;
         for record in reader.records() {

@@ -87,9 +87,7 @@ impl Emulated {
         };
         let mut pins = Vec::new();
         for place in 0..3 {
-            let index = KERNELS
-                .iter()
-                .position(|kernel| type_of(kernel.call) == place);
+            let index = KERNELS.iter().position(|kernel| type_of(kernel.call) == place);
             pins.push(Job::kernel_pins(index.context("no kernel of a type")?));
         }
         pins.push(Job::scene_pins(0));
@@ -137,10 +135,7 @@ impl Emulated {
 
     fn net(&self, pins: u32, overhead: usize) -> anyhow::Result<(Cost, Checksum)> {
         let (whole, checksum) = self.run(pins)?;
-        let Overhead {
-            instructions,
-            cycles,
-        } = self.overheads[overhead];
+        let Overhead { instructions, cycles } = self.overheads[overhead];
         let cost = Cost {
             instructions_min: whole.instructions_min - instructions,
             instructions_mean: whole.instructions_mean - instructions as f64,
@@ -157,9 +152,7 @@ impl Emulated {
         let mut machine = Machine::new(&self.firmware, Pins(pins))?;
         let (done, checksum) = (self.image.address(DONE)?, self.image.address(CHECKSUM)?);
         let word = |machine: &Machine<Pins>, address: u32| {
-            let bytes = machine
-                .memory(address, 4)
-                .and_then(|bytes| bytes.try_into().ok());
+            let bytes = machine.memory(address, 4).and_then(|bytes| bytes.try_into().ok());
             bytes
                 .map(u32::from_le_bytes)
                 .with_context(|| format!("the machine has no memory at {address:#x}"))
@@ -215,10 +208,7 @@ fn type_of(call: Call) -> usize {
 }
 
 fn cost_of_handler(stats: &Stats) -> Option<Cost> {
-    let handler = stats
-        .interrupts
-        .iter()
-        .find(|handler| handler.name == "PendSV")?;
+    let handler = stats.interrupts.iter().find(|handler| handler.name == "PendSV")?;
     Some(Cost {
         instructions_min: handler.instructions_min,
         instructions_mean: handler.instructions_mean,

@@ -53,9 +53,7 @@ pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures
         largest: own.iter().copied().fold(0.0, f64::max),
         ratio: median(own.iter().zip(&factors[0]).map(|(a, b)| a / b).collect()),
     });
-    Ok(Figures {
-        engines: engines.collect(),
-    })
+    Ok(Figures { engines: engines.collect() })
 }
 
 /// The figures as a table.

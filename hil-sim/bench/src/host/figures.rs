@@ -107,13 +107,7 @@ pub fn measure(effort: Effort, progress: impl Fn(&str)) -> anyhow::Result<Figure
     let mut kernels = Vec::new();
     for (index, (kernel, time)) in KERNELS.iter().zip(times).enumerate() {
         progress(kernel.title);
-        kernels.push(of_kernel(
-            kernel,
-            &truth,
-            emulated.kernel(index)?,
-            time,
-            &emulated,
-        ));
+        kernels.push(of_kernel(kernel, &truth, emulated.kernel(index)?, time, &emulated));
     }
     let mut scenes = Vec::new();
     for (index, (scene, time)) in SCENES.iter().zip(scene_times).enumerate() {

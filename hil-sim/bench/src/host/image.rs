@@ -58,10 +58,7 @@ impl Image {
                 kind: symbol.kind(),
             })
         });
-        Ok(Self {
-            symbols: symbols.collect(),
-            compiler: image_proof::compiler::of_elf(elf)?,
-        })
+        Ok(Self { symbols: symbols.collect(), compiler: image_proof::compiler::of_elf(elf)? })
     }
 
     /// Address of the function or static with this path; a function's includes the Thumb bit.
@@ -70,9 +67,7 @@ impl Image {
     /// There is none, or more than one.
     pub fn address(&self, path: &str) -> anyhow::Result<u32> {
         let mut found = self.symbols.iter().filter(|symbol| symbol.path == path);
-        let symbol = found
-            .next()
-            .with_context(|| format!("the image has no {path}"))?;
+        let symbol = found.next().with_context(|| format!("the image has no {path}"))?;
         ensure!(found.next().is_none(), "the image has more than one {path}");
         Ok(symbol.address)
     }

@@ -26,22 +26,12 @@ struct Frame {
 
 impl Frame {
     fn around((x, y): (i32, i32), half: i32) -> Self {
-        Self {
-            left: x - half,
-            top: y - half,
-            right: x + half,
-            bottom: y + half,
-        }
+        Self { left: x - half, top: y - half, right: x + half, bottom: y + half }
     }
 
     /// Room of `text` whose left end is at `left` and whose middle is at the height `y`.
     fn of_text(text: &str, left: i32, y: i32) -> Self {
-        Self {
-            left,
-            top: y - FONT / 2 - 1,
-            right: left + width(text),
-            bottom: y + FONT / 2 + 1,
-        }
+        Self { left, top: y - FONT / 2 - 1, right: left + width(text), bottom: y + FONT / 2 + 1 }
     }
 
     fn meets(&self, other: &Self) -> bool {
@@ -70,15 +60,10 @@ fn width(text: &str) -> i32 {
 /// It cannot be drawn.
 pub fn draw(figures: &Figures) -> anyhow::Result<String> {
     let points = |of: fn((f64, f64)) -> f64| {
-        figures
-            .kernels
-            .iter()
-            .map(move |k| of((k.cost.cycles_max as f64, k.accuracy.worst_units)))
+        figures.kernels.iter().map(move |k| of((k.cost.cycles_max as f64, k.accuracy.worst_units)))
     };
     let range = |values: &mut dyn Iterator<Item = f64>| {
-        values.fold((f64::INFINITY, 0f64), |(low, high), v| {
-            (low.min(v), high.max(v))
-        })
+        values.fold((f64::INFINITY, 0f64), |(low, high), v| (low.min(v), high.max(v)))
     };
     let (x_low, x_high) = range(&mut points(|(x, _)| x));
     let (y_low, y_high) = range(&mut points(|(_, y)| y));
@@ -111,19 +96,11 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
             .axis_desc_style(("sans-serif", 17))
             .draw()?;
         let (xs, ys) = chart.plotting_area().get_pixel_range();
-        let inside = Frame {
-            left: xs.start,
-            top: ys.start,
-            right: xs.end,
-            bottom: ys.end,
-        };
+        let inside = Frame { left: xs.start, top: ys.start, right: xs.end, bottom: ys.end };
         let pixel = |x: f64, y: f64| chart.backend_coord(&(x, y));
         let mut taken = Vec::new();
         for (name, units) in [
-            (
-                "0.5 mK of set-point at 60 K",
-                0.5e-3 / figures.step_k * 2f64.powi(32),
-            ),
+            ("0.5 mK of set-point at 60 K", 0.5e-3 / figures.step_k * 2f64.powi(32)),
             ("half a unit: correctly rounded", 0.5),
         ] {
             let (_, y) = pixel(x_low, units);
@@ -133,21 +110,13 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
                 GUIDE.mix(0.7).stroke_width(1),
             ))?;
             write(&root, name, text, &GUIDE)?;
-            let line = Frame {
-                top: y,
-                bottom: y + 1,
-                ..inside
-            };
+            let line = Frame { top: y, bottom: y + 1, ..inside };
             taken.extend([text, line]);
         }
         let better = "better: sooner done and closer";
         let corner = Frame::of_text(better, inside.left + 30, inside.bottom - 18);
         let tip = (inside.left + 8, inside.bottom - 8);
-        for tail in [
-            (tip.0 + 9, tip.1),
-            (tip.0, tip.1 - 9),
-            (tip.0 + 15, tip.1 - 15),
-        ] {
+        for tail in [(tip.0 + 9, tip.1), (tip.0, tip.1 - 9), (tip.0 + 15, tip.1 - 15)] {
             root.draw(&PathElement::new([tip, tail], GUIDE.stroke_width(2)))?;
         }
         write(&root, better, corner, &GUIDE)?;
@@ -168,11 +137,7 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
                 Some(_) => color.stroke_width(2),
                 None => color.filled(),
             };
-            let radius = if kernel.id == OURS {
-                RADIUS + 2
-            } else {
-                RADIUS
-            };
+            let radius = if kernel.id == OURS { RADIUS + 2 } else { RADIUS };
             let label = free_place(kernel.title, place, &inside, &taken);
             root.draw(&PathElement::new(
                 [place, label.nearest(place)],
@@ -191,10 +156,7 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
 impl Frame {
     /// The point of the frame that is nearest to `place`.
     fn nearest(&self, (x, y): (i32, i32)) -> (i32, i32) {
-        (
-            x.clamp(self.left, self.right),
-            y.clamp(self.top, self.bottom),
-        )
+        (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
     }
 }
 
@@ -228,14 +190,9 @@ fn write(
     frame: Frame,
     color: &RGBColor,
 ) -> anyhow::Result<()> {
-    let style = ("sans-serif", FONT)
-        .into_font()
-        .color(color)
-        .pos(Pos::new(HPos::Center, VPos::Center));
-    let middle = (
-        (frame.left + frame.right) / 2,
-        (frame.top + frame.bottom) / 2,
-    );
+    let style =
+        ("sans-serif", FONT).into_font().color(color).pos(Pos::new(HPos::Center, VPos::Center));
+    let middle = ((frame.left + frame.right) / 2, (frame.top + frame.bottom) / 2);
     root.draw(&Text::new(text.to_owned(), middle, style))?;
     Ok(())
 }
@@ -246,12 +203,7 @@ mod tests {
 
     #[test]
     fn labels_at_one_point_do_not_overlap_and_stay_inside() {
-        let inside = Frame {
-            left: 0,
-            top: 0,
-            right: 600,
-            bottom: 400,
-        };
+        let inside = Frame { left: 0, top: 0, right: 600, bottom: 400 };
         for place in [(300, 200), (5, 5), (595, 395)] {
             let mut taken = vec![Frame::around(place, RADIUS)];
             for _ in 0..12 {

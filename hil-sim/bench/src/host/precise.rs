@@ -14,29 +14,20 @@ pub struct Twofold {
 /// `a + b` for `|a| >= |b|`.
 fn quick_sum(a: f64, b: f64) -> Twofold {
     let high = a + b;
-    Twofold {
-        high,
-        low: b - (high - a),
-    }
+    Twofold { high, low: b - (high - a) }
 }
 
 /// `a + b`, exactly.
 fn exact_sum(a: f64, b: f64) -> Twofold {
     let high = a + b;
     let part = high - a;
-    Twofold {
-        high,
-        low: (a - (high - part)) + (b - part),
-    }
+    Twofold { high, low: (a - (high - part)) + (b - part) }
 }
 
 /// `a * b`, exactly.
 pub fn exact_product(a: f64, b: f64) -> Twofold {
     let high = a * b;
-    Twofold {
-        high,
-        low: a.mul_add(b, -high),
-    }
+    Twofold { high, low: a.mul_add(b, -high) }
 }
 
 impl From<f64> for Twofold {
@@ -58,10 +49,7 @@ impl Add for Twofold {
 impl Sub for Twofold {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        self + Self {
-            high: -other.high,
-            low: -other.low,
-        }
+        self + Self { high: -other.high, low: -other.low }
     }
 }
 
@@ -69,10 +57,7 @@ impl Mul for Twofold {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let product = exact_product(self.high, other.high);
-        quick_sum(
-            product.high,
-            product.low + (self.high * other.low + self.low * other.high),
-        )
+        quick_sum(product.high, product.low + (self.high * other.low + self.low * other.high))
     }
 }
 
@@ -96,10 +81,7 @@ impl Twofold {
     }
 }
 
-const PI: Twofold = Twofold {
-    high: std::f64::consts::PI,
-    low: 1.224_646_799_147_353_2e-16,
-};
+const PI: Twofold = Twofold { high: std::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
 
 /// Up to here the power series are used: what they cancel is far below their precision.
 const SERIES_UP_TO: f64 = 6.0;
@@ -113,9 +95,9 @@ const LEVELS: u32 = 120;
 pub fn erfcx_of_root(u: Twofold) -> Twofold {
     let z = u.sqrt();
     if u.high > SERIES_UP_TO {
-        let tail = (1..=LEVELS).rev().fold(z, |tail, level| {
-            z + Twofold::from(0.5 * f64::from(level)) / tail
-        });
+        let tail = (1..=LEVELS)
+            .rev()
+            .fold(z, |tail, level| z + Twofold::from(0.5 * f64::from(level)) / tail);
         return Twofold::from(1.0) / (PI.sqrt() * tail);
     }
     let two = Twofold::from(2.0);

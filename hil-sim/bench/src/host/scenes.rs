@@ -23,11 +23,8 @@ pub struct Judgement {
 /// None for these materials.
 pub fn judge(scene: &Scene) -> anyhow::Result<Judgement> {
     let mut station = Station::new()?;
-    let mut judgement = Judgement {
-        worst_mk: 0.0,
-        breaks_at_s: None,
-        checksum: Checksum::default(),
-    };
+    let mut judgement =
+        Judgement { worst_mk: 0.0, breaks_at_s: None, checksum: Checksum::default() };
     for tick in 1..=TICKS {
         let bits = (scene.step)(&mut station, tick);
         let found = station.set_point_c(scene.arithmetic, bits);
@@ -36,9 +33,7 @@ pub fn judge(scene: &Scene) -> anyhow::Result<Judgement> {
             let error_mk = (found - exact_c(scene.kind, tick)).abs() * 1e3;
             judgement.worst_mk = judgement.worst_mk.max(error_mk);
         } else {
-            judgement
-                .breaks_at_s
-                .get_or_insert(f64::from(tick) * TICK_S);
+            judgement.breaks_at_s.get_or_insert(f64::from(tick) * TICK_S);
         }
     }
     Ok(judgement)
@@ -48,14 +43,9 @@ pub fn judge(scene: &Scene) -> anyhow::Result<Judgement> {
 fn exact_c(kind: &str, tick: u32) -> f64 {
     let object: &Material = &MATERIALS[FINGERS[0]].1;
     let display_c = |force_n: f64, tick: u32| {
-        Contact::new(
-            (&SKIN, SKIN_C),
-            (object, OBJECT_C),
-            &REFERENCE_DISPLAY,
-            pressure_pa(force_n),
-        )
-        .at(f64::from(tick) * TICK_S)
-        .display_c
+        Contact::new((&SKIN, SKIN_C), (object, OBJECT_C), &REFERENCE_DISPLAY, pressure_pa(force_n))
+            .at(f64::from(tick) * TICK_S)
+            .display_c
     };
     match kind {
         kind::SEMI_INFINITE => interface_temperature(&SKIN, SKIN_C, object, OBJECT_C),

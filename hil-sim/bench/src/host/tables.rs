@@ -111,12 +111,8 @@ fn kernel_row(kernel: &KernelFigures) -> Vec<String> {
         short(accuracy.worst_units),
         short(accuracy.mean_units),
         short(accuracy.worst_mk),
-        accuracy
-            .breaks_at_z
-            .map_or("never".into(), |z| format!("{z:.2}")),
-        kernel
-            .table_bytes
-            .map_or("in code".into(), |bytes| bytes.to_string()),
+        accuracy.breaks_at_z.map_or("never".into(), |z| format!("{z:.2}")),
+        kernel.table_bytes.map_or("in code".into(), |bytes| bytes.to_string()),
         format!("{:.0}", cost.instructions_mean),
         cost.instructions_max.to_string(),
         format!("{:.0}", cost.cycles_mean),
@@ -128,9 +124,7 @@ fn kernel_row(kernel: &KernelFigures) -> Vec<String> {
 
 fn scene_row(scene: &SceneFigures) -> Vec<String> {
     let cost = &scene.cost;
-    let broken = scene
-        .breaks_at_s
-        .map_or(String::new(), |at| format!(", none from {at:.3} s"));
+    let broken = scene.breaks_at_s.map_or(String::new(), |at| format!(", none from {at:.3} s"));
     vec![
         scene.kind.into(),
         scene.arithmetic.into(),
@@ -161,10 +155,7 @@ pub(super) fn short(value: f64) -> String {
 pub(super) fn grid(heads: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
     let rows: Vec<Vec<String>> = rows.collect();
     let width = |column: usize| {
-        let cells = rows
-            .iter()
-            .filter_map(|row| row.get(column))
-            .map(|cell| cell.chars().count());
+        let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());
         cells.max().unwrap_or(0).max(heads[column].chars().count())
     };
     let widths: Vec<usize> = (0..heads.len()).map(width).collect();

@@ -32,12 +32,7 @@ pub fn side_by_side(
         .map(|own| Time {
             ns: median(own.clone()),
             least_ns: own.iter().copied().fold(f64::NAN, f64::min),
-            ratio: median(
-                own.iter()
-                    .zip(&ns[base])
-                    .map(|(own, base)| own / base)
-                    .collect(),
-            ),
+            ratio: median(own.iter().zip(&ns[base]).map(|(own, base)| own / base).collect()),
         })
         .collect()
 }

@@ -7,11 +7,7 @@ use super::root::sqrt;
 pub(crate) fn shepherd_laframboise(elapsed: u32, per_tick: f32) -> f32 {
     let z = sqrt(elapsed as f32 * per_tick);
     let s = (z - 3.75) / (z + 3.75);
-    SHEPHERD_LAFRAMBOISE
-        .iter()
-        .rev()
-        .fold(0.0, |sum, c| sum * s + c)
-        / (1.0 + 2.0 * z)
+    SHEPHERD_LAFRAMBOISE.iter().rev().fold(0.0, |sum, c| sum * s + c) / (1.0 + 2.0 * z)
 }
 
 /// The structure of S. G. Johnson's Faddeeva package in `f64`: a hundred parts of `4 / (4 + z)` with a polynomial of

@@ -136,34 +136,14 @@ impl Value {
 pub const OURS: &str = "firmware";
 
 const fn kernel(id: &'static str, title: &'static str, table: Table, call: Call) -> Kernel {
-    Kernel {
-        id,
-        title,
-        table,
-        call,
-    }
+    Kernel { id, title, table, call }
 }
 
 /// All kernels, the firmware's first.
 pub static KERNELS: [Kernel; 15] = [
-    kernel(
-        OURS,
-        "the firmware's kernel, integers",
-        Table::Firmware,
-        Call::Fixed(firmware),
-    ),
-    kernel(
-        "libm-f64",
-        "libm f64: exp(u) erfc(z)",
-        Table::Library,
-        Call::Double(libm_f64),
-    ),
-    kernel(
-        "libm-f32",
-        "libm f32: exp(u) erfc(z)",
-        Table::Library,
-        Call::Single(libm_f32),
-    ),
+    kernel(OURS, "the firmware's kernel, integers", Table::Firmware, Call::Fixed(firmware)),
+    kernel("libm-f64", "libm f64: exp(u) erfc(z)", Table::Library, Call::Double(libm_f64)),
+    kernel("libm-f32", "libm f32: exp(u) erfc(z)", Table::Library, Call::Single(libm_f32)),
     kernel(
         "micromath-erfc",
         "micromath exp(u), libm f32 erfc(z)",

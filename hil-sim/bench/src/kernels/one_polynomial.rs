@@ -31,9 +31,10 @@ pub(super) fn one_polynomial(elapsed: Ticks, per_tick: MantissaExponent) -> Frac
     let s = i64::from((y ^ 1 << 31) as i32);
     // The high word of a product with s is that with s / 2; the coefficients are doubled as often to match.
     let [first, rest @ ..] = &ONE_POLYNOMIAL;
-    let sum = rest.iter().rev().fold(0i32, |sum, c| {
-        c.wrapping_add(((i64::from(sum) * s + (1 << 31)) >> 32) as i32)
-    });
+    let sum = rest
+        .iter()
+        .rev()
+        .fold(0i32, |sum, c| c.wrapping_add(((i64::from(sum) * s + (1 << 31)) >> 32) as i32));
     // From units of 2^-30 to those of 2^-32 in the last product.
     let value = 4 * i64::from(*first) + ((i64::from(sum) * s) >> 30);
     Fraction::from_bits(value.clamp(0, i64::from(u32::MAX)) as u32)

@@ -84,10 +84,7 @@ pub struct RunAssessment {
 impl RunAssessment {
     /// The assessment of a run that ended early.
     pub(super) fn ended(error: &anyhow::Error) -> Self {
-        let unknown = Extremes {
-            min: f64::NAN,
-            max: f64::NAN,
-        };
+        let unknown = Extremes { min: f64::NAN, max: f64::NAN };
         Self {
             detectable_ms: None,
             detected_ms: None,
@@ -194,10 +191,7 @@ impl RunAssessment {
             fault.is_some_and(|fault| Some(fault.name()) != before)
         });
         let reached = self.detectable_ms.is_some();
-        let late = reached
-            && !self
-                .took_ms
-                .is_some_and(|took_ms| took_ms <= SAFE_MS + 1e-6);
+        let late = reached && !self.took_ms.is_some_and(|took_ms| took_ms <= SAFE_MS + 1e-6);
         let said = self.reason.as_str();
         let is_misjudged = (fault_case.learning)
             .is_some_and(|learning| !learning.allows(self.knowledge.as_deref(), point.scene));
@@ -230,14 +224,8 @@ impl RunAssessment {
 const OFF: &str = "off";
 
 /// The states in which the device continues to work without a fault.
-pub(super) const WORKING_STATES: [&str; 6] = [
-    "self-test",
-    "ready",
-    "armed",
-    "preset",
-    "contact",
-    "stimulus",
-];
+pub(super) const WORKING_STATES: [&str; 6] =
+    ["self-test", "ready", "armed", "preset", "contact", "stimulus"];
 
 /// Whether the device works without a fault at the end of a run.
 pub(super) fn works_at_end(outcome: &Outcome, t_s: f64) -> bool {
@@ -260,17 +248,15 @@ fn detected(outcome: &Outcome, from: usize, t_s: f64, before: Option<&str>) -> O
 /// Whether a set-point differs from that of the other run in a tick of which both have telemetry, or there is no such tick.
 fn setpoints_differ(rows: &[TraceRow], others: &[TraceRow]) -> bool {
     let both = rows.iter().zip(others);
-    let mut both = both
-        .filter_map(|(row, other)| row.device.as_ref().zip(other.device.as_ref()))
-        .peekable();
+    let mut both =
+        both.filter_map(|(row, other)| row.device.as_ref().zip(other.device.as_ref())).peekable();
     both.peek().is_none() || both.any(|(one, other)| one.setpoint_c != other.setpoint_c)
 }
 
 /// Largest difference of the skin on the display from that of the other run, K, from a time on, s; none without a row of both.
 fn skin_difference_k(rows: &[TraceRow], others: &[TraceRow], from_s: f64) -> Option<f64> {
     let both = rows.iter().zip(others).filter(|(row, _)| row.t_s >= from_s);
-    both.map(|(row, other)| (row.skin_c - other.skin_c).abs())
-        .max_by(f64::total_cmp)
+    both.map(|(row, other)| (row.skin_c - other.skin_c).abs()).max_by(f64::total_cmp)
 }
 
 /// Time after which no current flows; `None` if current flows at the end.

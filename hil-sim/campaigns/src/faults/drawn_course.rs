@@ -52,21 +52,15 @@ pub(super) fn course_tables(
         // Half of the largest rate leaves room for the rounding of times.
         let reach = between_s * 0.5 * f64::from(COURSE_RATE_MAX_K_S);
         let value: f64 = draw.random_range(low..=high);
-        points.push((
-            before_s + between_s,
-            value.clamp(before - reach, before + reach),
-        ));
+        points.push((before_s + between_s, value.clamp(before - reach, before + reach)));
     }
     let start = ["now", "landing", "trigger"][draw.random_range(0..3)];
     let times = draw.random_range(1..=TIMES_MAX);
     let end = ["hold", "neutral"][draw.random_range(0..2)];
     let upload = upload_course(temperatures, &points).into_iter();
-    let lines = upload
-        .map(|command| command.to_string())
-        .chain([format!("play {start} {times} {end}")]);
-    let mut tables: String = lines
-        .map(|line| scene_text::host_line(&line, t_s))
-        .collect();
+    let lines =
+        upload.map(|command| command.to_string()).chain([format!("play {start} {times} {end}")]);
+    let mut tables: String = lines.map(|line| scene_text::host_line(&line, t_s)).collect();
     let edge_s = t_s + draw.random_range(TRIGGER_AFTER_S.0..=TRIGGER_AFTER_S.1);
     if start == "trigger" && edge_s < end_s {
         tables += &format!("[[trigger]]\nt_s = {edge_s:?}\n");
@@ -84,18 +78,8 @@ mod tests {
     /// 200 draws miss one of six shares of a third or more with a probability below 1e-30.
     #[test]
     fn every_kind_of_course_is_drawn() {
-        let draws: Vec<_> = (0..200)
-            .map(|seed| course_tables(seed, 0.1, 9.0, None))
-            .collect();
-        for part in [
-            "absolute",
-            "relative",
-            "now",
-            "landing",
-            "[[trigger]]",
-            "neutral",
-            "hold",
-        ] {
+        let draws: Vec<_> = (0..200).map(|seed| course_tables(seed, 0.1, 9.0, None)).collect();
+        for part in ["absolute", "relative", "now", "landing", "[[trigger]]", "neutral", "hold"] {
             let count = draws.iter().filter(|tables| tables.contains(part)).count();
             assert!(count > 30, "{part}: {count}");
         }

@@ -28,8 +28,7 @@ impl InjectedFault {
             Self::Hardware(active) => active.kind.name().into(),
             Self::Processor(fault) => {
                 let text = fault.to_string();
-                text.split_once('=')
-                    .map_or(text.clone(), |(kind, _)| kind.into())
+                text.split_once('=').map_or(text.clone(), |(kind, _)| kind.into())
             }
             Self::HostLine(_) => "host-line".into(),
         }
@@ -45,9 +44,7 @@ impl InjectedFault {
             let mut words = text.split(' ');
             let sensor = |word| Sensor::ALL.into_iter().find(|sensor| sensor.name() == word);
             let kind = words.next()?;
-            let kind = FaultKind::ALL
-                .into_iter()
-                .find(|known| known.name() == kind)?;
+            let kind = FaultKind::ALL.into_iter().find(|known| known.name() == kind)?;
             let mut fault = ActiveFault::from(kind);
             if kind.has_sensor() {
                 fault.sensor = sensor(words.next()?)?;
@@ -165,12 +162,8 @@ mod tests {
 
     #[test]
     fn a_missing_flux_may_be_unnoticed_on_foam_only() {
-        let short = fault_cases()
-            .into_iter()
-            .find(|one| one.fault.kind() == "flux-short");
-        let learning = short
-            .and_then(|short| short.learning)
-            .expect("a row with a sensor");
+        let short = fault_cases().into_iter().find(|one| one.fault.kind() == "flux-short");
+        let learning = short.and_then(|short| short.learning).expect("a row with a sensor");
         for (word, scene, is_allowed) in [
             (Some("contact"), FaultScene::Foam, true),
             (Some("trusted"), FaultScene::Foam, true),

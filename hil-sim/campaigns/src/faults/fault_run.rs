@@ -43,10 +43,7 @@ fn fault_free_run(
 ) -> anyhow::Result<Option<Outcome>> {
     let mut fault_free = scene.clone();
     let needed = point.scene.has_tuned_model()
-        && fault_case
-            .symptoms
-            .iter()
-            .any(|sign| sign.needs_fault_free_run());
+        && fault_case.symptoms.iter().any(|sign| sign.needs_fault_free_run());
     match fault_case.fault {
         _ if fault_case.learning.is_some_and(|one| one.assumes) => {
             fault_free.injections.clear();
@@ -59,9 +56,7 @@ fn fault_free_run(
         InjectedFault::Hardware(broken)
             if needed || fault_case.unchanged || fault_case.learning.is_some() =>
         {
-            fault_free
-                .faults
-                .retain(|fault| fault.fault.kind != broken.kind);
+            fault_free.faults.retain(|fault| fault.fault.kind != broken.kind);
         }
         InjectedFault::HostLine(lines) if fault_case.unchanged => {
             // The scene may have the same lines at another time.
@@ -129,21 +124,15 @@ impl FaultRun {
             Ok(None) => return Ok(None),
             Ok(Some((outcome, figures))) => {
                 let fault_free = fault_free_run(device, fault_case, point, &scene)?;
-                let fault_free: &[_] = fault_free
-                    .as_ref()
-                    .map_or(&[], |outcome| outcome.trace.rows());
+                let fault_free: &[_] =
+                    fault_free.as_ref().map_or(&[], |outcome| outcome.trace.rows());
                 let rows = outcome.trace.rows();
                 RunAssessment::new(fault_case, point, &outcome, rows, &figures, fault_free)
             }
             // The behaviour of the hardware is unknown then, so the run counts as a breach.
             Err(error) => RunAssessment::ended(&error),
         };
-        Ok(Some(Self {
-            place: point.scene.name(),
-            finger: None,
-            t_s: point.t_s,
-            assessment,
-        }))
+        Ok(Some(Self { place: point.scene.name(), finger: None, t_s: point.t_s, assessment }))
     }
 }
 

@@ -72,15 +72,8 @@ const LANDING: Forces = &[(1.0, 2.0)];
 const RESTING: Forces = &[(0.2, 2.0)];
 const LATE: Forces = &[(6.0, 2.0)];
 const LATER: Forces = &[(15.0, 2.0)];
-const REPLACING: Forces = &[
-    (0.5, 2.0),
-    (1.5, 0.0),
-    (2.5, 2.0),
-    (3.5, 0.0),
-    (4.5, 2.0),
-    (5.5, 0.0),
-    (6.5, 2.0),
-];
+const REPLACING: Forces =
+    &[(0.5, 2.0), (1.5, 0.0), (2.5, 2.0), (3.5, 0.0), (4.5, 2.0), (5.5, 0.0), (6.5, 2.0)];
 
 /// Times of faults relative to an edge, ms.
 const AROUND_MS: [i32; 12] = [-20, -3, -2, -1, 0, 1, 2, 3, 5, 10, 25, 60];
@@ -93,15 +86,8 @@ const COMMAND_S: f64 = 0.05;
 /// Time of the edge at the trigger input for which a course waits, s.
 const EDGE_S: f64 = 3.0;
 /// Course of the scenes with one: time, s, and temperature, °C. It rises and falls by 5 K/s.
-const COURSE: [(f64, f64); 7] = [
-    (0.0, 34.0),
-    (1.0, 39.0),
-    (2.0, 39.0),
-    (4.0, 29.0),
-    (5.0, 24.0),
-    (6.0, 24.0),
-    (8.0, 34.0),
-];
+const COURSE: [(f64, f64); 7] =
+    [(0.0, 34.0), (1.0, 39.0), (2.0, 39.0), (4.0, 29.0), (5.0, 24.0), (6.0, 24.0), (8.0, 34.0)];
 /// Cause of the trip before the fault.
 const EARLIER_TRIP: Fault = Fault::HostSilent;
 
@@ -146,11 +132,7 @@ impl FaultScene {
             Self::Tuning => (LATER, (0.3, 15.5), &[15.0]),
             Self::Neutral | Self::Preset => (LATE, (0.1, 6.5), &[6.0]),
             Self::Replace => (REPLACING, (0.3, 7.0), &[1.5, 2.5, 3.5, 4.5]),
-            Self::SelfTest => (
-                RESTING,
-                (4.0, 5.75),
-                &[4.0, 4.02, 5.04, 5.104, 5.304, 5.504],
-            ),
+            Self::SelfTest => (RESTING, (4.0, 5.75), &[4.0, 4.02, 5.04, 5.104, 5.304, 5.504]),
             Self::Off => (RESTING, (2.9, 3.99), &[]),
         }
     }
@@ -176,10 +158,7 @@ impl FaultScene {
 
     /// Whether the host plays a course.
     pub(super) const fn has_course(self) -> bool {
-        matches!(
-            self,
-            Self::Course | Self::CourseBare | Self::CourseTrigger | Self::CourseLanding
-        )
+        matches!(self, Self::Course | Self::CourseBare | Self::CourseTrigger | Self::CourseLanding)
     }
 
     /// Whether the host prescribes what an armed display does, instead of an object.
@@ -238,10 +217,7 @@ impl FaultScene {
         } else {
             draw.random_range(ms(from_s)..=ms(to_s))
         };
-        InjectionPoint {
-            scene: self,
-            t_s: f64::from(t_ms) / 1e3,
-        }
+        InjectionPoint { scene: self, t_s: f64::from(t_ms) / 1e3 }
     }
 
     /// The text of the scene, with this finger and object, that continues for `after_s` after a fault at `t_s`, and the end of

@@ -22,13 +22,8 @@ use super::{
 };
 
 /// Scenes of the fingers, in which they are in contact when a fault comes.
-const CONTACT: [FaultScene; FINGERS] = [
-    FaultScene::Granite,
-    FaultScene::Copper,
-    FaultScene::Slew,
-    FaultScene::Warm,
-    FaultScene::Cold,
-];
+const CONTACT: [FaultScene; FINGERS] =
+    [FaultScene::Granite, FaultScene::Copper, FaultScene::Slew, FaultScene::Warm, FaultScene::Cold];
 /// Scenes in which all fingers run their self-test after the fault.
 const SELF_TEST: [FaultScene; FINGERS] = [FaultScene::Off; FINGERS];
 /// Duration of the scenes after a fault, s: longer than a host is silent, shorter than a sink takes to warm without a fan.
@@ -45,9 +40,7 @@ pub fn five_finger_cases() -> Vec<FaultCase> {
     let mut cases: Vec<FaultCase> = Vec::new();
     for case in fault_cases().into_iter().chain(list::select_line_cases()) {
         let of_select_line = |case: &FaultCase| case.fault.kind().starts_with("select-line");
-        let is_known = cases
-            .iter()
-            .any(|known| known.fault.kind() == case.fault.kind());
+        let is_known = cases.iter().any(|known| known.fault.kind() == case.fault.kind());
         if case.learning.is_none() && (!is_known || of_select_line(&case)) {
             cases.push(case);
         }
@@ -99,9 +92,7 @@ pub struct FiveFingerRun {
 impl FiveFingerRun {
     /// The runs of fault cases: each on one of the fingers 1 to 4, in the scene in which it is worst.
     pub fn all(cases: Vec<FaultCase>, seed: u64) -> Vec<Self> {
-        (cases.into_iter().enumerate())
-            .map(|(i, case)| Self::new(case, i, seed))
-            .collect()
+        (cases.into_iter().enumerate()).map(|(i, case)| Self::new(case, i, seed)).collect()
     }
 
     fn new(fault_case: FaultCase, index: usize, seed: u64) -> Self {
@@ -165,10 +156,7 @@ impl FiveFingerRun {
     }
 
     const fn point(&self, finger: usize) -> InjectionPoint {
-        InjectionPoint {
-            scene: self.places[finger],
-            t_s: self.t_s,
-        }
+        InjectionPoint { scene: self.places[finger], t_s: self.t_s }
     }
 
     /// Runs the case on five fingers and assesses each finger that has the fault; no assessment if the fault does not apply
@@ -223,10 +211,7 @@ impl FiveFingerRun {
 
     /// Summary of its assessments.
     pub fn summary(&self, trials: Vec<FaultRun>) -> FaultSummary {
-        FaultSummary {
-            fault: self.name(),
-            ..FaultSummary::new(&self.fault_case, trials)
-        }
+        FaultSummary { fault: self.name(), ..FaultSummary::new(&self.fault_case, trials) }
     }
 }
 
@@ -263,9 +248,7 @@ impl Reference {
         let rows = results.iter();
         Ok(Self {
             places: run.places,
-            rows: rows
-                .map(|(outcome, _)| with_held_telemetry(outcome.trace.rows()))
-                .collect(),
+            rows: rows.map(|(outcome, _)| with_held_telemetry(outcome.trace.rows())).collect(),
         })
     }
 }
@@ -289,10 +272,7 @@ fn with_held_telemetry(rows: &[TraceRow]) -> Vec<TraceRow> {
             last = (i, row.device);
         }
         let device = last.1.filter(|_| i - last.0 < STREAM_MS as usize);
-        TraceRow {
-            device,
-            ..row.clone()
-        }
+        TraceRow { device, ..row.clone() }
     });
     held.collect()
 }

@@ -75,13 +75,7 @@ fn read(text: &str) -> anyhow::Result<Lists> {
 }
 
 fn fault_case(row: &Row, table: &Table) -> anyhow::Result<FaultCase> {
-    let scenes = |words| {
-        expand(
-            words,
-            &table.scenes,
-            named(&FaultScene::ALL, FaultScene::name),
-        )
-    };
+    let scenes = |words| expand(words, &table.scenes, named(&FaultScene::ALL, FaultScene::name));
     let learning = match (row.assumed_k, row.learnt_k) {
         (None, None) => None,
         (assumed_k, learnt_k) => Some(LearningExpected {
@@ -98,9 +92,7 @@ fn fault_case(row: &Row, table: &Table) -> anyhow::Result<FaultCase> {
     let causes = expand(&row.causes, &table.causes, named(Fault::ALL, Fault::name))?;
     Ok(FaultCase {
         fault: InjectedFault::from_text(row.fault.clone().leak()).context("is unknown")?,
-        symptoms: expand(&row.symptoms, &table.symptoms, |word| {
-            Symptom::deserialize(word).ok()
-        })?,
+        symptoms: expand(&row.symptoms, &table.symptoms, |word| Symptom::deserialize(word).ok())?,
         expected: match row.restarts {
             true => ExpectedReaction::Restart,
             false => ExpectedReaction::Trip(causes),
@@ -143,36 +135,18 @@ mod tests {
     #[test]
     fn a_wrong_row_is_refused_with_what_is_wrong() {
         for (row, expected) in [
-            (
-                r#"fault = "fan-of x10""#,
-                r#"fault "fan-of x10": is unknown"#,
-            ),
+            (r#"fault = "fan-of x10""#, r#"fault "fan-of x10": is unknown"#),
             (r#"fault = "fan-off 10""#, "is unknown"),
             (r#"fault = "fan-off""#, "is unknown"),
-            (
-                r#"fault = "adc-stuck", causes = ["warm"]"#,
-                r#""adc-stuck": "warm" is unknown"#,
-            ),
-            (
-                r#"fault = "adc-stuck", symptoms = [{ after = "1" }]"#,
-                "is unknown",
-            ),
-            (
-                r#"fault = "adc-stuck", scenes = ["pi10hz"]"#,
-                r#""pi10hz" is unknown"#,
-            ),
+            (r#"fault = "adc-stuck", causes = ["warm"]"#, r#""adc-stuck": "warm" is unknown"#),
+            (r#"fault = "adc-stuck", symptoms = [{ after = "1" }]"#, "is unknown"),
+            (r#"fault = "adc-stuck", scenes = ["pi10hz"]"#, r#""pi10hz" is unknown"#),
             (
                 r#"fault = "flux-open", knowledge = ["contacts"], assumed_k = 1"#,
                 r#""contacts" is unknown"#,
             ),
-            (
-                r#"fault = "flux-open", assumed_k = 1, learnt_k = 1"#,
-                "two limits",
-            ),
-            (
-                r#"fault = "adc-stuck", cause = []"#,
-                "unknown field `cause`",
-            ),
+            (r#"fault = "flux-open", assumed_k = 1, learnt_k = 1"#, "two limits"),
+            (r#"fault = "adc-stuck", cause = []"#, "unknown field `cause`"),
         ] {
             let table =
                 format!("cases = [{{ {row} }}]\n[symptoms]\n[causes]\n[knowledge]\n[scenes]\n");
@@ -186,15 +160,7 @@ mod tests {
         let table: Table = toml::from_str(include_str!("list.toml")).expect("a table");
         let is_symptom = |name: &String| Value::from(name.as_str()).try_into::<Symptom>().is_ok();
         assert!(!table.symptoms.keys().any(is_symptom));
-        assert!(
-            !Fault::ALL
-                .iter()
-                .any(|fault| table.causes.contains_key(fault.name()))
-        );
-        assert!(
-            !FaultScene::ALL
-                .iter()
-                .any(|scene| table.scenes.contains_key(scene.name()))
-        );
+        assert!(!Fault::ALL.iter().any(|fault| table.causes.contains_key(fault.name())));
+        assert!(!FaultScene::ALL.iter().any(|scene| table.scenes.contains_key(scene.name())));
     }
 }

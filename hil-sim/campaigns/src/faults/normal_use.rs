@@ -61,9 +61,7 @@ impl UseSession {
         let (law_word, law) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
         let skin_c = draw.random_range(30.0..=36.0);
         let object_c = draw.random_range(17.0..=41.0);
-        let held_c = draw
-            .random_bool(HELD)
-            .then(|| draw.random_range(15.0..=42.0));
+        let held_c = draw.random_bool(HELD).then(|| draw.random_range(15.0..=42.0));
         let course_seed = stream_seed(seed, &format!("session {number} course"));
         let plays =
             held_c.is_none() && Xoshiro256PlusPlus::seed_from_u64(course_seed).random_bool(PLAYED);
@@ -140,9 +138,8 @@ impl UseSession {
                 failure: Some(format!("{error:#}")),
             },
             Ok((outcome, figures)) => {
-                let mut trips: Vec<_> = (figures.faults.into_iter())
-                    .map(|tripped| tripped.fault)
-                    .collect();
+                let mut trips: Vec<_> =
+                    (figures.faults.into_iter()).map(|tripped| tripped.fault).collect();
                 trips.extend(figures.resets.iter().map(|_| "reset".into()));
                 SessionResult {
                     number: self.number,
@@ -203,31 +200,21 @@ pub fn session_table(used: &[SessionResult]) -> String {
         used.len() as f64 * WHOLE_S / 3600.0,
         failed().count(),
         skins().map(|skin| skin.min).fold(f64::INFINITY, f64::min),
-        skins()
-            .map(|skin| skin.max)
-            .fold(f64::NEG_INFINITY, f64::max),
-        used.iter()
-            .filter_map(|one| one.cem43_min)
-            .fold(0.0, f64::max),
+        skins().map(|skin| skin.max).fold(f64::NEG_INFINITY, f64::max),
+        used.iter().filter_map(|one| one.cem43_min).fold(0.0, f64::max),
     );
     let distrusted = used.iter().filter(|one| !one.distrusts.is_empty());
     let count: usize = distrusted.clone().map(|one| one.distrusts.len()).sum();
     let _ = writeln!(text, "distrusts      {count:>9}");
     for one in distrusted {
         let words = one.distrusts.iter();
-        let words: Vec<_> = words
-            .map(|(t_s, word)| format!("{word} at {t_s:.2} s"))
-            .collect();
+        let words: Vec<_> = words.map(|(t_s, word)| format!("{word} at {t_s:.2} s")).collect();
         let _ = writeln!(text, "number {}: {}", one.number, words.join(", "));
     }
     for one in failed() {
         // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "number {}: {}",
-            one.number,
-            one.failure.as_deref().unwrap_or_default()
-        );
+        let _ =
+            writeln!(text, "number {}: {}", one.number, one.failure.as_deref().unwrap_or_default());
     }
     text
 }
@@ -250,13 +237,7 @@ mod tests {
     #[test]
     fn sessions_repeat_by_seed_and_number_and_differ_between_them() {
         assert_eq!(UseSession::new(5, 3, false), UseSession::new(5, 3, false));
-        assert_ne!(
-            UseSession::new(5, 3, false).text,
-            UseSession::new(5, 4, false).text
-        );
-        assert_ne!(
-            UseSession::new(5, 3, false).text,
-            UseSession::new(6, 3, false).text
-        );
+        assert_ne!(UseSession::new(5, 3, false).text, UseSession::new(5, 4, false).text);
+        assert_ne!(UseSession::new(5, 3, false).text, UseSession::new(6, 3, false).text);
     }
 }

@@ -44,9 +44,8 @@ fn is_latent(fault_case: &FaultCase) -> bool {
 /// what fingers do.
 pub fn pairs(seed: u64) -> Vec<FaultPair> {
     let all = fault_cases().into_iter();
-    let (latent, active): (Vec<_>, Vec<_>) = all
-        .filter(|fault_case| fault_case.learning.is_none())
-        .partition(is_latent);
+    let (latent, active): (Vec<_>, Vec<_>) =
+        all.filter(|fault_case| fault_case.learning.is_none()).partition(is_latent);
     let mut pairs = Vec::with_capacity(latent.len() * active.len());
     for latent in &latent {
         for active in &active {
@@ -71,11 +70,7 @@ pub fn pairs(seed: u64) -> Vec<FaultPair> {
 impl FaultPair {
     /// Text of the scene.
     pub fn text(&self, seed: u64) -> String {
-        let Self {
-            latent,
-            active,
-            point,
-        } = self;
+        let Self { latent, active, point } = self;
         let faults = [(latent.fault, LATENT_S), (active.fault, point.t_s)];
         fault_run::scene_text(
             &faults,
@@ -130,28 +125,17 @@ pub struct PairResult {
 
 /// A line for every latent fault; then every pair that breaks the claim.
 pub fn pair_table(runs: &[PairResult]) -> String {
-    let width = runs
-        .iter()
-        .map(|run| run.latent.len())
-        .max()
-        .unwrap_or(0)
-        .max(6);
-    let mut text = format!(
-        "{:width$}  pairs  break  coldest C  warmest C  to safe ms\n",
-        "latent"
-    );
+    let width = runs.iter().map(|run| run.latent.len()).max().unwrap_or(0).max(6);
+    let mut text = format!("{:width$}  pairs  break  coldest C  warmest C  to safe ms\n", "latent");
     // The runs stand in the order of their latent faults.
     for of_one in runs.chunk_by(|a, b| a.latent == b.latent) {
         let verdicts = || of_one.iter().map(|run| &run.trial.assessment);
         let broken = of_one.iter().filter(|run| !run.trial.holds()).count();
-        let coldest = verdicts()
-            .map(|assessment| assessment.skin_c.min)
-            .fold(f64::INFINITY, f64::min);
+        let coldest =
+            verdicts().map(|assessment| assessment.skin_c.min).fold(f64::INFINITY, f64::min);
         let warmest =
             (verdicts().map(|assessment| assessment.skin_c.max)).fold(f64::NEG_INFINITY, f64::max);
-        let slowest = verdicts()
-            .filter_map(|assessment| assessment.took_ms)
-            .fold(0.0, f64::max);
+        let slowest = verdicts().filter_map(|assessment| assessment.took_ms).fold(0.0, f64::max);
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
@@ -161,13 +145,8 @@ pub fn pair_table(runs: &[PairResult]) -> String {
         );
     }
     for run in runs.iter().filter(|run| !run.trial.holds()) {
-        let _ = writeln!(
-            text,
-            "{}, then {}: {}",
-            run.latent,
-            run.active,
-            failing_run_text(&run.trial)
-        );
+        let _ =
+            writeln!(text, "{}, then {}: {}", run.latent, run.active, failing_run_text(&run.trial));
     }
     text
 }
@@ -180,29 +159,15 @@ mod tests {
     #[test]
     fn every_latent_fault_comes_before_every_active_one() {
         let pairs = pairs(1);
-        for name in [
-            "comparator-dead",
-            "fault-pin-dead",
-            "bridge-enable-stuck",
-            "mirror-stuck 0 A",
-        ] {
-            let of_one = pairs
-                .iter()
-                .filter(|pair| pair.latent.fault.to_string() == name);
+        for name in ["comparator-dead", "fault-pin-dead", "bridge-enable-stuck", "mirror-stuck 0 A"]
+        {
+            let of_one = pairs.iter().filter(|pair| pair.latent.fault.to_string() == name);
             let active: Vec<_> = of_one.map(|pair| pair.active.fault.to_string()).collect();
-            for other in [
-                "sensors-swapped display check",
-                "bridge-stuck-high",
-                "hung-core",
-                "host-silent",
-            ] {
-                let is_latent = pairs
-                    .iter()
-                    .any(|pair| pair.latent.fault.to_string() == other);
-                assert!(
-                    is_latent || active.iter().any(|known| known == other),
-                    "{name}, {other}"
-                );
+            for other in
+                ["sensors-swapped display check", "bridge-stuck-high", "hung-core", "host-silent"]
+            {
+                let is_latent = pairs.iter().any(|pair| pair.latent.fault.to_string() == other);
+                assert!(is_latent || active.iter().any(|known| known == other), "{name}, {other}");
             }
         }
         assert!(pairs.iter().all(|pair| pair.point.t_s > LATENT_S));

@@ -119,32 +119,19 @@ pub struct CampaignResult {
 }
 
 /// A figure whose worst value is printed: name, unit, 1 if the largest is the worst and -1 if the smallest is, and value.
-type WorstFigure = (
-    &'static str,
-    &'static str,
-    f64,
-    fn(&FaultRun) -> Option<f64>,
-);
+type WorstFigure = (&'static str, &'static str, f64, fn(&FaultRun) -> Option<f64>);
 
 const WORST_FIGURES: [WorstFigure; 4] = [
-    ("coldest skin", "C", -1.0, |run| {
-        Some(run.assessment.skin_c.min)
-    }),
-    ("warmest skin", "C", 1.0, |run| {
-        Some(run.assessment.skin_c.max)
-    }),
-    ("largest CEM43", "min", 1.0, |run| {
-        Some(run.assessment.cem43_min)
-    }),
+    ("coldest skin", "C", -1.0, |run| Some(run.assessment.skin_c.min)),
+    ("warmest skin", "C", 1.0, |run| Some(run.assessment.skin_c.max)),
+    ("largest CEM43", "min", 1.0, |run| Some(run.assessment.cem43_min)),
     ("slowest to safe", "ms", 1.0, |run| run.assessment.took_ms),
 ];
 
 /// Table of runs, violations of each kind and worst figures with their campaigns, followed by every violation.
 pub fn campaign_summary(runs: &[CampaignResult]) -> String {
     let worst = |(name, unit, sign, figure): WorstFigure| {
-        let values = runs
-            .iter()
-            .filter_map(|run| Some((figure(&run.trial)?, run)));
+        let values = runs.iter().filter_map(|run| Some((figure(&run.trial)?, run)));
         let most = values
             .filter(|(value, _)| value.is_finite())
             .max_by(|(a, _), (b, _)| (sign * a).total_cmp(&(sign * b)));
@@ -165,9 +152,8 @@ pub fn campaign_summary(runs: &[CampaignResult]) -> String {
         failing.clone().count()
     );
     for breach in Breach::ALL {
-        let count = (runs.iter())
-            .filter(|run| run.trial.assessment.breaches.contains(&breach))
-            .count();
+        let count =
+            (runs.iter()).filter(|run| run.trial.assessment.breaches.contains(&breach)).count();
         if count > 0 {
             // Writing to a String cannot fail.
             let _ = writeln!(text, "  {:<14}{count:>9}", breach.name());
@@ -195,10 +181,7 @@ mod tests {
 
     #[test]
     fn campaigns_repeat_by_seed_and_number_and_differ_between_them() {
-        assert_eq!(
-            RandomCampaign::new(3, 17, true),
-            RandomCampaign::new(3, 17, true)
-        );
+        assert_eq!(RandomCampaign::new(3, 17, true), RandomCampaign::new(3, 17, true));
         assert_ne!(
             RandomCampaign::new(3, 17, true).text(),
             RandomCampaign::new(3, 18, true).text()
@@ -236,10 +219,7 @@ mod tests {
     fn an_engine_without_a_processor_gets_no_processor_faults() {
         for number in 0..500 {
             let campaign = RandomCampaign::new(1, number, false);
-            assert!(!matches!(
-                campaign.fault_case.fault,
-                InjectedFault::Processor(_)
-            ));
+            assert!(!matches!(campaign.fault_case.fault, InjectedFault::Processor(_)));
         }
     }
 }

@@ -77,10 +77,7 @@ mod tests {
     #[test]
     fn every_fault_of_the_list_is_read_back_from_its_scene() {
         for fault_case in fault_cases() {
-            let point = InjectionPoint {
-                scene: FaultScene::Slew,
-                t_s: 1.25,
-            };
+            let point = InjectionPoint { scene: FaultScene::Slew, t_s: 1.25 };
             let text = crate::faults::fault_run::scene_text(
                 &[(fault_case.fault, 1.25)],
                 point,

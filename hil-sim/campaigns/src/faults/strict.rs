@@ -25,16 +25,8 @@ fn on_strict_chip(scene: &Scene) -> Scene {
     let chip = &mut scene.chip;
     chip.strict = true;
     chip.slow_flash = true;
-    chip.lsi_hz = if half(0) {
-        *ChipState::LSI_HZ.start()
-    } else {
-        *ChipState::LSI_HZ.end()
-    };
-    chip.flash = if half(1) {
-        FlashTiming::Accelerated
-    } else {
-        FlashTiming::Unaccelerated
-    };
+    chip.lsi_hz = if half(0) { *ChipState::LSI_HZ.start() } else { *ChipState::LSI_HZ.end() };
+    chip.flash = if half(1) { FlashTiming::Accelerated } else { FlashTiming::Unaccelerated };
     if half(2) {
         chip.external_clock_start_us = LATE_CLOCK_US;
     }

@@ -140,10 +140,7 @@ impl Symptom {
             Self::WrongWay => wrong_way(after),
             Self::DisplayLimit => first(&|row| {
                 let beyond = |c: f64| !DISPLAY_C.contains(&c);
-                [DISPLAY, CHECK]
-                    .into_iter()
-                    .filter_map(|which| read(row, which))
-                    .any(beyond)
+                [DISPLAY, CHECK].into_iter().filter_map(|which| read(row, which)).any(beyond)
             }),
             Self::SinkLimit => first(&|row| read(row, SINK).is_some_and(|sink_c| sink_c > SINK_C)),
             // The tick of the row itself may have seen it, so the current of the row before counts.
@@ -166,9 +163,7 @@ fn display_deviates(rows: &[TraceRow], sound: &[TraceRow]) -> Option<f64> {
             _ => None,
         };
     let far: Vec<_> = rows.iter().zip(sound).map(so_far).collect();
-    let lasts = far
-        .windows(DEVIATION_ROWS)
-        .find(|rows| rows.iter().all(Option::is_some))?;
+    let lasts = far.windows(DEVIATION_ROWS).find(|rows| rows.iter().all(Option::is_some))?;
     lasts[0]
 }
 
@@ -196,11 +191,7 @@ fn current_off(rows: &[TraceRow]) -> Option<f64> {
             let demand_a = demand_a.abs();
             (row.taken.mirror_a - demand_a).abs() > OFF_A + OFF_FRACTION * demand_a
         });
-        wrong = if off {
-            wrong + 1
-        } else {
-            usize::saturating_sub(wrong, 1)
-        };
+        wrong = if off { wrong + 1 } else { usize::saturating_sub(wrong, 1) };
         if wrong >= OFF_ROWS {
             return Some(rows[i + 2 - OFF_ROWS].t_s);
         }
@@ -245,10 +236,7 @@ fn supply_off(rows: &[TraceRow]) -> Option<f64> {
     let mut wrong = 0;
     for (i, row) in rows.iter().enumerate() {
         let is_tested = row.device.as_ref().is_some_and(|device| {
-            matches!(
-                device.state.name(),
-                "ready" | "armed" | "preset" | "contact" | "stimulus"
-            )
+            matches!(device.state.name(), "ready" | "armed" | "preset" | "contact" | "stimulus")
         });
         wrong = if is_tested && !SUPPLY_V.contains(&row.supply_v) {
             wrong + 1
@@ -270,9 +258,7 @@ fn dose(rows: &[TraceRow], from: usize) -> Option<f64> {
             / 60.0;
         (i, row.t_s, minutes)
     });
-    doses
-        .find(|(i, _, minutes)| *i >= from && *minutes >= DOSE_MIN)
-        .map(|(_, t_s, _)| t_s)
+    doses.find(|(i, _, minutes)| *i >= from && *minutes >= DOSE_MIN).map(|(_, t_s, _)| t_s)
 }
 
 /// Time at which the self-test reaches an age, s, with restarts by a finger excluded; `None` if it started before the fault.
@@ -328,10 +314,7 @@ mod tests {
 
     fn about(onset_s: Option<f64>, expected_s: f64) {
         let off_s = onset_s.map(|onset_s| (onset_s - expected_s).abs());
-        assert!(
-            off_s.is_some_and(|off_s| off_s < 2e-3),
-            "{onset_s:?}, not {expected_s} s"
-        );
+        assert!(off_s.is_some_and(|off_s| off_s < 2e-3), "{onset_s:?}, not {expected_s} s");
     }
 
     /// A finger adds a second to the parts after the first 80 ms.
@@ -340,11 +323,7 @@ mod tests {
         let with_finger_from = |from_s: f64| {
             rows(move |t_s, row, device| {
                 row.force_n = if t_s >= from_s { 2.0 } else { 0.0 };
-                device.state = if t_s >= 1.0 {
-                    StateName::SelfTest
-                } else {
-                    StateName::Off
-                };
+                device.state = if t_s >= 1.0 { StateName::SelfTest } else { StateName::Off };
             })
         };
         for (from_s, age_s, expected_s) in [
@@ -378,29 +357,16 @@ mod tests {
 
     #[test]
     fn the_wrong_way_is_away_from_the_set_point_and_against_the_current() {
-        about(
-            Symptom::WrongWay.onset_s(&rising(20.0, 9.0), &[], 500, None),
-            2.0 + 2.6 / 2.0,
-        );
-        assert_eq!(
-            Symptom::WrongWay.onset_s(&rising(30.0, 9.0), &[], 500, None),
-            None
-        );
-        assert_eq!(
-            Symptom::WrongWay.onset_s(&rising(20.0, 2.1), &[], 500, None),
-            None
-        );
+        about(Symptom::WrongWay.onset_s(&rising(20.0, 9.0), &[], 500, None), 2.0 + 2.6 / 2.0);
+        assert_eq!(Symptom::WrongWay.onset_s(&rising(30.0, 9.0), &[], 500, None), None);
+        assert_eq!(Symptom::WrongWay.onset_s(&rising(20.0, 2.1), &[], 500, None), None);
     }
 
     /// The current alternates from tick to tick and follows the demand one tick later.
     #[test]
     fn a_current_is_compared_with_the_demand_of_the_previous_tick() {
         let swings = |t_s: f64| {
-            if (t_s * 1e3).round() % 2.0 < 1.0 {
-                6.0
-            } else {
-                -2.0
-            }
+            if (t_s * 1e3).round() % 2.0 < 1.0 { 6.0 } else { -2.0 }
         };
         let until = |end_s: f64| {
             rows(move |t_s, row, device| {
@@ -409,15 +375,9 @@ mod tests {
                 device.demand_a = Some(swings(t_s));
             })
         };
-        assert_eq!(
-            Symptom::CurrentOff.onset_s(&until(9.0), &[], 500, None),
-            None
-        );
+        assert_eq!(Symptom::CurrentOff.onset_s(&until(9.0), &[], 500, None), None);
         for from in [500, 2000] {
-            assert_eq!(
-                Symptom::CurrentOff.onset_s(&until(2.0), &[], from, None),
-                Some(2.0)
-            );
+            assert_eq!(Symptom::CurrentOff.onset_s(&until(2.0), &[], from, None), Some(2.0));
         }
     }
 

@@ -20,10 +20,7 @@ pub fn table(rows: &[FaultSummary]) -> String {
         text += &line(row, width);
     }
     let runs: usize = rows.iter().map(|row| row.trials.len()).sum();
-    let held = rows
-        .iter()
-        .filter(|row| row.holds && !row.trials.is_empty())
-        .count();
+    let held = rows.iter().filter(|row| row.holds && !row.trials.is_empty()).count();
     let skipped = rows.iter().filter(|row| row.trials.is_empty()).count();
     // Writing to a String cannot fail.
     let _ = writeln!(
@@ -49,11 +46,8 @@ pub(super) fn outcome(row: &FaultSummary) -> String {
     if row.trials.is_empty() {
         return "-".into();
     }
-    let mut breaches: Vec<Breach> = row
-        .trials
-        .iter()
-        .flat_map(|trial| trial.assessment.breaches.iter().copied())
-        .collect();
+    let mut breaches: Vec<Breach> =
+        row.trials.iter().flat_map(|trial| trial.assessment.breaches.iter().copied()).collect();
     breaches.sort();
     breaches.dedup();
     if breaches.is_empty() {
@@ -67,15 +61,11 @@ pub(super) fn outcome(row: &FaultSummary) -> String {
 /// The cells of a row in the order of the columns: runs, detectable runs, longest time from the first symptom to zero
 /// current, skin, dose, display, causes.
 pub(super) fn cells(row: &FaultSummary) -> [String; 7] {
-    let detectable = row
-        .trials
-        .iter()
-        .filter(|trial| trial.assessment.detectable_ms.is_some())
-        .count();
+    let detectable =
+        row.trials.iter().filter(|trial| trial.assessment.detectable_ms.is_some()).count();
     let took = row.most(|trial| trial.assessment.took_ms);
-    let reasons: Vec<_> = (row.reasons().iter())
-        .map(|(reason, count)| format!("{reason} {count}"))
-        .collect();
+    let reasons: Vec<_> =
+        (row.reasons().iter()).map(|(reason, count)| format!("{reason} {count}")).collect();
     let range = |least: Option<f64>, most: Option<f64>| match (least, most) {
         (Some(least), Some(most)) => format!("{:.2}..{most:.2}", -least),
         _ => "-".into(),

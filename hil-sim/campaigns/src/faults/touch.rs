@@ -87,10 +87,7 @@ impl Touch {
 
     /// Draws the errors of the heat-flux sensor.
     pub(super) fn draw_flux_errors(&mut self, seed: u64) {
-        let mut params = Params {
-            flux: Some(FluxParams::NOMINAL),
-            ..Params::nominal()
-        };
+        let mut params = Params { flux: Some(FluxParams::NOMINAL), ..Params::nominal() };
         parameters::draw(&mut params, seed);
         for Parameter { key, value, .. } in all(&params) {
             if key.starts_with("flux.") {

@@ -53,11 +53,7 @@ impl FidelityCase {
         let _ = match self.object.properties {
             None => writeln!(text, "material = \"{}\"", self.object.name),
             Some(material) => {
-                let Surface {
-                    conductivity_w_mk,
-                    roughness_um,
-                    slope_rad,
-                } = material.surface;
+                let Surface { conductivity_w_mk, roughness_um, slope_rad } = material.surface;
                 let (density, heat) = (material.density_kg_m3, material.specific_heat_j_kgk);
                 writeln!(
                     text,
@@ -67,17 +63,8 @@ impl FidelityCase {
             }
         };
         let start_c = self.object_c.min(WARMEST_C);
-        let _ = writeln!(
-            text,
-            "start_c = {start_c:?}\nappears_t_s = {:?}",
-            self.appears_t_s
-        );
-        for Force {
-            t_s,
-            force_n,
-            ramp_s,
-        } in &self.forces
-        {
+        let _ = writeln!(text, "start_c = {start_c:?}\nappears_t_s = {:?}", self.appears_t_s);
+        for Force { t_s, force_n, ramp_s } in &self.forces {
             let _ = writeln!(
                 text,
                 "[[force]]\nt_s = {t_s:?}\nforce_n = {force_n:?}\nramp_s = {ramp_s:?}"

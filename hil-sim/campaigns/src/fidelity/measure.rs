@@ -44,15 +44,9 @@ pub struct JudgedFigure {
 
 impl Measure {
     /// For a finger that lands and stays: 20 mK from 50 ms on.
-    pub const LANDING: Self = Self::MaxAfter {
-        from_s: 0.05,
-        bound_mk: 20.0,
-    };
+    pub const LANDING: Self = Self::MaxAfter { from_s: 0.05, bound_mk: 20.0 };
     /// For a finger that lifts, or whose force changes: 50 mK from 100 ms on.
-    pub const CHANGING: Self = Self::MaxAfter {
-        from_s: 0.1,
-        bound_mk: 50.0,
-    };
+    pub const CHANGING: Self = Self::MaxAfter { from_s: 0.1, bound_mk: 50.0 };
 
     /// Computes the figure of a run.
     pub fn evaluate(&self, scene: &Scene, outcome: &Outcome) -> JudgedFigure {
@@ -97,8 +91,7 @@ fn judged(
 fn max_after(errors: impl Iterator<Item = (f64, f64)>, from_s: f64) -> Option<f64> {
     // Tolerance of half a row for rounding of the times.
     let late = errors.filter(|(since_s, _)| *since_s > from_s - 0.5e-3);
-    late.map(|(_, error_k)| error_k.abs() * 1e3)
-        .reduce(f64::max)
+    late.map(|(_, error_k)| error_k.abs() * 1e3).reduce(f64::max)
 }
 
 /// The first time after which no error reaches the limit; `None` if the last one does.
@@ -117,12 +110,7 @@ fn settled(errors: impl Iterator<Item = (f64, f64)>, below_mk: f64) -> Option<f6
 /// Percentage of the rows in contact in which the device reports `limited`.
 fn limited(outcome: &Outcome) -> Option<f64> {
     let (mut contact, mut limited) = (0u32, 0u32);
-    for device in outcome
-        .trace
-        .rows()
-        .iter()
-        .filter_map(|row| row.device.as_ref())
-    {
+    for device in outcome.trace.rows().iter().filter_map(|row| row.device.as_ref()) {
         if device.state == StateName::Contact {
             contact += 1;
             limited += u32::from(device.limited);

@@ -100,8 +100,7 @@ impl PlantDraw {
         parameters::draw(&mut params, draw.seed);
         let drawn = all(&params).into_iter();
         let beside = drawn.filter(|one| IN_USE.iter().any(|part| one.key.starts_with(part)));
-        draw.plant
-            .extend(beside.map(|parameter| (parameter.key, parameter.value)));
+        draw.plant.extend(beside.map(|parameter| (parameter.key, parameter.value)));
         draw
     }
 
@@ -120,11 +119,7 @@ impl PlantDraw {
             law: law.name(),
             max_after_50ms_mk: skin.max_after_50ms.unwrap_or(f64::INFINITY),
             rms_mk: skin.rms,
-            faults: figures
-                .faults
-                .into_iter()
-                .map(|tripped| tripped.fault)
-                .collect(),
+            faults: figures.faults.into_iter().map(|tripped| tripped.fault).collect(),
             plant: self.plant.clone(),
         })
     }
@@ -173,12 +168,7 @@ impl Percentiles {
     /// `None` without values.
     pub fn of(values: &[f64]) -> Option<Self> {
         let at = |percent| percentile(values, percent);
-        Some(Self {
-            p50: at(50.0)?,
-            p95: at(95.0)?,
-            p99: at(99.0)?,
-            max: at(100.0)?,
-        })
+        Some(Self { p50: at(50.0)?, p95: at(95.0)?, p99: at(99.0)?, max: at(100.0)? })
     }
 }
 
@@ -227,9 +217,7 @@ pub fn statistics_by_law(drawn: &[DrawResult]) -> Vec<LawStatistics> {
             laws.push(one.law);
         }
     }
-    laws.into_iter()
-        .filter_map(|law| law_box(law, drawn))
-        .collect()
+    laws.into_iter().filter_map(|law| law_box(law, drawn)).collect()
 }
 
 fn law_box(law: &'static str, drawn: &[DrawResult]) -> Option<LawStatistics> {
@@ -256,11 +244,7 @@ mod tests {
     use super::*;
 
     fn value(draw: &PlantDraw, key: &str) -> f64 {
-        draw.plant
-            .iter()
-            .find(|(drawn, _)| drawn == key)
-            .expect(key)
-            .1
+        draw.plant.iter().find(|(drawn, _)| drawn == key).expect(key).1
     }
 
     /// The ranges as the box is stated, in a room of 24 °C.
@@ -287,26 +271,17 @@ mod tests {
                 values.iter().copied().fold(0.0, f64::max),
             );
             let slack = 1e-9 * high;
-            assert!(
-                least >= low - slack && most <= high + slack,
-                "{key}: {least} to {most}"
-            );
+            assert!(least >= low - slack && most <= high + slack, "{key}: {least} to {most}");
             assert!(
                 least < low + 0.05 * (high - low) && most > high - 0.05 * (high - low),
                 "{key}"
             );
         }
         for draw in &draws {
-            assert_eq!(
-                value(draw, "sensors.display.lag_s"),
-                value(draw, "sensors.check.lag_s")
-            );
+            assert_eq!(value(draw, "sensors.display.lag_s"), value(draw, "sensors.check.lag_s"));
         }
         // The logarithm is uniform: half of the lags are below the geometric mean, 0.1 s.
-        let quick = draws
-            .iter()
-            .filter(|draw| value(draw, "sensors.display.lag_s") < 0.1)
-            .count();
+        let quick = draws.iter().filter(|draw| value(draw, "sensors.display.lag_s") < 0.1).count();
         assert!((450..550).contains(&quick), "{quick}");
     }
 
@@ -324,9 +299,7 @@ mod tests {
         let mut pairs: HashMap<(String, u64), u32> = HashMap::new();
         for number in 0..1000 {
             let case = PlantDraw::new(1, number).case;
-            *pairs
-                .entry((case.name, case.force_n.to_bits()))
-                .or_default() += 1;
+            *pairs.entry((case.name, case.force_n.to_bits())).or_default() += 1;
         }
         assert_eq!(pairs.len(), 45);
         assert!(pairs.values().all(|times| (22..=23).contains(times)));
@@ -336,10 +309,7 @@ mod tests {
     fn every_draw_is_a_scene() {
         for number in 0..90 {
             let draw = PlantDraw::new(2, number);
-            let scene = draw
-                .case
-                .scene(Law::Pi, draw.seed, &draw.plant)
-                .expect("a scene");
+            let scene = draw.case.scene(Law::Pi, draw.seed, &draw.plant).expect("a scene");
             assert_eq!(scene.params.tile.imax_a, value(&draw, "tile.imax_a"));
             assert_eq!(scene.seed, draw.seed);
         }
@@ -363,10 +333,7 @@ mod tests {
         let laws = statistics_by_law(&all);
         assert_eq!(laws.len(), 2);
         let pi = &laws[0].max_after_50ms_mk;
-        assert!(
-            (pi.p50 - 50.5).abs() < 1e-9 && (pi.p95 - 95.05).abs() < 1e-9,
-            "{pi:?}"
-        );
+        assert!((pi.p50 - 50.5).abs() < 1e-9 && (pi.p95 - 95.05).abs() < 1e-9, "{pi:?}");
         assert!((pi.p99 - 99.01).abs() < 1e-9 && pi.max == 100.0, "{pi:?}");
         assert_eq!((laws[0].within, laws[1].within), (false, true));
         let worst: Vec<_> = laws[0].worst.iter().map(|one| one.number).collect();

@@ -41,15 +41,11 @@ pub fn draw(rows: &[FidelityRow]) -> anyhow::Result<Option<String>> {
         return Ok(None);
     };
     let scenario = first.scenario;
-    let rows: Vec<_> = (rows.iter())
-        .filter(|row| row.scenario == scenario && row.without.is_none())
-        .collect();
+    let rows: Vec<_> =
+        (rows.iter()).filter(|row| row.scenario == scenario && row.without.is_none()).collect();
     let laws = distinct(&rows, |row| row.law);
     let cases = distinct(&rows, |row| row.case.as_str());
-    let mut shown: Vec<_> = OVER_TIME_OF
-        .into_iter()
-        .filter(|name| cases.contains(name))
-        .collect();
+    let mut shown: Vec<_> = OVER_TIME_OF.into_iter().filter(|name| cases.contains(name)).collect();
     if shown.is_empty() {
         shown = cases.iter().copied().take(OVER_TIME_OF.len()).collect();
     }
@@ -146,9 +142,7 @@ fn largest(
     let values = rows.iter().filter_map(|row| row.judged.value);
     let (least, most) = values
         .chain(rows.iter().filter_map(|row| row.judged.bound))
-        .fold((f64::INFINITY, f64::MIN_POSITIVE), |(l, m), value| {
-            (l.min(value), m.max(value))
-        });
+        .fold((f64::INFINITY, f64::MIN_POSITIVE), |(l, m), value| (l.min(value), m.max(value)));
     // Values below half a row of the trace are drawn at that value.
     let least = least.clamp(0.5e-3, most);
     let mut chart = ChartBuilder::on(area)
@@ -180,9 +174,7 @@ fn largest(
         }
         for (k, law) in laws.iter().enumerate() {
             let at = x + (k as f64 - (laws.len() as f64 - 1.0) / 2.0) * 0.18;
-            let values = own()
-                .filter(|row| row.law == *law)
-                .filter_map(|row| row.judged.value);
+            let values = own().filter(|row| row.law == *law).filter_map(|row| row.judged.value);
             if let Some(worst) = values.reduce(f64::max) {
                 let dot = Circle::new((at, worst.max(least)), DOT, color(laws, law).filled());
                 chart.draw_series([dot])?;
@@ -199,10 +191,7 @@ fn names(area: &Area<'_>, cases: &[&str], place: impl Fn(f64) -> i32) -> anyhow:
     for (i, case) in cases.iter().enumerate() {
         let (width, _) = area.estimate_text_size(case, &FONT.into_text_style(area))?;
         let row = if cases.len() > 9 { i as i32 % 3 } else { 0 };
-        let at = (
-            place(i as f64) - left - width as i32 / 2,
-            height as i32 - 66 + 18 * row,
-        );
+        let at = (place(i as f64) - left - width as i32 / 2, height as i32 - 66 + 18 * row);
         area.draw(&Text::new((*case).to_owned(), at, FONT))?;
     }
     Ok(())

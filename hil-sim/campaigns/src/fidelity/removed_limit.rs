@@ -30,24 +30,18 @@ impl RemovedLimit {
     /// The plant parameters, with values, that remove the limit.
     pub fn plant(self) -> Vec<(String, f64)> {
         let keys = |keys: &[(&str, f64)]| {
-            keys.iter()
-                .map(|(key, value)| ((*key).into(), *value))
-                .collect()
+            keys.iter().map(|(key, value)| ((*key).into(), *value)).collect()
         };
         match self {
             Self::SensorNoise => keys(&[("sensors.converter.noise_counts", DITHER_COUNTS)]),
             Self::Inl => keys(&[("sensors.converter.inl_counts", 0.0)]),
-            Self::SensorLag => keys(&[
-                ("sensors.display.lag_s", 1e-3),
-                ("sensors.check.lag_s", 1e-3),
-            ]),
+            Self::SensorLag => {
+                keys(&[("sensors.display.lag_s", 1e-3), ("sensors.check.lag_s", 1e-3)])
+            }
             Self::SensorSite => {
                 let leads = Sensor::ALL
                     .map(|sensor| (format!("sensors.{}.lead_share", sensor.name()), 0.0));
-                leads
-                    .into_iter()
-                    .chain(keys(&[("sensors.skin_sees_contact", 0.0)]))
-                    .collect()
+                leads.into_iter().chain(keys(&[("sensors.skin_sees_contact", 0.0)])).collect()
             }
             Self::ForceLag => keys(&[("sensors.force.lag_s", 1e-5)]),
             Self::Power => keys(&[("tile.ceramic_j_m3k", 2.3e6)]),

@@ -36,9 +36,5 @@ pub fn page(
         let _ = write!(body, "<pre>{}</pre>", escape(&text));
     }
     let style = "pre{font-size:12px;line-height:1.35;overflow-x:auto}body{max-width:80rem}";
-    document(
-        "Skin on the display against skin on the material",
-        style,
-        &body,
-    )
+    document("Skin on the display against skin on the material", style, &body)
 }

@@ -51,9 +51,7 @@ impl Scenario {
             Self::A => each_force(|object, force_n| self.lands(object, force_n)),
             Self::B => each_force(|object, force_n| self.appears(object, force_n)),
             Self::C => each_force(|object, force_n| self.replaced(object, force_n)),
-            Self::D => TouchedObject::thesis()
-                .map(|object| self.ramped(object))
-                .collect(),
+            Self::D => TouchedObject::thesis().map(|object| self.ramped(object)).collect(),
             Self::Unseen => self.unseen(),
         }
     }
@@ -74,11 +72,7 @@ impl Scenario {
             object_c: ROOM_C,
             appears_t_s: 0.0,
             forces: (forces.iter())
-                .map(|&(t_s, force_n, ramp_s)| Force {
-                    t_s,
-                    force_n,
-                    ramp_s,
-                })
+                .map(|&(t_s, force_n, ramp_s)| Force { t_s, force_n, ramp_s })
                 .collect(),
             duration_s,
             measure: Measure::LANDING,
@@ -99,10 +93,7 @@ impl Scenario {
         };
         FidelityCase {
             appears_t_s: 2.0,
-            measure: Measure::Settles {
-                below_mk: 50.0,
-                bound_s,
-            },
+            measure: Measure::Settles { below_mk: 50.0, bound_s },
             ..self.case(object, force_n, 12.0, &[(0.5, force_n, 0.0)])
         }
     }
@@ -113,18 +104,12 @@ impl Scenario {
             [(t_s, force_n, 0.0), (t_s + 1.0, 0.0, 0.0)]
         };
         let forces: Vec<_> = (0..10).flat_map(on_and_off).collect();
-        FidelityCase {
-            measure: Measure::CHANGING,
-            ..self.case(object, force_n, 21.0, &forces)
-        }
+        FidelityCase { measure: Measure::CHANGING, ..self.case(object, force_n, 21.0, &forces) }
     }
 
     fn ramped(self, object: TouchedObject) -> FidelityCase {
         let forces = [(1.0, 0.1, 0.0), (2.0, PRESSED_N, 1.0), (5.0, 0.1, 1.0)];
-        FidelityCase {
-            measure: Measure::CHANGING,
-            ..self.case(object, PRESSED_N, 8.0, &forces)
-        }
+        FidelityCase { measure: Measure::CHANGING, ..self.case(object, PRESSED_N, 8.0, &forces) }
     }
 
     fn unseen(self) -> Vec<FidelityCase> {
@@ -140,14 +125,11 @@ impl Scenario {
             });
         }
         for skin_c in [28.0, 31.0, 36.0] {
-            cases.extend(
-                FOUR.map(TouchedObject::of_thesis)
-                    .map(|object| FidelityCase {
-                        name: format!("{}, skin {skin_c} C", object.name),
-                        skin_c,
-                        ..self.lands(object, PRESSED_N)
-                    }),
-            );
+            cases.extend(FOUR.map(TouchedObject::of_thesis).map(|object| FidelityCase {
+                name: format!("{}, skin {skin_c} C", object.name),
+                skin_c,
+                ..self.lands(object, PRESSED_N)
+            }));
         }
         cases.push(FidelityCase {
             name: "copper of 44 C".into(),

@@ -93,16 +93,12 @@ fn line(row: &FidelityRow) -> String {
         "{:>4}  {:<16} {}  {}  {:>5.2}/{:<5.2} {:>6.1} {:>5}  {:<14} {:<14}",
         row.force_n,
         judged_text(row),
-        figures
-            .skin_error_mk
-            .map_or("-".into(), |errors| format!("{:>8.1}", errors.rms)),
+        figures.skin_error_mk.map_or("-".into(), |errors| format!("{:>8.1}", errors.rms)),
         figures.display_error_mk.map_or("-".into(), display),
         figures.current_a.max_abs,
         figures.current_a.rms,
         figures.energy_j,
-        figures
-            .kernel_evaluations
-            .map_or("-".into(), |n| n.to_string()),
+        figures.kernel_evaluations.map_or("-".into(), |n| n.to_string()),
         cost(figures.instructions_per_tick),
         cost(figures.cycles_per_tick),
     );
@@ -114,12 +110,10 @@ fn line(row: &FidelityRow) -> String {
 
 fn judged_text(row: &FidelityRow) -> String {
     let judged = &row.judged;
-    let value = judged
-        .value
-        .map_or("never".into(), |value| match judged.unit {
-            "s" => format!("{value:.3} s"),
-            unit => format!("{value:.1} {unit}"),
-        });
+    let value = judged.value.map_or("never".into(), |value| match judged.unit {
+        "s" => format!("{value:.3} s"),
+        unit => format!("{value:.1} {unit}"),
+    });
     let assessment = match judged.within {
         _ if judged.bound.is_none() => "",
         Some(true) => "ok",
@@ -129,9 +123,7 @@ fn judged_text(row: &FidelityRow) -> String {
 }
 
 fn display(errors: ErrorFigures) -> String {
-    let max = errors
-        .max_after_50ms
-        .map_or("-".into(), |max| format!("{max:.1}"));
+    let max = errors.max_after_50ms.map_or("-".into(), |max| format!("{max:.1}"));
     format!("{max:>7} /{:>7.1}", errors.rms)
 }
 

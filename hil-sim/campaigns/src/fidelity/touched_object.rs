@@ -19,10 +19,7 @@ impl TouchedObject {
 
     /// A material of the thesis, which the device has by name.
     pub const fn of_thesis(name: &'static str) -> Self {
-        Self {
-            name,
-            properties: None,
-        }
+        Self { name, properties: None }
     }
 }
 
@@ -38,22 +35,12 @@ pub const UNKNOWN_MATERIALS: [TouchedObject; 4] = [
 
 const fn unknown_material(
     name: &'static str,
-    [
-        conductivity_w_mk,
-        density_kg_m3,
-        specific_heat_j_kgk,
-        roughness_um,
-        slope_rad,
-    ]: [f64; 5],
+    [conductivity_w_mk, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad]: [f64; 5],
 ) -> TouchedObject {
     TouchedObject {
         name,
         properties: Some(Material {
-            surface: Surface {
-                conductivity_w_mk,
-                roughness_um,
-                slope_rad,
-            },
+            surface: Surface { conductivity_w_mk, roughness_um, slope_rad },
             density_kg_m3,
             specific_heat_j_kgk,
         }),

@@ -121,15 +121,10 @@ impl TrackingCase {
                 }
             }
         } else {
-            let points: Vec<_> = (points.iter())
-                .map(|point| (point.t_s, point.celsius))
-                .collect();
+            let points: Vec<_> = (points.iter()).map(|point| (point.t_s, point.celsius)).collect();
             let lines = upload_course(TemperatureKind::Absolute, &points);
             for (line, number) in lines.iter().zip(1..) {
-                at(
-                    PREPARE_S + LINE_INTERVAL_S * f64::from(number),
-                    line.to_string(),
-                );
+                at(PREPARE_S + LINE_INTERVAL_S * f64::from(number), line.to_string());
             }
             at(PLAY_LINE_S, "play trigger".into());
         }
@@ -151,9 +146,7 @@ impl TrackingCase {
             worst_mk: 0.0,
             worst_t_s: 0.0,
             limited: false,
-            faults: (figures.faults.iter())
-                .map(|trip| trip.fault.clone())
-                .collect(),
+            faults: (figures.faults.iter()).map(|trip| trip.fault.clone()).collect(),
             curve: Vec::new(),
         };
         for row in outcome.trace.rows() {
@@ -174,11 +167,7 @@ impl TrackingCase {
                     anyhow::bail!("a step has two temperatures");
                 };
                 let up = wanted_c > 0.5 * (from.celsius + to.celsius);
-                if up {
-                    error_k.max(0.0)
-                } else {
-                    (-error_k).max(0.0)
-                }
+                if up { error_k.max(0.0) } else { (-error_k).max(0.0) }
             } else {
                 error_k.abs()
             };

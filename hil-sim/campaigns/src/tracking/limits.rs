@@ -59,10 +59,7 @@ impl LimitCase {
         let plant = [("tile.coolant_k".to_owned(), self.coolant_c - ROOM_C)];
         let text = scene_text(END_S, 1, &self.touch.tables(1.0), &plant);
         let mut scene = Scene::parse(&text, Path::new("limits"))?;
-        let lines = HOST_LINES.map(|(t_s, line)| HostLine {
-            t_s,
-            line: line.into(),
-        });
+        let lines = HOST_LINES.map(|(t_s, line)| HostLine { t_s, line: line.into() });
         scene.host.extend(lines);
         let (outcome, figures) = device.run(&scene)?;
         if let Some(trip) = figures.faults.first() {

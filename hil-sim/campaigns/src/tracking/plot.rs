@@ -7,19 +7,12 @@ use super::{SENSOR_LAGS_S, TouchingFinger, TrackingReport};
 
 const SIZE: (u32, u32) = (1100, 1000);
 /// Stimuli that are drawn, if they were run.
-const SHOWN: [&str; 4] = [
-    "ramp of 1 K/s",
-    "ramp of 5 K/s",
-    "pulse of -5 K at 4 K/s",
-    "display of copper",
-];
+const SHOWN: [&str; 4] =
+    ["ramp of 1 K/s", "ramp of 5 K/s", "pulse of -5 K at 4 K/s", "display of copper"];
 /// Largest difference under a finger that the device is made for, mK.
 const DESIGN_ERROR_MK: f64 = 30.0;
-const COLORS: [RGBColor; SENSOR_LAGS_S.len()] = [
-    RGBColor(0x2c, 0xa0, 0x2c),
-    RGBColor(0x1f, 0x77, 0xb4),
-    RGBColor(0xd6, 0x27, 0x28),
-];
+const COLORS: [RGBColor; SENSOR_LAGS_S.len()] =
+    [RGBColor(0x2c, 0xa0, 0x2c), RGBColor(0x1f, 0x77, 0xb4), RGBColor(0xd6, 0x27, 0x28)];
 const DESIGN_ERROR_COLOR: RGBColor = RGBColor(0x22, 0x22, 0x22);
 /// Largest number of points of a curve.
 const POINTS: usize = 700;
@@ -29,9 +22,7 @@ const POINTS: usize = 700;
 /// # Errors
 /// The plot cannot be drawn.
 pub fn chart(report: &TrackingReport) -> anyhow::Result<String> {
-    let finger = TouchingFinger::ALL
-        .iter()
-        .position(|touch| *touch == TouchingFinger::Thesis);
+    let finger = TouchingFinger::ALL.iter().position(|touch| *touch == TouchingFinger::Thesis);
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();

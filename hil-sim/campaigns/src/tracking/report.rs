@@ -51,11 +51,7 @@ impl TrackingReport {
         for (name, touches) in self.stimuli.iter().zip(&self.results) {
             let _ = write!(text, "| {name} |");
             for result in touches.iter().flatten() {
-                let mark = if result.faults.is_empty() {
-                    ""
-                } else {
-                    " tripped"
-                };
+                let mark = if result.faults.is_empty() { "" } else { " tripped" };
                 let _ = write!(text, " {:.1}{mark} |", result.worst_mk);
             }
             text += "\n";

@@ -45,22 +45,14 @@ fn course(points: &[(f64, f64)]) -> Course {
 
 impl Stimulus {
     fn played(name: impl Into<String>, points: &[(f64, f64)]) -> Self {
-        Self {
-            name: name.into(),
-            course: course(points),
-            is_step: false,
-        }
+        Self { name: name.into(), course: course(points), is_step: false }
     }
 
     /// A ramp up at this rate, K/s, through the temperature of the sink, and the same way down.
     pub fn ramp(rate_k_s: f64) -> Self {
         let span_k = (HIGH_C - LOW_C).min(rate_k_s * WAY_MAX_S);
         // Slow ones are near the temperature of the sink, 24 °C.
-        let low_c = if span_k < HIGH_C - LOW_C {
-            24.0 - 0.25 * span_k
-        } else {
-            LOW_C
-        };
+        let low_c = if span_k < HIGH_C - LOW_C { 24.0 - 0.25 * span_k } else { LOW_C };
         let (high_c, way_s) = (low_c + span_k, span_k / rate_k_s);
         let top_s = way_s + PAUSE_S;
         Self::played(
@@ -86,11 +78,7 @@ impl Stimulus {
             (back_s + 1e-3, LOW_C),
             (2.0 * back_s, LOW_C),
         ];
-        Self {
-            name: format!("step of {height_k} K"),
-            course: course(&points),
-            is_step: true,
-        }
+        Self { name: format!("step of {height_k} K"), course: course(&points), is_step: true }
     }
 
     /// A pulse from 32 °C: by so many kelvin, at a rate, K/s, for 1 s.
@@ -118,12 +106,8 @@ impl Stimulus {
     pub fn recorded() -> Self {
         let copper = MATERIALS.iter().find(|(name, _)| *name == "copper");
         let (_, copper) = copper.expect("copper");
-        let contact = Contact::new(
-            (&SKIN, 34.0),
-            (copper, 24.0),
-            &REFERENCE_DISPLAY,
-            pressure_pa(FORCE_N),
-        );
+        let contact =
+            Contact::new((&SKIN, 34.0), (copper, 24.0), &REFERENCE_DISPLAY, pressure_pa(FORCE_N));
         let samples = (0..=(RECORDED_S / SAMPLE_S) as u32).map(|sample| {
             let t_s = f64::from(sample) * SAMPLE_S;
             (t_s, contact.at(t_s).display_c)
@@ -141,11 +125,7 @@ impl Stimulus {
     pub fn all() -> Vec<Self> {
         let mut all: Vec<_> = STEPS_K.map(Self::step).into();
         all.extend(RATES_K_S.map(Self::ramp));
-        all.extend([
-            Self::pulse(2.0, 5.0),
-            Self::pulse(-5.0, 4.0),
-            Self::recorded(),
-        ]);
+        all.extend([Self::pulse(2.0, 5.0), Self::pulse(-5.0, 4.0), Self::recorded()]);
         all
     }
 }
@@ -160,9 +140,8 @@ mod tests {
             let ramp = Stimulus::ramp(rate_k_s).course;
             assert!((ramp.rate_max_k_s() / rate_k_s - 1.0).abs() < 1e-9);
             let celsius = ramp.points().iter().map(|point| point.celsius);
-            let (low_c, high_c) = celsius.fold((99.0, 0.0), |(low, high): (f64, f64), c| {
-                (low.min(c), high.max(c))
-            });
+            let (low_c, high_c) =
+                celsius.fold((99.0, 0.0), |(low, high): (f64, f64), c| (low.min(c), high.max(c)));
             assert!(low_c < 24.0 && high_c > 24.5, "{low_c} to {high_c}");
         }
     }
@@ -174,12 +153,8 @@ mod tests {
         let recorded = Stimulus::recorded().course;
         assert!(recorded.points().len() <= COURSE_POINTS_MAX);
         let (_, copper) = MATERIALS[0];
-        let contact = Contact::new(
-            (&SKIN, 34.0),
-            (&copper, 24.0),
-            &REFERENCE_DISPLAY,
-            pressure_pa(FORCE_N),
-        );
+        let contact =
+            Contact::new((&SKIN, 34.0), (&copper, 24.0), &REFERENCE_DISPLAY, pressure_pa(FORCE_N));
         for t_s in [0.5, 1.0, 3.0, 10.0] {
             let error_k: f64 = recorded.at(t_s) - contact.at(t_s).display_c;
             assert!(error_k.abs() < 5e-3, "{t_s} s: {error_k} K");

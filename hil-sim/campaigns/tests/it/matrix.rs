@@ -14,9 +14,7 @@ use thermal_sim::scene::{FaultKind, ProcessorKind};
 const FOAM: FaultScene = FaultScene::Foam;
 
 fn fault_case(name: &str) -> FaultCase {
-    let found = fault_cases()
-        .into_iter()
-        .find(|fault_case| fault_case.fault.to_string() == name);
+    let found = fault_cases().into_iter().find(|fault_case| fault_case.fault.to_string() == name);
     found.unwrap_or_else(|| panic!("no fault case {name}"))
 }
 
@@ -41,10 +39,8 @@ fn every_kind_of_fault_has_an_entry_of_its_own() {
     for kind in ProcessorKind::ALL {
         assert!(kinds.contains(kind.name), "{}", kind.name);
     }
-    let names: HashSet<_> = fault_cases
-        .iter()
-        .map(|fault_case| fault_case.fault.to_string())
-        .collect();
+    let names: HashSet<_> =
+        fault_cases.iter().map(|fault_case| fault_case.fault.to_string()).collect();
     assert_eq!(names.len(), fault_cases.len());
 }
 
@@ -52,10 +48,7 @@ fn every_kind_of_fault_has_an_entry_of_its_own() {
 /// wrong, force samples that repeat themselves, and option bytes, which a start reads (see the tests of the chip).
 #[test]
 fn every_reason_of_the_guard_is_right_for_an_entry() {
-    let fault_cases: Vec<_> = fault_cases()
-        .into_iter()
-        .chain(five_finger_cases())
-        .collect();
+    let fault_cases: Vec<_> = fault_cases().into_iter().chain(five_finger_cases()).collect();
     let right: Vec<Fault> = fault_cases
         .iter()
         .filter_map(|fault_case| match fault_case.expected {
@@ -65,34 +58,17 @@ fn every_reason_of_the_guard_is_right_for_an_entry() {
         .flatten()
         .copied()
         .collect();
-    let left: Vec<_> = Fault::ALL
-        .iter()
-        .filter(|fault| !right.contains(fault))
-        .collect();
-    assert_eq!(
-        left,
-        [
-            &Fault::ForceFrozen,
-            &Fault::BrownOutLevel,
-            &Fault::SettingsCorrupt
-        ]
-    );
+    let left: Vec<_> = Fault::ALL.iter().filter(|fault| !right.contains(fault)).collect();
+    assert_eq!(left, [&Fault::ForceFrozen, &Fault::BrownOutLevel, &Fault::SettingsCorrupt]);
 }
 
 #[test]
 fn open_thermistor_holds_and_is_told_from_another() {
     let open = fault_case("thermistor-open display");
     assert_eq!(breaches(&open, 2.0), []);
-    let other = FaultCase {
-        expected: ExpectedReaction::Trip(&[Fault::CheckOpen]),
-        ..open
-    };
+    let other = FaultCase { expected: ExpectedReaction::Trip(&[Fault::CheckOpen]), ..open };
     assert_eq!(breaches(&other, 2.0), [Breach::Reason]);
-    let silent = FaultCase {
-        symptoms: &[],
-        expected: ExpectedReaction::Trip(&[]),
-        ..open
-    };
+    let silent = FaultCase { symptoms: &[], expected: ExpectedReaction::Trip(&[]), ..open };
     assert_eq!(breaches(&silent, 2.0), [Breach::Reason]);
 }
 
@@ -101,10 +77,7 @@ fn open_thermistor_holds_and_is_told_from_another() {
 fn device_that_is_slower_than_its_sign_is_late() {
     let drift = fault_case("thermistor-drift display +5 K");
     assert_eq!(breaches(&drift, 2.0), []);
-    let at_once = FaultCase {
-        symptoms: &[Symptom::Injection],
-        ..drift
-    };
+    let at_once = FaultCase { symptoms: &[Symptom::Injection], ..drift };
     assert_eq!(breaches(&at_once, 2.0), [Breach::Late]);
 }
 
@@ -125,19 +98,10 @@ fn a_wrong_word_and_another_skin_are_breaches() {
     let open = fault_case("flux-open");
     assert_eq!(breaches(&open, 2.0), []);
     let learning = open.learning.expect("a row with a sensor");
-    let with = |learning| FaultCase {
-        learning: Some(learning),
-        ..open
-    };
-    let other_word = LearningExpected {
-        knowledge: &[FingerKnowledge::Late],
-        ..learning
-    };
+    let with = |learning| FaultCase { learning: Some(learning), ..open };
+    let other_word = LearningExpected { knowledge: &[FingerKnowledge::Late], ..learning };
     assert_eq!(breaches(&with(other_word), 2.0), [Breach::Knowledge]);
-    let same_skin = LearningExpected {
-        skin_max_k: 0.0,
-        ..learning
-    };
+    let same_skin = LearningExpected { skin_max_k: 0.0, ..learning };
     assert_eq!(breaches(&with(same_skin), 2.0), [Breach::Changed]);
 }
 
@@ -148,9 +112,6 @@ fn skin_and_dose_are_held_to_their_limits() {
         panic!("a fault of the plant")
     };
     broken.value = 80.0;
-    let hot = FaultCase {
-        fault: InjectedFault::Hardware(broken),
-        ..fault_case("sink-hot 45 °C")
-    };
+    let hot = FaultCase { fault: InjectedFault::Hardware(broken), ..fault_case("sink-hot 45 °C") };
     assert_eq!(breaches(&hot, 2.0), [Breach::Skin, Breach::Dose]);
 }

@@ -38,11 +38,7 @@ fn yamamotos_preset_is_that_from_which_a_half_space_of_ceramic_comes_to_the_cont
         panic!("a course");
     };
     // The device is told tenths of a millikelvin.
-    assert!(
-        (course.at(0.0) - static_c).abs() < 1e-4,
-        "{} {static_c}",
-        course.at(0.0)
-    );
+    assert!((course.at(0.0) - static_c).abs() < 1e-4, "{} {static_c}", course.at(0.0));
     for t_s in [earlier_displays::YAMAMOTO_RAMP_S, 1.0, 10.0] {
         assert!((course.at(t_s) - contact_c).abs() < 1e-4, "{t_s} s");
     }
@@ -87,10 +83,7 @@ fn inos_recording_on_a_half_space_is_the_skin_of_eq_6_5() {
         let contact = contact(&touch, pressure_pa(2.0));
         for t_s in [0.02, 0.5, 10.0] {
             let difference_k: f64 = course.at(t_s) - contact.at(t_s).skin_c;
-            assert!(
-                difference_k.abs() < 0.1e-3,
-                "{material} {t_s} s: {difference_k} K"
-            );
+            assert!(difference_k.abs() < 0.1e-3, "{material} {t_s} s: {difference_k} K");
         }
     }
 }
@@ -108,10 +101,7 @@ fn caldwells_recording_lags_behind_inos_by_its_time_constant() {
         lag_ks += (fast.at(t_s) - slow.at(t_s)) / 1e3;
     }
     let time_constant_s = lag_ks / (slow.at(10.0) - slow.at(0.0));
-    assert!(
-        (time_constant_s - 4.0 / 3.0).abs() < 2e-3,
-        "{time_constant_s}"
-    );
+    assert!((time_constant_s - 4.0 / 3.0).abs() < 2e-3, "{time_constant_s}");
 }
 
 #[test]
@@ -145,11 +135,7 @@ fn a_ladder_begins_as_a_divider_of_its_resistors() {
     let (skin, granite) = (half(0.37, 1e-7), half(2.79, 2.79 / (2630.0 * 775.0)));
     let contact = contact(&touch, pressure_pa(2.0)).resistance_m2k_w;
     let exact_c = 34.0 - 10.0 * skin / (skin + contact + granite);
-    assert!(
-        (course.at(0.0) - exact_c).abs() < 1e-9,
-        "{} {exact_c}",
-        course.at(0.0)
-    );
+    assert!((course.at(0.0) - exact_c).abs() < 1e-9, "{} {exact_c}", course.at(0.0));
 }
 
 #[test]

@@ -16,10 +16,7 @@ fn touch(forces: &str) -> Result<SingleContact, NoSingleContact> {
 fn a_scene_of_one_contact_is_a_touch() {
     let touch = touch("[[force]]\nt_s = 2.0\nforce_n = 0.5\n[[force]]\nt_s = 7.0\nforce_n = 0.0\n")
         .expect("a touch");
-    assert_eq!(
-        (touch.landing_s, touch.contact_s, touch.force_n),
-        (2.0, 5.0, 0.5)
-    );
+    assert_eq!((touch.landing_s, touch.contact_s, touch.force_n), (2.0, 5.0, 0.5));
     assert_eq!((touch.skin_c, touch.object_c), (33.0, 22.0));
 }
 

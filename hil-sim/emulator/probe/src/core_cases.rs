@@ -176,9 +176,7 @@ pub fn float_context() {
     write(SYST_CSR + 4, 4_999);
     write(SYST_CSR + 8, 0);
     write(SYST_CSR, 7);
-    let wrong = (0..500)
-        .filter(|_| compute(black_box(2.5)).to_bits() != wanted)
-        .count();
+    let wrong = (0..500).filter(|_| compute(black_box(2.5)).to_bits() != wanted).count();
     write(SYST_CSR, 0);
     log(wrong as u32);
     log(u32::from(TICKS.load(Relaxed) > 100));

@@ -65,12 +65,7 @@ impl FiveFingerBoard {
         machine.wiring_mut().settling = SETTLING_US * cycles_per_us;
         let first_boundary_ps = machine.ps_at(started) + FIRST_BOUNDARY_PS;
         let meter = Meter::new(&mut machine);
-        Ok(Self {
-            machine,
-            first_boundary_ps,
-            boundaries: 0,
-            meter,
-        })
+        Ok(Self { machine, first_boundary_ps, boundaries: 0, meter })
     }
 
     /// Longest time from the end of a finger's block to the switch of the multiplexers, us.
@@ -85,8 +80,7 @@ impl FiveFingerBoard {
     /// The device did something that is not modelled.
     pub fn run_beyond_boundary(&mut self, ps: u64) -> Result<(), Stop> {
         let last = self.boundaries.saturating_sub(1);
-        self.machine
-            .run_until_ps(self.first_boundary_ps + last * TURN_PS + ps.min(TURN_PS))
+        self.machine.run_until_ps(self.first_boundary_ps + last * TURN_PS + ps.min(TURN_PS))
     }
 
     /// Longest time, us, for which the program has locked the control tick out since the start or the last
@@ -107,9 +101,7 @@ impl FiveFingerEngine for FiveFingerBoard {
         self.boundaries += 1;
         self.machine.run_until_ps(at_ps)?;
         self.machine.wiring_mut().trigger = false;
-        let tests = BRIDGES
-            .each_ref()
-            .map(|bridge| bridge.comparator_test(&self.machine));
+        let tests = BRIDGES.each_ref().map(|bridge| bridge.comparator_test(&self.machine));
         for (world, test) in self.machine.wiring_mut().worlds.iter_mut().zip(tests) {
             world.comparator_test(test);
         }
@@ -256,11 +248,8 @@ impl Wiring for Pins {
             return FLOATING;
         };
         if now >= self.switched_at + self.settling {
-            let finger = self
-                .select
-                .iter()
-                .rev()
-                .fold(0, |finger, bit| 2 * finger + usize::from(*bit));
+            let finger =
+                self.select.iter().rev().fold(0, |finger, bit| 2 * finger + usize::from(*bit));
             let Some(world) = self.worlds.get_mut(finger) else {
                 self.codes[index] = FLOATING;
                 return FLOATING;
@@ -303,9 +292,7 @@ impl Wiring for Pins {
         if (port, bit) == PARITY {
             return Some(self.select.iter().filter(|level| **level).count() % 2 == 1);
         }
-        let finger = BRIDGES
-            .iter()
-            .position(|bridge| bridge.fault == (port, bit))?;
+        let finger = BRIDGES.iter().position(|bridge| bridge.fault == (port, bit))?;
         Some(!self.worlds[finger].bridge_fault())
     }
 

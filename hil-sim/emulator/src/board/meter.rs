@@ -19,19 +19,13 @@ impl Meter {
     pub fn new<W: Wiring>(machine: &mut Machine<W>) -> Self {
         machine.restart_interrupt_stats();
         let stats = machine.stats();
-        Self {
-            cycles: stats.cycles,
-            awake: stats.cycles as f64 * (1.0 - stats.sleep_share),
-        }
+        Self { cycles: stats.cycles, awake: stats.cycles as f64 * (1.0 - stats.sleep_share) }
     }
 
     /// The cost since the start; `None` before the first control tick.
     pub fn cost<W: Wiring>(&self, machine: &Machine<W>) -> Option<Cost> {
         let stats = machine.stats();
-        let tick = stats
-            .interrupts
-            .iter()
-            .find(|interrupt| interrupt.name == TICK)?;
+        let tick = stats.interrupts.iter().find(|interrupt| interrupt.name == TICK)?;
         let awake = stats.cycles as f64 * (1.0 - stats.sleep_share) - self.awake;
         Some(Cost {
             instructions_mean: tick.instructions_mean,

@@ -48,13 +48,7 @@ struct Bridge {
 const FIRST_BRIDGE: Bridge = bridge((A, 8), (A, 9), (B, 10), (A, 6), (C, 3));
 
 const fn bridge(in1: Pin, in2: Pin, enable: Pin, fault: Pin, test: Pin) -> Bridge {
-    Bridge {
-        in1,
-        in2,
-        enable,
-        fault,
-        test,
-    }
+    Bridge { in1, in2, enable, fault, test }
 }
 
 impl Bridge {
@@ -121,18 +115,12 @@ fn inject<W: Wiring>(machine: &mut Machine<W>, fault: &MachineFault) -> Result<(
         MachineFault::SoftwareReset => machine.request_reset().map_err(InjectError::from),
         MachineFault::StackOverflow => machine.exhaust_stack(),
         MachineFault::SelectLineStuck { .. } | MachineFault::SelectLineOpen { .. } => {
-            return Err(refused(
-                fault,
-                &"the board for one finger has no multiplexers",
-            ));
+            return Err(refused(fault, &"the board for one finger has no multiplexers"));
         }
     };
     injected.map_err(|reason| refused(fault, &reason))
 }
 
 fn refused(fault: &MachineFault, reason: &dyn Display) -> NotInjected {
-    NotInjected::Refused {
-        fault: *fault,
-        reason: reason.to_string(),
-    }
+    NotInjected::Refused { fault: *fault, reason: reason.to_string() }
 }

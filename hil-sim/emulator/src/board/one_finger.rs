@@ -93,12 +93,7 @@ impl OneFingerBoard {
         let first_boundary_ps = machine.ps_at(started) + FIRST_BOUNDARY_PS;
         machine.run_until_ps(first_boundary_ps)?;
         let meter = Meter::new(&mut machine);
-        Ok(Self {
-            machine,
-            first_boundary_ps,
-            halves: 0,
-            meter,
-        })
+        Ok(Self { machine, first_boundary_ps, halves: 0, meter })
     }
 
     /// Records the execution path of the control tick from now on.
@@ -110,9 +105,7 @@ impl OneFingerBoard {
     pub fn trigger_output_rises_s(&self) -> Vec<f64> {
         let rises = self.machine.wiring().trigger_output_rises.iter();
         let first_ps = self.first_boundary_ps as f64;
-        rises
-            .map(|at| (self.machine.ps_at(*at) as f64 - first_ps) * 1e-12)
-            .collect()
+        rises.map(|at| (self.machine.ps_at(*at) as f64 - first_ps) * 1e-12).collect()
     }
 
     /// Time of the last boundary, ps since power-up.

@@ -260,8 +260,7 @@ impl<W: Wiring> Chip<W> {
                 self.flash.control_data_cache(value);
             }
             Device::Flash => {
-                self.flash
-                    .write(offset, value, now, self.rcc.clocks().hclk_hz)?;
+                self.flash.write(offset, value, now, self.rcc.clocks().hclk_hz)?;
                 self.power_may_fail();
             }
             Device::Pwr => self.rcc.write_pwr(offset, value, now)?,
@@ -301,9 +300,7 @@ impl<W: Wiring> Chip<W> {
                 self.nvic.set_line(USART2_IRQ, self.usart.request(), now);
                 self.dma_request_possible = true;
             }
-            Device::Iwdg => self
-                .iwdg
-                .write(offset, value, now, self.rcc.clocks().hclk_hz)?,
+            Device::Iwdg => self.iwdg.write(offset, value, now, self.rcc.clocks().hclk_hz)?,
             Device::Wwdg => {
                 if self.wwdg.write(offset, value, now)? {
                     self.reset = Some(ResetCause::WindowWatchdog);
@@ -329,12 +326,9 @@ impl<W: Wiring> Chip<W> {
 
     /// The window watchdog counts PCLK1 while its own clock is enabled.
     pub(super) fn clock_wwdg(&mut self, now: u64) {
-        let Clocks {
-            hclk_hz, pclk1_hz, ..
-        } = self.rcc.clocks();
+        let Clocks { hclk_hz, pclk1_hz, .. } = self.rcc.clocks();
         let on = self.rcc.check_clock(Enr::Apb1, 11).is_ok() && !self.window_watchdog_is_halted();
-        self.wwdg
-            .set_clock(on.then(|| u64::from(hclk_hz / pclk1_hz)), now);
+        self.wwdg.set_clock(on.then(|| u64::from(hclk_hz / pclk1_hz)), now);
     }
 
     /// Stores to the flash of the settings.

@@ -60,14 +60,9 @@ pub(super) struct Bench {
 
 impl Bench {
     pub fn new() -> Self {
-        let delivered = ChipState {
-            brown_out_code: 3,
-            ..ChipState::default()
-        };
-        let mut bench = Self {
-            chip: Chip::new(Outside::default(), vec![0xff; 0x1_0000], &delivered),
-            now: 0,
-        };
+        let delivered = ChipState { brown_out_code: 3, ..ChipState::default() };
+        let mut bench =
+            Self { chip: Chip::new(Outside::default(), vec![0xff; 0x1_0000], &delivered), now: 0 };
         bench.reset();
         bench
     }
@@ -75,14 +70,11 @@ impl Bench {
     /// The chip after a power-on, but for enabled clocks of all modelled peripherals and an unlocked watchdog.
     pub fn reset(&mut self) {
         self.chip.system_reset(ResetCause::PowerOn, self.now);
-        for (register, clocks) in [
-            (0x4002_3830, 0x0060_00ff),
-            (0x4002_3840, 0x3002_083f),
-            (0x4002_3844, 0x0006_4303),
-        ] {
+        for (register, clocks) in
+            [(0x4002_3830, 0x0060_00ff), (0x4002_3840, 0x3002_083f), (0x4002_3844, 0x0006_4303)]
+        {
             let old = self.read(register).expect("an enable register");
-            self.write(register, old | clocks)
-                .expect("modelled peripherals");
+            self.write(register, old | clocks).expect("modelled peripherals");
         }
         self.write(0x4000_3000, 0x5555).expect("key of the IWDG");
     }
@@ -251,13 +243,7 @@ fn the_input_register_shows_what_peripherals_drive() {
         bench.read(GPIOA + 0x10).expect("IDR") & 0x0304
     };
     // the transmitter's first frame is idle
-    for (now, expected) in [
-        (0, 0x104),
-        (29, 0x104),
-        (30, 0x204),
-        (99, 0x204),
-        (129, 0x104),
-    ] {
+    for (now, expected) in [(0, 0x104), (29, 0x104), (30, 0x204), (99, 0x204), (129, 0x104)] {
         assert_eq!(pins(now), expected, "{now}");
     }
     let begin = 1000;
@@ -271,9 +257,7 @@ fn the_input_register_shows_what_peripherals_drive() {
         bench.read(GPIOA + 0x10).expect("IDR") >> 2 & 1
     };
     // start bit, eight data bits from the lowest on, stop bit
-    let bits: Vec<u32> = (0..10)
-        .map(|bit| level(&mut bench, begin + 16 * bit + 8))
-        .collect();
+    let bits: Vec<u32> = (0..10).map(|bit| level(&mut bench, begin + 16 * bit + 8)).collect();
     assert_eq!(bits, [0, 1, 0, 0, 0, 0, 0, 1, 0, 1]);
     bench.set_up(&[(USART2 + 0xc, 0)]);
     assert_eq!(level(&mut bench, 2000), 0, "a floating pin");
@@ -287,11 +271,7 @@ fn the_enable_of_a_counter_starts_the_converter_if_it_is_the_trigger() {
         bench.set_up(&[(ADC + 8, 1 << 28 | 6 << 24 | 1), (TIM2 + 4, mode << 4)]);
         bench.now = 100;
         bench.set_up(&[(TIM2, 1)]);
-        assert_eq!(
-            bench.chip.adcs[ADC1].due != u64::MAX,
-            starts,
-            "MMS = {mode}"
-        );
+        assert_eq!(bench.chip.adcs[ADC1].due != u64::MAX, starts, "MMS = {mode}");
     }
 }
 
@@ -417,11 +397,7 @@ fn what_adc2_has_no_model_for_ends_the_run() {
     }
     for channel in [16, 17, 18] {
         let mut bench = Bench::new();
-        bench.set_up(&[
-            (ADC_COMMON + 4, 1 << 23),
-            (ADC2 + 0x34, channel),
-            (ADC2 + 8, 1),
-        ]);
+        bench.set_up(&[(ADC_COMMON + 4, 1 << 23), (ADC2 + 0x34, channel), (ADC2 + 8, 1)]);
         bench.now = 100;
         let started = bench.write(ADC2 + 8, 1 << 30 | 1);
         assert!(matches!(started, Err(Refusal::NotModelled(_))), "{channel}");

@@ -71,11 +71,7 @@ mod tests {
         cache.control(0);
         assert_eq!(cache.load(35, &erased), [0xff; LINE_BYTES]);
         cache.control(DCEN);
-        assert_eq!(
-            cache.load(35, &erased),
-            [7; LINE_BYTES],
-            "off is not cleared"
-        );
+        assert_eq!(cache.load(35, &erased), [7; LINE_BYTES], "off is not cleared");
         cache.control(DCRST);
         cache.control(DCEN);
         assert_eq!(cache.load(35, &erased), [0xff; LINE_BYTES]);

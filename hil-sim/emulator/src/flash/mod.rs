@@ -37,14 +37,8 @@ struct Times {
     erase_us: [u64; 3],
 }
 
-const TYPICAL: Times = Times {
-    program_us: 16,
-    erase_us: [400_000, 300_000, 250_000],
-};
-const LONGEST: Times = Times {
-    program_us: 100,
-    erase_us: [800_000, 600_000, 500_000],
-};
+const TYPICAL: Times = Times { program_us: 16, erase_us: [400_000, 300_000, 250_000] };
+const LONGEST: Times = Times { program_us: 100, erase_us: [800_000, 600_000, 500_000] };
 
 /// State of the unlock sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,9 +87,7 @@ impl Flash {
     pub fn has_settings(flash: &[u8]) -> bool {
         let from = (SETTINGS.start - FLASH_BASE) as usize;
         let to = (SETTINGS.end - FLASH_BASE) as usize;
-        flash
-            .get(from..to)
-            .is_some_and(|gap| gap.iter().all(|byte| *byte == 0xff))
+        flash.get(from..to).is_some_and(|gap| gap.iter().all(|byte| *byte == 0xff))
     }
 
     /// Cycle until which the busy flash stalls the code in it.
@@ -136,11 +128,7 @@ impl Flash {
                     (self.lock, self.control) = (Lock::Locked, value & !(LOCK | STRT));
                     return Ok(());
                 }
-                only(
-                    value,
-                    STRT | 0x37b,
-                    "FLASH_CR beyond PG, SER, SNB, PSIZE, STRT and LOCK",
-                )?;
+                only(value, STRT | 0x37b, "FLASH_CR beyond PG, SER, SNB, PSIZE, STRT and LOCK")?;
                 self.control = value & !STRT;
                 if value & STRT != 0 {
                     self.start(now, hclk_hz)?;
@@ -163,8 +151,7 @@ impl Flash {
                 "erasing other sectors than 1 to 3, or 64 bits at a time",
             ));
         };
-        self.cells
-            .erase(sector * SECTOR_BYTES..(sector + 1) * SECTOR_BYTES);
+        self.cells.erase(sector * SECTOR_BYTES..(sector + 1) * SECTOR_BYTES);
         self.extend_busy(now, *time, hclk_hz);
         Ok(())
     }
@@ -213,10 +200,7 @@ impl Flash {
         let line = self.data_cache.load(from, self.cells.bytes());
         let within = from % LINE_BYTES;
         let read = line.get(within..within + usize::from(bytes));
-        read.unwrap_or_default()
-            .iter()
-            .rev()
-            .fold(0, |word, byte| word << 8 | u32::from(*byte))
+        read.unwrap_or_default().iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))
     }
 
     /// Extends the busy time by an operation, which begins after the one before.

@@ -53,11 +53,7 @@ impl Rcc {
         };
         let detected = self.cr & (CSSON | HSEON) == CSSON | HSEON;
         if !detected {
-            return Ok(if drives {
-                AfterHse::Nothing
-            } else {
-                AfterHse::Unaffected
-            });
+            return Ok(if drives { AfterHse::Nothing } else { AfterHse::Unaffected });
         }
         self.clock_failure = true;
         self.cr &= !HSEON;

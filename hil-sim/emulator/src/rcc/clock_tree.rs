@@ -11,11 +11,9 @@ const PLL_LOCK_US: u64 = 100;
 impl Rcc {
     pub(super) fn write_cr(&mut self, value: u32, now: u64) -> Answer<()> {
         let turned_on = value & !self.cr;
-        for (bit, source, us) in [
-            (0, HSI, HSI_START_US),
-            (16, HSE, self.hse_start_us),
-            (24, PLL, PLL_LOCK_US),
-        ] {
+        for (bit, source, us) in
+            [(0, HSI, HSI_START_US), (16, HSE, self.hse_start_us), (24, PLL, PLL_LOCK_US)]
+        {
             if turned_on >> bit & 1 != 0 {
                 self.ready_at[source] = self.after(now, us);
             }
@@ -23,21 +21,12 @@ impl Rcc {
         let in_use = match self.cfgr & 3 {
             0 => 0x0000_0001,
             1 => 0x0001_0000,
-            _ => {
-                0x0100_0000
-                    | if self.pllcfgr >> 22 & 1 != 0 {
-                        0x0001_0000
-                    } else {
-                        1
-                    }
-            }
+            _ => 0x0100_0000 | if self.pllcfgr >> 22 & 1 != 0 { 0x0001_0000 } else { 1 },
         };
         if turned_on >> 24 & 1 != 0 {
             self.pll_hz()?;
             if self.pllcfgr >> 22 & 1 != 0 && !self.is_ready(HSE, now) {
-                return Err(Refusal::NotModelled(
-                    "RCC_CR.PLLON with HSE as source before HSERDY",
-                ));
+                return Err(Refusal::NotModelled("RCC_CR.PLLON with HSE as source before HSERDY"));
             }
         }
         // hardware keeps a clock on that drives the system (6.3.1)
@@ -49,11 +38,7 @@ impl Rcc {
     fn pll_hz(&self) -> Answer<u32> {
         let (m, n) = (self.pllcfgr & 0x3f, self.pllcfgr >> 6 & 0x1ff);
         let p = 2 * ((self.pllcfgr >> 16 & 3) + 1);
-        let source = if self.pllcfgr >> 22 & 1 != 0 {
-            HSE_HZ
-        } else {
-            HSI_HZ
-        };
+        let source = if self.pllcfgr >> 22 & 1 != 0 { HSE_HZ } else { HSI_HZ };
         let input = source / m.max(1);
         within("PLL input", input, 950_000, 2_100_000)?;
         let vco = source as u64 * u64::from(n) / u64::from(m.max(1));
@@ -67,9 +52,7 @@ impl Rcc {
             return Err(Refusal::NotModelled("RCC_CFGR.SW = PLL_R"));
         }
         if !self.is_ready([HSI, HSE, PLL][source], now) {
-            return Err(Refusal::NotModelled(
-                "RCC_CFGR.SW = a source that is not ready",
-            ));
+            return Err(Refusal::NotModelled("RCC_CFGR.SW = a source that is not ready"));
         }
         only(value, 0x001f_fcff, "RCC_CFGR clock outputs")?;
         self.clocks = self.clocks_for(value)?;
@@ -105,12 +88,7 @@ impl Rcc {
             (2, false) => 144_000_000,
             _ => 120_000_000,
         };
-        within(
-            "HCLK for the regulator's voltage scale and over-drive",
-            hclk_hz,
-            1,
-            limit,
-        )?;
+        within("HCLK for the regulator's voltage scale and over-drive", hclk_hz, 1, limit)?;
         within("PCLK1", pclk1_hz, 1, 45_000_000)?;
         within("PCLK2", pclk2_hz, 1, 90_000_000)?;
         Ok(Clocks {
@@ -127,11 +105,7 @@ impl Rcc {
         let needed = self.clocks.hclk_hz.div_ceil(30_000_000) - 1;
         let latency = self.acr & 0xf;
         if latency < needed {
-            return Err(Refusal::FlashLatency {
-                hclk_hz: self.clocks.hclk_hz,
-                latency,
-                needed,
-            });
+            return Err(Refusal::FlashLatency { hclk_hz: self.clocks.hclk_hz, latency, needed });
         }
         Ok(())
     }
@@ -141,11 +115,6 @@ fn within(clock: &'static str, hz: u32, min_hz: u32, max_hz: u32) -> Answer<()> 
     if (min_hz..=max_hz).contains(&hz) {
         Ok(())
     } else {
-        Err(Refusal::ClockRange {
-            clock,
-            hz,
-            min_hz,
-            max_hz,
-        })
+        Err(Refusal::ClockRange { clock, hz, min_hz, max_hz })
     }
 }

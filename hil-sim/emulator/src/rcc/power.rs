@@ -24,11 +24,7 @@ impl Rcc {
             return Err(Refusal::Offset);
         }
         // DBP protects a domain that is not modelled; the clear bits act on wake-up flags that stay 0
-        only(
-            value,
-            0x0003_c10c,
-            "PWR_CR beyond VOS, ODEN, ODSWEN and DBP",
-        )?;
+        only(value, 0x0003_c10c, "PWR_CR beyond VOS, ODEN, ODSWEN and DBP")?;
         for (i, bit) in [(0, 16), (1, 17)] {
             if value >> bit & 1 == 0 {
                 self.over_drive_at[i] = u64::MAX;

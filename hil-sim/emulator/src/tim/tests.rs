@@ -52,17 +52,9 @@ fn preloaded_compare_values_wait_for_the_update() {
 #[test]
 fn outputs_follow_the_output_control_bits() {
     assert_eq!(pwm(0).output(0), Output::Released, "MOE = 0, OSSI = 0");
-    assert_eq!(
-        pwm(OSSI).output(0),
-        Output::High { high: 0, period: 1 },
-        "idle level"
-    );
+    assert_eq!(pwm(OSSI).output(0), Output::High { high: 0, period: 1 }, "idle level");
     assert_eq!(pwm(MOE).output(2), Output::Released, "CC3E = 0, OSSR = 0");
-    assert_eq!(
-        pwm(MOE | OSSR).output(2),
-        Output::High { high: 0, period: 1 },
-        "inactive level"
-    );
+    assert_eq!(pwm(MOE | OSSR).output(2), Output::High { high: 0, period: 1 }, "inactive level");
 }
 
 #[test]
@@ -72,10 +64,7 @@ fn break_switches_the_outputs_off_and_holds_them() {
     assert!(tim.set_break(false));
     assert_eq!(tim.output(0), Output::Released);
     tim.write(0x44, MOE | BKE, 100).unwrap();
-    assert!(
-        tim.set_break(false),
-        "MOE does not hold while the input is active"
-    );
+    assert!(tim.set_break(false), "MOE does not hold while the input is active");
     assert_eq!(tim.output(0), Output::Released);
     tim.write(0x10, 0, 200).unwrap();
     tim.write(0x44, MOE | BKE, 200).unwrap();
@@ -130,24 +119,14 @@ fn compare_flags_rise_at_the_match() {
     assert_eq!(tim.read(0x10, 449).unwrap() & 2, 0);
     assert_eq!(tim.read(0x10, 450).unwrap() & 2, 2);
     tim.write(0x10, 0, 500).unwrap();
-    assert_eq!(
-        tim.read(0x10, 1800 * 100 + 300).unwrap() & 3,
-        3,
-        "a hundred periods later"
-    );
+    assert_eq!(tim.read(0x10, 1800 * 100 + 300).unwrap() & 3, 3, "a hundred periods later");
 }
 
 #[test]
 fn one_pulse_mode_stops_at_the_update() {
     let mut tim = timer(BASIC, 2, &[(0x2c, 99), (0x00, 9)]);
     assert_eq!(tim.read(0x00, 199).unwrap() & 1, 1);
-    assert_eq!(
-        (
-            tim.read(0x00, 200).unwrap() & 1,
-            tim.read(0x10, 200).unwrap()
-        ),
-        (0, 1)
-    );
+    assert_eq!((tim.read(0x00, 200).unwrap() & 1, tim.read(0x10, 200).unwrap()), (0, 1));
 }
 
 #[test]
@@ -163,22 +142,10 @@ fn unmodelled_modes_are_refused() {
 #[test]
 fn each_kind_of_timer_has_only_its_own_registers() {
     for (kind, present, absent) in [
-        (
-            ADVANCED,
-            &[0x04, 0x08, 0x1c, 0x30, 0x40, 0x44][..],
-            &[0x50][..],
-        ),
+        (ADVANCED, &[0x04, 0x08, 0x1c, 0x30, 0x40, 0x44][..], &[0x50][..]),
         (GENERAL, &[0x04, 0x08, 0x1c, 0x40], &[0x30, 0x44]),
-        (
-            SINGLE,
-            &[0x0c, 0x18, 0x20, 0x34],
-            &[0x04, 0x08, 0x1c, 0x30, 0x38, 0x3c, 0x40, 0x44],
-        ),
-        (
-            BASIC,
-            &[0x04, 0x0c, 0x2c],
-            &[0x08, 0x18, 0x1c, 0x20, 0x34, 0x40, 0x44],
-        ),
+        (SINGLE, &[0x0c, 0x18, 0x20, 0x34], &[0x04, 0x08, 0x1c, 0x30, 0x38, 0x3c, 0x40, 0x44]),
+        (BASIC, &[0x04, 0x0c, 0x2c], &[0x08, 0x18, 0x1c, 0x20, 0x34, 0x40, 0x44]),
     ] {
         let mut tim = Tim::new(kind, 1);
         for offset in present {
@@ -201,10 +168,7 @@ fn a_single_channel_timer_needs_no_main_output_enable() {
     let output = [(0x2c, 1874), (0x34, 625), (0x18, 0x68), (0x20, 0x1)];
     let start = [(0x14, 1), (0x00, 0x81)];
     let tim = timer(SINGLE, 1, &[output.as_slice(), &start].concat());
-    let third = Output::High {
-        high: 625,
-        period: 1875,
-    };
+    let third = Output::High { high: 625, period: 1875 };
     assert_eq!(tim.output(0), third);
 }
 
@@ -240,10 +204,7 @@ fn a_rising_edge_stores_the_count_and_reading_it_clears_the_flag() {
     assert_eq!(tim.read(0x10, 180 * 1300).unwrap() & 2, 2);
     assert_eq!(tim.read(0x34, 180 * 1300).unwrap(), 234);
     assert_eq!(tim.read(0x10, 180 * 1300).unwrap() & 2, 0);
-    assert!(
-        !tim.set_input(0, false, 180 * 1400),
-        "a falling edge is not selected"
-    );
+    assert!(!tim.set_input(0, false, 180 * 1400), "a falling edge is not selected");
     assert_eq!(tim.read(0x34, 180 * 1500).unwrap(), 234);
 }
 
@@ -269,12 +230,6 @@ fn an_input_matches_no_count() {
     tim.read(0x34, 180 * 501).unwrap();
     assert_eq!(tim.read(0x10, 180 * 5_000).unwrap() & 2, 0);
     assert_eq!(tim.output(0), Output::Released);
-    assert!(
-        tim.write(0x18, 0x11, 0).is_err(),
-        "filters are not modelled"
-    );
-    assert!(
-        tim.write(0x14, 2, 0).is_err(),
-        "capture by software is not modelled"
-    );
+    assert!(tim.write(0x18, 0x11, 0).is_err(), "filters are not modelled");
+    assert!(tim.write(0x14, 2, 0).is_err(), "capture by software is not modelled");
 }

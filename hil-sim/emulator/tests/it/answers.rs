@@ -29,19 +29,17 @@ struct Answer {
 
 /// The answers of QEMU 7.2 (`netduinoplus2`), in the order of the program's table.
 fn answers() -> impl Iterator<Item = Answer> {
-    include_str!("../answers/instructions.txt")
-        .lines()
-        .map(|line| {
-            let [sums, form, sample] = line
-                .splitn(3, '|')
-                .map(str::trim)
-                .collect::<Vec<_>>()
-                .try_into()
-                .expect("three columns");
-            let hexadecimal = |word| u32::from_str_radix(word, 16).expect("a number");
-            let sums = sums.split(' ').map(hexadecimal).collect();
-            Answer { sums, form, sample }
-        })
+    include_str!("../answers/instructions.txt").lines().map(|line| {
+        let [sums, form, sample] = line
+            .splitn(3, '|')
+            .map(str::trim)
+            .collect::<Vec<_>>()
+            .try_into()
+            .expect("three columns");
+        let hexadecimal = |word| u32::from_str_radix(word, 16).expect("a number");
+        let sums = sums.split(' ').map(hexadecimal).collect();
+        Answer { sums, form, sample }
+    })
 }
 
 #[test]
@@ -51,11 +49,7 @@ fn every_form_of_every_instruction_gives_the_results_that_qemu_gives() {
     machine.run_until(1_500_000_000).expect("runs");
     let forms = probe::words_of(&firmware, &machine, "FORMS_RUN", 1)[0] as usize;
     let results = probe::words_of(&firmware, &machine, "ANSWERS", forms * ANSWER);
-    assert_eq!(
-        answers().count(),
-        forms,
-        "tests/answers/from_qemu.py was not run"
-    );
+    assert_eq!(answers().count(), forms, "tests/answers/from_qemu.py was not run");
     let mut differing = Vec::new();
     for (result, answer) in results.chunks(ANSWER).zip(answers()) {
         for group in 0..GROUPS {
@@ -69,11 +63,7 @@ fn every_form_of_every_instruction_gives_the_results_that_qemu_gives() {
                 differing.push(format!(
                     "{}, group {group}: {}; QEMU's sample {}; here {:?} = {values:08x?}",
                     answer.form,
-                    if equal {
-                        "no longer differs"
-                    } else {
-                        "differs"
-                    },
+                    if equal { "no longer differs" } else { "differs" },
                     answer.sample,
                     positions.to_le_bytes(),
                 ));
@@ -88,10 +78,7 @@ fn exceptions_logged(strict: bool) -> Vec<String> {
     const STEPS: [u32; 6] = [0x9000, 0xa000, 0xb000, 0xc000, 0xd000, 0xf000];
     const ENTRIES: u32 = 4000;
     let firmware = probe::program("exceptions");
-    let chip = ChipState {
-        strict,
-        ..ChipState::default()
-    };
+    let chip = ChipState { strict, ..ChipState::default() };
     let machine = Machine::with_chip(&firmware, Bench::default(), &chip);
     let mut machine = machine.expect("powers up");
     machine.run_until(5_000_000).expect("runs");

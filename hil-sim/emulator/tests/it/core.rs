@@ -47,10 +47,7 @@ fn a_load_without_memory_becomes_a_hard_fault() {
     let precise_bus_fault_with_address = 1 << 9 | 1 << 15;
     assert_eq!(log[..4], [1, 3, precise_bus_fault_with_address, 1 << 30]);
     let function = probe::firmware().function_at(log[4]);
-    assert!(
-        function.contains("bad_load") || function.contains("main"),
-        "stacked PC in {function}"
-    );
+    assert!(function.contains("bad_load") || function.contains("main"), "stacked PC in {function}");
     assert_eq!(log[5], DONE);
 }
 
@@ -63,9 +60,7 @@ fn an_undefined_instruction_becomes_a_hard_fault() {
 #[test]
 fn a_fault_in_the_fault_handler_without_a_watchdog_ends_the_run() {
     match probe::machine(4).run_until(1_000_000).expect_err("stops") {
-        Stop::Lockup {
-            priority, place, ..
-        } => {
+        Stop::Lockup { priority, place, .. } => {
             assert_eq!(priority, -1);
             assert!(place.function.contains("hard_fault"), "{place}");
         }
@@ -89,11 +84,7 @@ fn the_independent_watchdog_ends_lockup() {
 #[test]
 fn a_software_reset_sets_its_flag() {
     let (machine, log) = probe::run(5, 100_000);
-    assert_eq!(
-        log,
-        [0x1e, 0, DONE],
-        "power-on, brown-out, pin and software flags; thread mode"
-    );
+    assert_eq!(log, [0x1e, 0, DONE], "power-on, brown-out, pin and software flags; thread mode");
     assert_eq!(probe::only_reset(&machine).cause, ResetCause::Software);
 }
 
@@ -132,21 +123,12 @@ fn under_a_debugger_a_breakpoint_halts_the_core_until_it_is_answered() {
     const MS_PS: u64 = 1_000_000_000;
     let mut machine = probe::machine(27);
     machine.restart_under_debugger().expect("restarts");
-    assert_eq!(
-        machine.run_until_halted(MS_PS),
-        Ok(Some(Halted::Breakpoint(0xab)))
-    );
+    assert_eq!(machine.run_until_halted(MS_PS), Ok(Some(Halted::Breakpoint(0xab))));
     assert_eq!(machine.call_registers(), [0x11, 0x22]);
     let executed = machine.stats().instructions;
     assert_eq!(machine.run_until_halted(2 * MS_PS), Ok(None));
-    assert_eq!(
-        machine.stats().instructions,
-        executed,
-        "the core stands still"
-    );
-    machine
-        .continue_behind_breakpoint(Some(0x33))
-        .expect("continues");
+    assert_eq!(machine.stats().instructions, executed, "the core stands still");
+    machine.continue_behind_breakpoint(Some(0x33)).expect("continues");
     assert_eq!(machine.run_until_halted(3 * MS_PS), Ok(None));
     assert_eq!(probe::log(&machine), [0x33, 1, DONE]);
 }

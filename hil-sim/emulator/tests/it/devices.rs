@@ -15,10 +15,7 @@ fn assert_ends(case: u8, expected: &str) {
 
 #[test]
 fn an_unmodelled_register_ends_the_run_and_is_named() {
-    assert_ends(
-        8,
-        "SPI1+0x0 at 0x40013000 is not modelled: 32-bit read, value 0x0, in probe::",
-    );
+    assert_ends(8, "SPI1+0x0 at 0x40013000 is not modelled: 32-bit read, value 0x0, in probe::");
 }
 
 #[test]
@@ -54,14 +51,9 @@ fn the_break_input_releases_both_legs() {
     let (mut machine, _) = probe::run(13, SECOND / 100);
     assert_ne!(machine.pwm(0, 8), LegState::Off);
     machine.wiring_mut().break_pin = Some(true);
-    machine
-        .run_until(machine.now() + SECOND / 16_000)
-        .expect("runs");
+    machine.run_until(machine.now() + SECOND / 16_000).expect("runs");
     assert_eq!([machine.pwm(0, 8), machine.pwm(0, 9)], [LegState::Off; 2]);
-    assert_eq!(
-        machine.wiring().bridge.last().map(|b| b.0),
-        Some([LegState::Off; 2])
-    );
+    assert_eq!(machine.wiring().bridge.last().map(|b| b.0), Some([LegState::Off; 2]));
 }
 
 #[test]
@@ -128,16 +120,9 @@ fn the_watchdog_resets_ten_milliseconds_after_the_last_feed() {
     );
     let reset = probe::only_reset(&machine);
     assert_eq!(reset.cause, ResetCause::IndependentWatchdog);
-    let feeds: Vec<u64> = machine
-        .wiring()
-        .outputs
-        .iter()
-        .filter(|o| o.1 == 5)
-        .map(|o| o.3)
-        .collect();
-    let [_low, first, second, third, _gone] = feeds[..] else {
-        panic!("{feeds:?}")
-    };
+    let feeds: Vec<u64> =
+        machine.wiring().outputs.iter().filter(|o| o.1 == 5).map(|o| o.3).collect();
+    let [_low, first, second, third, _gone] = feeds[..] else { panic!("{feeds:?}") };
     assert!(second - first > 30_000 && third - second > 30_000);
     let ten_milliseconds = 160_000;
     assert!(
@@ -163,9 +148,7 @@ fn the_window_watchdog_resets_when_it_is_no_longer_refreshed() {
         .filter(|output| output.2 == Some(true))
         .map(|output| output.3)
         .collect();
-    let [_first, third] = refreshes[..] else {
-        panic!("{refreshes:?}")
-    };
+    let [_first, third] = refreshes[..] else { panic!("{refreshes:?}") };
     let periods = (reset.at - third) as f64 / 4096.0;
     assert!(
         (63.0..=64.0).contains(&periods),
@@ -189,20 +172,11 @@ fn the_load_of_the_product_keeps_its_rates() {
         (clocks.hclk_hz, clocks.pclk1_hz, clocks.pclk2_hz),
         (180_000_000, 45_000_000, 90_000_000)
     );
-    assert_eq!(
-        machine.pwm(0, 8),
-        LegState::Duty {
-            high: 450,
-            period: 1800
-        }
-    );
+    assert_eq!(machine.pwm(0, 8), LegState::Duty { high: 450, period: 1800 });
     assert_eq!(machine.pwm(0, 8).duty(), Some(0.25));
     assert_eq!(machine.pwm(0, 9).duty(), Some(0.0));
     let from = machine.now();
-    let (conversions, bytes) = (
-        machine.wiring().conversions.len(),
-        machine.wiring().sent.len(),
-    );
+    let (conversions, bytes) = (machine.wiring().conversions.len(), machine.wiring().sent.len());
     let ticks = |m: &stm32_emulator::Machine<probe::Bench>| {
         let interrupts = m.stats().interrupts;
         let tick = interrupts.iter().find(|i| i.name == "SysTick");
@@ -212,48 +186,23 @@ fn the_load_of_the_product_keeps_its_rates() {
     machine.run_until(from + SECOND).expect("runs");
     let bench = machine.wiring();
     assert!((bench.conversions.len() - conversions).abs_diff(112_000) <= 7);
-    assert!(
-        (bench.sent.len() - bytes).abs_diff(100_000) <= 1,
-        "10 bits a byte at 1 Mbit/s"
-    );
+    assert!((bench.sent.len() - bytes).abs_diff(100_000) <= 1, "10 bits a byte at 1 Mbit/s");
     assert_eq!(bench.baud, 1_000_000);
     assert_eq!((ticks(&machine) - ticks_before).abs_diff(1000), 0);
-    let starts: Vec<u64> = bench
-        .conversions
-        .iter()
-        .filter(|c| c.0 == 0)
-        .map(|c| c.1)
-        .collect();
+    let starts: Vec<u64> = bench.conversions.iter().filter(|c| c.0 == 0).map(|c| c.1).collect();
     assert!(
-        starts
-            .windows(2)
-            .all(|pair| pair[1] - pair[0] == SECOND / 16_000),
+        starts.windows(2).all(|pair| pair[1] - pair[0] == SECOND / 16_000),
         "sampling has no jitter"
     );
-    let scan: Vec<_> = bench.conversions[..7]
-        .iter()
-        .map(|c| (c.0, c.1 - bench.conversions[0].1))
-        .collect();
+    let scan: Vec<_> =
+        bench.conversions[..7].iter().map(|c| (c.0, c.1 - bench.conversions[0].1)).collect();
     let conversion = (56 + 12) * 8;
-    assert_eq!(
-        scan,
-        (0..7)
-            .map(|i| (i, u64::from(i) * conversion))
-            .collect::<Vec<_>>()
-    );
-    assert!(
-        bench
-            .sent
-            .windows(2)
-            .all(|pair| pair[1].1 - pair[0].1 == 1800)
-    );
+    assert_eq!(scan, (0..7).map(|i| (i, u64::from(i) * conversion)).collect::<Vec<_>>());
+    assert!(bench.sent.windows(2).all(|pair| pair[1].1 - pair[0].1 == 1800));
     let samples = probe::words(&machine, "SAMPLES", 7);
     let wanted = [(0, 1), (2, 3), (4, 5), (6, 0), (1, 2), (3, 4), (5, 6)];
     let code = |channel: u32| 100 * channel + 7;
-    assert_eq!(
-        samples,
-        wanted.map(|(low, high)| code(low) | code(high) << 16)
-    );
+    assert_eq!(samples, wanted.map(|(low, high)| code(low) | code(high) << 16));
 }
 
 #[test]
@@ -262,10 +211,7 @@ fn received_bytes_arrive_by_interrupt() {
     machine.uart_send(b"ok?");
     let from = machine.now();
     machine.run_until(from + 3 * 1800 - 1).expect("runs");
-    assert_eq!(
-        probe::log(&machine)[2..],
-        [0x5a00_0020, b'o'.into(), 0x5a00_0020, b'k'.into()]
-    );
+    assert_eq!(probe::log(&machine)[2..], [0x5a00_0020, b'o'.into(), 0x5a00_0020, b'k'.into()]);
     machine.run_until(from + 4 * 1800).expect("runs");
     assert_eq!(probe::log(&machine)[6..], [0x5a00_0020, b'?'.into()]);
 }
@@ -277,11 +223,7 @@ fn a_host_rate_more_than_3_percent_off_causes_framing_errors() {
         machine.set_host_baud(baud);
         machine.uart_send(b"U");
         machine.run_until(machine.now() + 10_000).expect("runs");
-        assert_eq!(
-            probe::log(&machine)[1],
-            0x5a00_0020 | framing_error,
-            "host at {baud}"
-        );
+        assert_eq!(probe::log(&machine)[1], 0x5a00_0020 | framing_error, "host at {baud}");
     }
 }
 
@@ -292,11 +234,7 @@ fn two_runs_are_identical() {
         for step in 1..=steps {
             machine.run_until(step * SECOND / steps / 5).expect("runs");
         }
-        (
-            machine.stats(),
-            machine.stack_high_water(),
-            std::mem::take(machine.wiring_mut()),
-        )
+        (machine.stats(), machine.stack_high_water(), std::mem::take(machine.wiring_mut()))
     };
     let (stats, stack, bench) = run(1);
     let (stats_again, stack_again, bench_again) = run(1);
@@ -304,12 +242,6 @@ fn two_runs_are_identical() {
     assert_eq!(bench.conversions, bench_again.conversions);
     assert_eq!(bench.sent, bench_again.sent);
     let (_, _, in_steps) = run(777);
-    assert_eq!(
-        bench.conversions, in_steps.conversions,
-        "in one run and in 777 parts"
-    );
-    assert!(
-        stack.is_some_and(|bytes| bytes > 0 && bytes < 4096),
-        "{stack:?}"
-    );
+    assert_eq!(bench.conversions, in_steps.conversions, "in one run and in 777 parts");
+    assert!(stack.is_some_and(|bytes| bytes > 0 && bytes < 4096), "{stack:?}");
 }

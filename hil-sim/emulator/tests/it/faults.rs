@@ -31,11 +31,7 @@ fn a_hung_core_is_reset_by_the_window_watchdog_and_the_legs_are_off_at_once() {
     machine.hang_core();
     let hung_at = machine.now();
     run(&mut machine, 44 * MS);
-    assert_ne!(
-        legs(&mut machine),
-        OFF,
-        "the timer drives on without its core"
-    );
+    assert_ne!(legs(&mut machine), OFF, "the timer drives on without its core");
     let more = machine.wiring().conversions.len() - conversions;
     assert!(more.abs_diff(44 * 16 * 7) <= 7, "and samples: {more}");
     run(&mut machine, 5 * MS);
@@ -46,11 +42,7 @@ fn a_hung_core_is_reset_by_the_window_watchdog_and_the_legs_are_off_at_once() {
     let shortest = longest - 4096 * 8 * 4 - MS;
     let took = reset.at - hung_at;
     assert!((shortest..=longest).contains(&took), "{took} cycles");
-    assert_eq!(
-        machine.wiring().bridge.last(),
-        Some(&(OFF, reset.at)),
-        "in the cycle of the reset"
-    );
+    assert_eq!(machine.wiring().bridge.last(), Some(&(OFF, reset.at)), "in the cycle of the reset");
     assert_eq!(legs(&mut machine), OFF);
     assert_eq!(probe::log(&machine)[0], 0x4e, "the image runs again");
 }
@@ -78,28 +70,17 @@ fn time_continues_through_a_reset_at_the_changed_clock() {
     let (mut machine, _) = probe::run(13, 10 * MS);
     let at_ps = machine.ps_at(machine.now());
     machine.pull_reset_pin().expect("resets");
-    assert_eq!(
-        machine.ps_at(machine.now()) - at_ps,
-        20_000_000,
-        "the chip is held for 20 us"
-    );
+    assert_eq!(machine.ps_at(machine.now()) - at_ps, 20_000_000, "the chip is held for 20 us");
     machine.run_until_ps(at_ps + 2_000_000_000).expect("runs");
     assert!(
         machine.ps_at(machine.now()).abs_diff(at_ps + 2_000_000_000) < 1_000_000,
         "within a basic block"
     );
-    assert_eq!(
-        machine.clocks().hclk_hz,
-        180_000_000,
-        "the image has set its clock"
-    );
+    assert_eq!(machine.clocks().hclk_hz, 180_000_000, "the image has set its clock");
     let conversions = machine.wiring().conversions.len();
     machine.run_until_ps(at_ps + 12_000_000_000).expect("runs");
     let more = machine.wiring().conversions.len() - conversions;
-    assert!(
-        more.abs_diff(10 * 16 * 7) <= 7,
-        "{more} conversions in 10 ms"
-    );
+    assert!(more.abs_diff(10 * 16 * 7) <= 7, "{more} conversions in 10 ms");
 }
 
 #[test]
@@ -174,29 +155,18 @@ fn flipped_bits_of_peripherals_take_effect() {
     let (mut machine, _) = probe::run(13, 10 * MS);
     machine.flip_register_bit(TIM1_CCR1, 10).expect("flips");
     run(&mut machine, 3_600);
-    let wanted = LegState::Duty {
-        high: 450 + 1024,
-        period: 1800,
-    };
+    let wanted = LegState::Duty { high: 450 + 1024, period: 1800 };
     assert_eq!(machine.pwm(0, 8), wanted);
     machine.flip_register_bit(TIM1_BDTR, 15).expect("flips");
     let at = machine.now();
-    assert_eq!(
-        machine.wiring().bridge.last(),
-        Some(&(OFF, at)),
-        "main output off"
-    );
+    assert_eq!(machine.wiring().bridge.last(), Some(&(OFF, at)), "main output off");
     machine.uart_send(b"a");
     run(&mut machine, 3_600);
     let heard = probe::log(&machine).len();
     machine.flip_register_bit(ISER1, 6).expect("flips");
     machine.uart_send(b"b");
     run(&mut machine, 3_600);
-    assert_eq!(
-        probe::log(&machine).len(),
-        heard,
-        "USART2's interrupt is disabled"
-    );
+    assert_eq!(probe::log(&machine).len(), heard, "USART2's interrupt is disabled");
     machine.flip_register_bit(ICER1, 6).expect("flips");
     run(&mut machine, 3_600);
     assert_eq!(probe::log(&machine).len(), heard + 2, "and enabled again");
@@ -205,10 +175,7 @@ fn flipped_bits_of_peripherals_take_effect() {
 #[test]
 fn faults_in_absent_or_unmodelled_places_are_refused() {
     let (mut machine, _) = probe::run(13, 10 * MS);
-    assert_eq!(
-        machine.flip_ram_bit(0x2002_0000, 0),
-        Err(InjectError::NotRam(0x2002_0000))
-    );
+    assert_eq!(machine.flip_ram_bit(0x2002_0000, 0), Err(InjectError::NotRam(0x2002_0000)));
     for (register, bit) in [
         (CoreRegister::R(13), 0),
         (CoreRegister::Sp, 1),
@@ -220,19 +187,11 @@ fn faults_in_absent_or_unmodelled_places_are_refused() {
     }
     // SPI1 has no model; TIM3's clock is off; GPIOA's clock would stop
     for (address, bit) in [(0x4001_3000, 0), (0x4000_0400, 0), (0x4002_3830, 0)] {
-        let error = machine
-            .flip_register_bit(address, bit)
-            .expect_err("refused");
+        let error = machine.flip_register_bit(address, bit).expect_err("refused");
         assert!(matches!(error, InjectError::Refused(_)), "{error}");
     }
-    assert!(matches!(
-        machine.stop_dma(2, 8),
-        Err(InjectError::NoStream { .. })
-    ));
-    assert!(matches!(
-        machine.stop_dma(2, 7),
-        Err(InjectError::StreamOff { .. })
-    ));
+    assert!(matches!(machine.stop_dma(2, 8), Err(InjectError::NoStream { .. })));
+    assert!(matches!(machine.stop_dma(2, 7), Err(InjectError::StreamOff { .. })));
     run(&mut machine, MS);
 }
 
@@ -301,10 +260,7 @@ fn without_clock_security_the_pins_keep_their_level_until_the_independent_watchd
     for _ in 0..3 {
         run(&mut machine, MS / 2);
         for leg in legs(&mut machine) {
-            assert!(
-                matches!(leg, LegState::Duty { period: 1, .. }),
-                "a constant level: {leg:?}"
-            );
+            assert!(matches!(leg, LegState::Duty { period: 1, .. }), "a constant level: {leg:?}");
         }
     }
     assert_eq!(machine.stats().instructions, executed);
@@ -322,11 +278,7 @@ fn without_clock_security_the_pins_keep_their_level_until_the_independent_watchd
 #[test]
 fn an_nmi_is_taken_in_lockup_and_returns_to_it() {
     let (mut machine, log) = probe::run(25, MS);
-    assert_eq!(
-        log.len(),
-        5,
-        "flags, and what the fault handler logged before it locked up"
-    );
+    assert_eq!(log.len(), 5, "flags, and what the fault handler logged before it locked up");
     machine.stop_hse().expect("stops");
     machine.run_until_ps(5_000_000_000).expect("runs");
     assert_eq!(probe::log(&machine)[5..], [0x4002, 0x80, 0]);

@@ -13,9 +13,6 @@ use documented_figures::run_generator;
 
 #[test]
 fn the_table_of_registers_is_what_its_generator_writes() {
-    let script = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/src/chip/register_table/generate.py"
-    );
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/src/chip/register_table/generate.py");
     run_generator(script, &["--check"]);
 }

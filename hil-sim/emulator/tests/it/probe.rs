@@ -83,18 +83,13 @@ impl Wiring for Bench {
 
 /// A machine about to run a case.
 pub fn machine(case: u8) -> Machine<Bench> {
-    let bench = Bench {
-        case,
-        ..Bench::default()
-    };
+    let bench = Bench { case, ..Bench::default() };
     Machine::new(&FIRMWARE, bench).expect("the machine powers up")
 }
 
 /// The only reset after power-up.
 pub fn only_reset(machine: &Machine<Bench>) -> Reset {
-    let [_, reset] = machine.resets() else {
-        panic!("{:?}", machine.resets())
-    };
+    let [_, reset] = machine.resets() else { panic!("{:?}", machine.resets()) };
     *reset
 }
 
@@ -116,9 +111,7 @@ pub fn words_of<W: Wiring + 'static>(
     count: usize,
 ) -> Vec<u32> {
     let address = firmware.symbol(name).expect("the image has the symbol");
-    let bytes = machine
-        .memory(address, 4 * count)
-        .expect("it lies in memory");
+    let bytes = machine.memory(address, 4 * count).expect("it lies in memory");
     let (words, _) = bytes.as_chunks();
     words.iter().copied().map(u32::from_le_bytes).collect()
 }
@@ -132,9 +125,7 @@ pub fn log<W: Wiring + 'static>(machine: &Machine<W>) -> Vec<u32> {
 /// Runs a case for `cycles` and returns its log.
 pub fn run(case: u8, cycles: u64) -> (Machine<Bench>, Vec<u32>) {
     let mut machine = machine(case);
-    machine
-        .run_until(cycles)
-        .unwrap_or_else(|stop| panic!("case {case}: {stop}"));
+    machine.run_until(cycles).unwrap_or_else(|stop| panic!("case {case}: {stop}"));
     let log = log(&machine);
     (machine, log)
 }

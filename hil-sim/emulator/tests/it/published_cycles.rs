@@ -6,9 +6,7 @@ use crate::probe;
 #[test]
 fn elliptic_curve_takes_the_cycles_that_its_author_measured() {
     let (_, log) = probe::run(70, 3_000_000);
-    let [first, second, ours, theirs, equal, 0xd0e] = log[..] else {
-        panic!("{log:x?}")
-    };
+    let [first, second, ours, theirs, equal, 0xd0e] = log[..] else { panic!("{log:x?}") };
     assert_eq!(equal, 1, "both parties have the same secret");
     for (name, cycles, published) in [
         ("key generation", first, 327e3),

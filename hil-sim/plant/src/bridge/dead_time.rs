@@ -119,20 +119,12 @@ impl DeadTime {
 
     /// On and off times shortened by one dead time each, as fractions of the period.
     fn rests(&self, width: f64) -> (f64, f64) {
-        (
-            (width - self.part).max(0.0),
-            (1.0 - width - self.part).max(0.0),
-        )
+        ((width - self.part).max(0.0), (1.0 - width - self.part).max(0.0))
     }
 
     /// Corners of the characteristic of voltage loss, V, over mean current, A, above a current; both rise.
     fn corners_between(&self, width: f64, above_a: f64, last: (f64, f64)) -> [(f64, f64); 5] {
-        let Self {
-            supply_v,
-            diode_v,
-            part,
-            per_v,
-        } = *self;
+        let Self { supply_v, diode_v, part, per_v } = *self;
         let (lost, gained) = self.lost_and_gained(width);
         let drop_v = diode_v * part;
         let (pulse, pause) = self.rests(width);

@@ -78,10 +78,6 @@ impl BridgeDefects {
             }
         };
         let (a, b) = if self.swapped { (b, a) } else { (a, b) };
-        BridgeOutputs {
-            a,
-            b,
-            enabled: legs.enabled || self.enable_stuck,
-        }
+        BridgeOutputs { a, b, enabled: legs.enabled || self.enable_stuck }
     }
 }

@@ -56,10 +56,9 @@ impl BridgeOutputs {
     /// one leg high and the other low, with 11 both are low, and with 00 throughout both are high-impedance.
     fn leg_levels(&self) -> (Leg, Leg) {
         match (self.a, self.b) {
-            (Leg::Duty(in1), Leg::Duty(in2)) if in1 > 0.0 || in2 > 0.0 => (
-                Leg::Duty((in1 - in2).max(0.0)),
-                Leg::Duty((in2 - in1).max(0.0)),
-            ),
+            (Leg::Duty(in1), Leg::Duty(in2)) if in1 > 0.0 || in2 > 0.0 => {
+                (Leg::Duty((in1 - in2).max(0.0)), Leg::Duty((in2 - in1).max(0.0)))
+            }
             _ => (Leg::Off, Leg::Off),
         }
     }
@@ -193,11 +192,7 @@ impl Bridge {
         let (width, sign) = ((a - b).abs(), (a - b).signum());
         let mean_a = if width > 0.0 && width < 1.0 {
             let seebeck_v = sign * load.seebeck_v;
-            sign * self.dead_time.mean_current_a(&Pulses {
-                width,
-                seebeck_v,
-                ohm,
-            })
+            sign * self.dead_time.mean_current_a(&Pulses { width, seebeck_v, ohm })
         } else {
             (params.supply_v * (a - b) - load.seebeck_v) / ohm
         };
@@ -210,10 +205,7 @@ impl Bridge {
             mean_a,
             ripple_a2: ripple_v2 / (load.resistance_ohm * load.resistance_ohm),
             supply_a: mean_a * (a - b),
-            inductor: InductorRipple {
-                half_a: self.dead_time.half_ripple_a(width),
-                width,
-            },
+            inductor: InductorRipple { half_a: self.dead_time.half_ripple_a(width), width },
         }
     }
 }

@@ -74,10 +74,7 @@ fn power_gain(params: &BridgeParams, load_ohm: f64, omega: f64) -> f64 {
     let susceptance = omega * params.filter_f;
     let esr_part = susceptance * params.filter_esr_ohm;
     let scale = 1.0 / (1.0 + esr_part * esr_part);
-    let (g, b) = (
-        1.0 / load_ohm + susceptance * esr_part * scale,
-        susceptance * scale,
-    );
+    let (g, b) = (1.0 / load_ohm + susceptance * esr_part * scale, susceptance * scale);
     let (r, x) = (params.on_ohm + params.filter_ohm, omega * params.filter_h);
     let (re, im) = (1.0 + r * g - x * b, r * b + x * g);
     1.0 / (re * re + im * im)
@@ -86,9 +83,5 @@ fn power_gain(params: &BridgeParams, load_ohm: f64, omega: f64) -> f64 {
 /// Mean square of all harmonics at a duty cycle.
 fn mean_square(power: &[f64], width: f64) -> f64 {
     let sines = (1..).map(|n| (PI * f64::from(n) * width).sin().powi(2));
-    power
-        .iter()
-        .zip(sines)
-        .map(|(power, sine)| power * sine)
-        .sum()
+    power.iter().zip(sines).map(|(power, sine)| power * sine).sum()
 }

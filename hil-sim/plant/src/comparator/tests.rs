@@ -24,26 +24,16 @@ fn after(ratio: f64) -> bool {
 
 #[test]
 fn window_is_from_10_to_45_c_and_broken_wires_are_outside() {
-    assert_eq!(
-        [COLD.0, COLD.1, HOT.0, HOT.1].map(after),
-        [true, false, false, true]
-    );
+    assert_eq!([COLD.0, COLD.1, HOT.0, HOT.1].map(after), [true, false, false, true]);
     assert_eq!([0.0, INSIDE, 1.0].map(after), [true, false, true]);
 }
 
 #[test]
 fn thresholds_follow_the_parameters_and_a_wrong_ladder() {
-    let params = ComparatorParams {
-        cold_c: 9.8,
-        hot_c: 45.2,
-        ..ComparatorParams::NOMINAL
-    };
-    for (ratio, shift_k, trips) in [
-        (COLD.0, 0.0, false),
-        (HOT.1, 0.0, false),
-        (COLD.0, 0.2, true),
-        (HOT.1, -0.2, true),
-    ] {
+    let params = ComparatorParams { cold_c: 9.8, hot_c: 45.2, ..ComparatorParams::NOMINAL };
+    for (ratio, shift_k, trips) in
+        [(COLD.0, 0.0, false), (HOT.1, 0.0, false), (COLD.0, 0.2, true), (HOT.1, -0.2, true)]
+    {
         let mut comparator = Comparator::new(&params, &BONDED, INSIDE);
         comparator.clear();
         comparator.set_defects(&ComparatorDefects {
@@ -104,13 +94,7 @@ fn latch_has_its_truth_table() {
             (Release, true),
         ],
         // An excursion during a test that ends before the test does is cleared.
-        &[
-            (Hot, true),
-            (Outside, true),
-            (Inside, true),
-            (End, true),
-            (Release, false),
-        ],
+        &[(Hot, true), (Outside, true), (Inside, true), (End, true), (Release, false)],
         // A test that begins before the latch is cleared keeps it set.
         &[(Hot, true), (End, true), (Cold, true), (Release, true)],
     ];
@@ -140,38 +124,10 @@ fn a_dead_side_and_a_wrong_ladder_show_in_their_tests_only() {
     let sound = ComparatorDefects::default();
     for (defects, hot, cold) in [
         (sound, true, true),
-        (
-            ComparatorDefects {
-                hot_dead: true,
-                ..sound
-            },
-            false,
-            true,
-        ),
-        (
-            ComparatorDefects {
-                cold_dead: true,
-                ..sound
-            },
-            true,
-            false,
-        ),
-        (
-            ComparatorDefects {
-                ladder_shift_k: 4.0,
-                ..sound
-            },
-            false,
-            true,
-        ),
-        (
-            ComparatorDefects {
-                ladder_shift_k: -6.0,
-                ..sound
-            },
-            true,
-            false,
-        ),
+        (ComparatorDefects { hot_dead: true, ..sound }, false, true),
+        (ComparatorDefects { cold_dead: true, ..sound }, true, false),
+        (ComparatorDefects { ladder_shift_k: 4.0, ..sound }, false, true),
+        (ComparatorDefects { ladder_shift_k: -6.0, ..sound }, true, false),
     ] {
         let shows = |test| {
             let mut comparator = comparator();
@@ -190,10 +146,7 @@ fn a_dead_side_and_a_wrong_ladder_show_in_their_tests_only() {
 #[test]
 fn a_defect_of_the_latch_forces_the_output_and_preserves_the_state() {
     let mut comparator = comparator();
-    let stuck = |latch| ComparatorDefects {
-        latch,
-        ..ComparatorDefects::default()
-    };
+    let stuck = |latch| ComparatorDefects { latch, ..ComparatorDefects::default() };
     comparator.set_defects(&stuck(LatchDefect::StuckClear));
     comparator.set_test(ComparatorTest::Hot);
     assert!(!comparator.tripped());

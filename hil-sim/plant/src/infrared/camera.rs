@@ -33,13 +33,7 @@ impl CameraParams {
     /// The thesis's instrument: skin, one pixel, no self-reflection. The thesis states no noise; 0.08 K is typical of
     /// its camera, an uncooled bolometer of 2006.
     pub fn thesis(optic: Optic) -> Self {
-        Self {
-            optic,
-            emissivity: SKIN_EMISSIVITY,
-            netd_k: 0.08,
-            pixels: 1,
-            self_reflection: None,
-        }
+        Self { optic, emissivity: SKIN_EMISSIVITY, netd_k: 0.08, pixels: 1, self_reflection: None }
     }
 }
 
@@ -107,11 +101,7 @@ impl Camera {
         let normal: f64 = StandardNormal.sample(&mut self.random);
         let u_tot = self.path.total_radiance(radiance(target_c)) + self.noise * normal;
         let apparent_c = temperature_c(u_tot);
-        Reading {
-            u_tot,
-            apparent_c,
-            recovered_c: self.recovered_c(apparent_c),
-        }
+        Reading { u_tot, apparent_c, recovered_c: self.recovered_c(apparent_c) }
     }
 
     /// Temperature of the target, deg C, from the apparent temperature, deg C: Eq. 5-3 or 5-4 solved for the target.
@@ -123,48 +113,25 @@ impl Camera {
 
 fn check(params: &CameraParams, surroundings: &Surroundings) -> Result<(), ParameterError> {
     let ensure = |holds: bool, name, value, allowed| {
-        if holds {
-            Ok(())
-        } else {
-            Err(ParameterError {
-                name,
-                value,
-                allowed,
-            })
-        }
+        if holds { Ok(()) } else { Err(ParameterError { name, value, allowed }) }
     };
     let temperature =
         |name, value: f64| ensure(RANGE_C.contains(&value), name, value, "-100 to 200");
     let emissivity = params.emissivity;
-    ensure(
-        emissivity > 0.0 && emissivity <= 1.0,
-        "emissivity",
-        emissivity,
-        "above 0 to 1",
-    )?;
+    ensure(emissivity > 0.0 && emissivity <= 1.0, "emissivity", emissivity, "above 0 to 1")?;
     ensure(
         params.netd_k >= 0.0 && params.netd_k.is_finite(),
         "netd_k",
         params.netd_k,
         "a finite number from 0 on",
     )?;
-    ensure(
-        params.pixels > 0,
-        "pixels",
-        f64::from(params.pixels),
-        "1 or more",
-    )?;
+    ensure(params.pixels > 0, "pixels", f64::from(params.pixels), "1 or more")?;
     temperature("ambient_c", surroundings.ambient_c)?;
     temperature("window_c", surroundings.window_c)?;
     temperature("splitter_c", surroundings.splitter_c)?;
     if let Some(SelfReflection { camera_c, share }) = params.self_reflection {
         temperature("camera_c", camera_c)?;
-        ensure(
-            (0.0..=1.0).contains(&share),
-            "camera_share",
-            share,
-            "0 to 1",
-        )?;
+        ensure((0.0..=1.0).contains(&share), "camera_share", share, "0 to 1")?;
     }
     Ok(())
 }

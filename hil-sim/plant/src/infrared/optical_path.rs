@@ -19,11 +19,7 @@ pub struct Surroundings {
 impl Surroundings {
     /// Optics at room temperature, deg C.
     pub fn at(ambient_c: f64) -> Self {
-        Self {
-            ambient_c,
-            window_c: ambient_c,
-            splitter_c: ambient_c,
-        }
+        Self { ambient_c, window_c: ambient_c, splitter_c: ambient_c }
     }
 }
 
@@ -53,10 +49,7 @@ impl OpticalPath {
     pub fn new(optic: Optic, emissivity: f64, surroundings: &Surroundings) -> Self {
         let ambient = radiance(surroundings.ambient_c);
         let Some(window) = optic.window() else {
-            return Self {
-                gain: emissivity,
-                offset: (1.0 - emissivity) * ambient,
-            };
+            return Self { gain: emissivity, offset: (1.0 - emissivity) * ambient };
         };
         let past_splitter = BEAMSPLITTER.transmissivity;
         let past_both = window.transmissivity * past_splitter;
@@ -82,10 +75,7 @@ impl OpticalPath {
             window.reflectivity * BEAMSPLITTER.transmissivity * BEAMSPLITTER.transmissivity
         });
         let excess = radiance(camera.camera_c) - radiance(ambient_c);
-        Self {
-            offset: self.offset + camera.share * mirrored * excess,
-            ..self
-        }
+        Self { offset: self.offset + camera.share * mirrored * excess, ..self }
     }
 
     /// Radiance at the camera for a black-body radiance of the target's temperature.

@@ -18,10 +18,7 @@ impl Bandpass {
 }
 
 /// The beamsplitter: germanium with an anti-reflection coating, at 45° (Table 5-3).
-pub const BEAMSPLITTER: Bandpass = Bandpass {
-    transmissivity: 0.54,
-    reflectivity: 0.42,
-};
+pub const BEAMSPLITTER: Bandpass = Bandpass { transmissivity: 0.54, reflectivity: 0.42 };
 
 /// Optics between finger and camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,9 +39,6 @@ impl Optic {
             Self::Baf2 => (0.77, 0.04),
             Self::Zns => (0.65, 0.22),
         };
-        Some(Bandpass {
-            transmissivity,
-            reflectivity,
-        })
+        Some(Bandpass { transmissivity, reflectivity })
     }
 }

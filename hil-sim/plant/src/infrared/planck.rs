@@ -56,10 +56,7 @@ pub fn temperature_c(radiance_w_m2_sr: f64) -> f64 {
     // Newton's method for ln U over 1/T. ln U is convex and decreasing in 1/T (U is a sum of exponentials of it), so each
     // step ends on the hot side of the root and the convergence from there is monotone: no bracket is needed as long as the
     // first step does not leave the range.
-    let (hottest, coldest) = (
-        (hottest_c + ZERO_C_K).recip(),
-        (coldest_c + ZERO_C_K).recip(),
-    );
+    let (hottest, coldest) = ((hottest_c + ZERO_C_K).recip(), (coldest_c + ZERO_C_K).recip());
     let mut inverse = START_K.recip();
     for _ in 0..MAX_ITERATIONS {
         let kelvin = inverse.recip();

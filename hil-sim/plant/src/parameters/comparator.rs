@@ -7,13 +7,7 @@ use crate::comparator::ComparatorParams;
 
 /// The tolerances are those of the circuit, without the thermistor's.
 pub fn entries(comparator: &mut ComparatorParams) -> impl Iterator<Item = Entry<'_>> {
-    let ComparatorParams {
-        cold_c,
-        hot_c,
-        cold_test_c,
-        hot_test_c,
-        release_s,
-    } = comparator;
+    let ComparatorParams { cold_c, hot_c, cold_test_c, hot_test_c, release_s } = comparator;
     let all = [
         entry!(
             cold_c,

@@ -11,12 +11,7 @@ pub const PART: &str = "contact";
 /// The thesis has one value of each and no spread; it finds that Eq. 6-8 underestimates the fall of the skin's temperature
 /// below 3 kPa.
 pub fn entries(contact: &mut ContactLaw) -> impl Iterator<Item = Entry<'_>> {
-    let ContactLaw {
-        gap_w_m2k,
-        hardness_pa,
-        exponent,
-        area_factor,
-    } = contact;
+    let ContactLaw { gap_w_m2k, hardness_pa, exponent, area_factor } = contact;
     let all = [
         entry!(
             gap_w_m2k,

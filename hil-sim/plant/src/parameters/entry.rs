@@ -40,19 +40,13 @@ pub fn prefixed<'a>(
     part: &str,
     entries: impl IntoIterator<Item = Entry<'a>>,
 ) -> impl Iterator<Item = Entry<'a>> {
-    entries.into_iter().map(move |entry| Entry {
-        key: format!("{part}.{}", entry.key),
-        ..entry
-    })
+    entries.into_iter().map(move |entry| Entry { key: format!("{part}.{}", entry.key), ..entry })
 }
 
 impl Entry<'_> {
     /// Allows an infinite value, too.
     pub fn or_infinite(self) -> Self {
-        Self {
-            may_be_infinite: true,
-            ..self
-        }
+        Self { may_be_infinite: true, ..self }
     }
 
     /// Whether the parameter belongs to a part.
@@ -75,11 +69,7 @@ impl Entry<'_> {
             high,
             distribution: self.tolerance.distribution(),
             least,
-            most: if self.is_infinite() {
-                f64::INFINITY
-            } else {
-                most
-            },
+            most: if self.is_infinite() { f64::INFINITY } else { most },
             source: self.source,
             meaning: self.meaning,
         }

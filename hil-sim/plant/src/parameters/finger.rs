@@ -11,14 +11,8 @@ use crate::slab::{Layer, Medium};
 pub const SKIN: &str = "skin";
 
 pub fn entries(finger: &mut FingerParams) -> Vec<Entry<'_>> {
-    let FingerParams {
-        surface,
-        resistance_factor,
-        layers,
-        core_w_m2k,
-        air_w_m2k,
-        vessels,
-    } = finger;
+    let FingerParams { surface, resistance_factor, layers, core_w_m2k, air_w_m2k, vessels } =
+        finger;
     let mut all: Vec<_> = surface::entries(SKIN, surface, surface::SKIN).collect();
     let resistance = entry!(
         resistance_factor,
@@ -79,13 +73,7 @@ pub fn entries(finger: &mut FingerParams) -> Vec<Entry<'_>> {
 fn layer(layer: &mut Layer) -> [Entry<'_>; 5] {
     let Layer {
         thickness_m,
-        medium:
-            Medium {
-                conductivity_w_mk,
-                capacity_j_m3k,
-                perfusion_w_m3k,
-                metabolism_w_m3,
-            },
+        medium: Medium { conductivity_w_mk, capacity_j_m3k, perfusion_w_m3k, metabolism_w_m3 },
     } = layer;
     [
         entry!(

@@ -121,11 +121,7 @@ pub fn draw_finger(finger: &mut FingerParams, seed: u64, with_tissue: bool) -> F
             (PlaceBeforeContact::Pad, PAD_W_M2K)
         };
         finger.air_w_m2k = drawn(film, 0.0, "film_w_m2k");
-        TissueDraw {
-            epidermis,
-            blood,
-            before,
-        }
+        TissueDraw { epidermis, blood, before }
     });
     let draw = FingerDraw {
         seed,

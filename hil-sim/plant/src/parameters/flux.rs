@@ -6,14 +6,8 @@ use super::tolerance::{FIXED, absolute, relative};
 use crate::sensors::FluxParams;
 
 pub fn entries(flux: &mut FluxParams) -> impl Iterator<Item = Entry<'_>> {
-    let FluxParams {
-        gain_error,
-        zero_w_m2,
-        noise_w_m2,
-        lag_s,
-        resistance_m2k_w,
-        counts_per_w_m2,
-    } = flux;
+    let FluxParams { gain_error, zero_w_m2, noise_w_m2, lag_s, resistance_m2k_w, counts_per_w_m2 } =
+        flux;
     let all = [
         entry!(
             gain_error,
@@ -55,14 +49,7 @@ pub fn entries(flux: &mut FluxParams) -> impl Iterator<Item = Entry<'_>> {
             (0.0, 1e-2),
             Design,
         ),
-        entry!(
-            counts_per_w_m2,
-            "counts/(W/m2)",
-            "gain",
-            FIXED,
-            (1e-4, 10.0),
-            Netlist,
-        ),
+        entry!(counts_per_w_m2, "counts/(W/m2)", "gain", FIXED, (1e-4, 10.0), Netlist,),
     ];
     prefixed("flux", all)
 }

@@ -7,10 +7,7 @@ use crate::HostParams;
 
 /// A calibration to 20 mK and the noise of a good resistance bridge.
 pub fn entries(host: &mut HostParams) -> impl Iterator<Item = Entry<'_>> {
-    let HostParams {
-        reference_offset_k,
-        reference_noise_k,
-    } = host;
+    let HostParams { reference_offset_k, reference_noise_k } = host;
     let all = [
         entry!(
             reference_offset_k,

@@ -146,10 +146,7 @@ pub fn all(params: &Params) -> Vec<Parameter> {
 pub fn set(params: &mut Params, key: &str, value: f64) -> Result<(), ParameterError> {
     let mut entries = entries(params);
     let Some(entry) = entries.iter_mut().find(|entry| entry.key == key) else {
-        return Err(ParameterError::Unknown {
-            key: key.into(),
-            near: similar(&entries, key),
-        });
+        return Err(ParameterError::Unknown { key: key.into(), near: similar(&entries, key) });
     };
     let before = std::mem::replace(entry.value, value);
     entry.check().inspect_err(|_| *entry.value = before)
@@ -160,10 +157,7 @@ pub fn set(params: &mut Params, key: &str, value: f64) -> Result<(), ParameterEr
 /// others.
 pub fn draw(params: &mut Params, seed: u64) {
     let mut entries = entries(params);
-    for entry in entries
-        .iter_mut()
-        .filter(|entry| !entry.is_of(contact::PART))
-    {
+    for entry in entries.iter_mut().filter(|entry| !entry.is_of(contact::PART)) {
         entry.draw(seed);
     }
 }
@@ -186,18 +180,8 @@ pub fn check(params: &Params) -> Result<(), ParameterError> {
 
 /// Entries of all parameters. The structs are destructured, so the compiler reports a field without an entry.
 fn entries(params: &mut Params) -> Vec<Entry<'_>> {
-    let Params {
-        finger,
-        display,
-        contact,
-        tile,
-        sensors,
-        flux,
-        bridge,
-        comparator,
-        supply,
-        host,
-    } = params;
+    let Params { finger, display, contact, tile, sensors, flux, bridge, comparator, supply, host } =
+        params;
     let mut all = finger::entries(finger);
     all.extend(surface::entries("display", display, surface::DISPLAY));
     all.extend(contact::entries(contact));
@@ -217,10 +201,7 @@ fn similar(entries: &[Entry<'_>], key: &str) -> Vec<String> {
         .map(|entry| (strsim::damerau_levenshtein(&entry.key, key), &entry.key))
         .collect();
     near.sort();
-    near.into_iter()
-        .take(SIMILAR)
-        .map(|(_, key)| key.clone())
-        .collect()
+    near.into_iter().take(SIMILAR).map(|(_, key)| key.clone()).collect()
 }
 
 #[cfg(test)]

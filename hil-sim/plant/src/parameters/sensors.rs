@@ -61,14 +61,8 @@ pub fn entries(sensors: &mut SensorParams) -> Vec<Entry<'_>> {
 }
 
 fn thermistor(thermistor: &mut ThermistorParams, lag: Tolerance) -> [Entry<'_>; 6] {
-    let ThermistorParams {
-        at_25c_ohm,
-        beta_k,
-        pull_up_ohm,
-        lag_s,
-        dissipation_w_k,
-        lead_share,
-    } = thermistor;
+    let ThermistorParams { at_25c_ohm, beta_k, pull_up_ohm, lag_s, dissipation_w_k, lead_share } =
+        thermistor;
     [
         entry!(
             at_25c_ohm,
@@ -78,14 +72,7 @@ fn thermistor(thermistor: &mut ThermistorParams, lag: Tolerance) -> [Entry<'_>; 
             (100.0, 1e6),
             ClassValue,
         ),
-        entry!(
-            beta_k,
-            "K",
-            "beta",
-            relative(0.01).normal(),
-            (1000.0, 6000.0),
-            Recalled,
-        ),
+        entry!(beta_k, "K", "beta", relative(0.01).normal(), (1000.0, 6000.0), Recalled,),
         entry!(
             pull_up_ohm,
             "ohm",
@@ -94,14 +81,7 @@ fn thermistor(thermistor: &mut ThermistorParams, lag: Tolerance) -> [Entry<'_>; 
             (100.0, 1e6),
             Design,
         ),
-        entry!(
-            lag_s,
-            "s",
-            "lag behind what it sits on",
-            lag,
-            (1e-3, 100.0),
-            Literature,
-        ),
+        entry!(lag_s, "s", "lag behind what it sits on", lag, (1e-3, 100.0), Literature,),
         entry!(
             dissipation_w_k,
             "W/K",
@@ -122,29 +102,10 @@ fn thermistor(thermistor: &mut ThermistorParams, lag: Tolerance) -> [Entry<'_>; 
 }
 
 fn force(force: &mut ForceParams) -> [Entry<'_>; 4] {
-    let ForceParams {
-        zero_counts,
-        counts_per_n,
-        lag_s,
-        delay_s,
-    } = force;
+    let ForceParams { zero_counts, counts_per_n, lag_s, delay_s } = force;
     [
-        entry!(
-            zero_counts,
-            "counts",
-            "level without force",
-            relative(0.02),
-            (0.0, 4095.0),
-            Design,
-        ),
-        entry!(
-            counts_per_n,
-            "counts/N",
-            "gain",
-            relative(0.02),
-            (1.0, 4095.0),
-            Design,
-        ),
+        entry!(zero_counts, "counts", "level without force", relative(0.02), (0.0, 4095.0), Design,),
+        entry!(counts_per_n, "counts/N", "gain", relative(0.02), (1.0, 4095.0), Design,),
         entry!(
             lag_s,
             "s",
@@ -153,35 +114,15 @@ fn force(force: &mut ForceParams) -> [Entry<'_>; 4] {
             (1e-5, 10.0),
             ClassValue,
         ),
-        entry!(
-            delay_s,
-            "s",
-            "dead time of its interface",
-            FIXED,
-            (0.0, Delay::MAX_S),
-            Design,
-        ),
+        entry!(delay_s, "s", "dead time of its interface", FIXED, (0.0, Delay::MAX_S), Design,),
     ]
 }
 
 fn mirror(mirror: &mut MirrorParams) -> [Entry<'_>; 6] {
-    let MirrorParams {
-        counts_per_a,
-        gain_error,
-        offset_a,
-        lag_s,
-        sampling_phase,
-        phase_step,
-    } = mirror;
+    let MirrorParams { counts_per_a, gain_error, offset_a, lag_s, sampling_phase, phase_step } =
+        mirror;
     [
-        entry!(
-            counts_per_a,
-            "counts/A",
-            "gain",
-            relative(0.01),
-            (1.0, 4095.0),
-            Design,
-        ),
+        entry!(counts_per_a, "counts/A", "gain", relative(0.01), (1.0, 4095.0), Design,),
         entry!(
             gain_error,
             "1",
@@ -226,20 +167,9 @@ fn mirror(mirror: &mut MirrorParams) -> [Entry<'_>; 6] {
 }
 
 fn reference(reference: &mut ReferenceParams) -> [Entry<'_>; 3] {
-    let ReferenceParams {
-        volt,
-        error,
-        excitation_duty,
-    } = reference;
+    let ReferenceParams { volt, error, excitation_duty } = reference;
     [
-        entry!(
-            volt,
-            "V",
-            "reference, which feeds the dividers",
-            FIXED,
-            (1.0, 5.0),
-            Design,
-        ),
+        entry!(volt, "V", "reference, which feeds the dividers", FIXED, (1.0, 5.0), Design,),
         entry!(
             error,
             "1",
@@ -261,12 +191,7 @@ fn reference(reference: &mut ReferenceParams) -> [Entry<'_>; 3] {
 
 /// The total error of the data sheet, 2 counts typical and 5 at most, is divided among offset, gain and INL.
 fn converter(converter: &mut ConverterParams) -> [Entry<'_>; 4] {
-    let ConverterParams {
-        offset_counts,
-        gain_error,
-        inl_counts,
-        noise_counts,
-    } = converter;
+    let ConverterParams { offset_counts, gain_error, inl_counts, noise_counts } = converter;
     [
         entry!(
             offset_counts,

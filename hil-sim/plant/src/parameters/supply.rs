@@ -24,14 +24,7 @@ pub fn entries(supply: &mut SupplyParams) -> impl Iterator<Item = Entry<'_>> {
             (0.0, 10.0),
             ClassValue,
         ),
-        entry!(
-            node_f,
-            "F",
-            "capacitors behind the switch",
-            relative(0.2),
-            (1e-7, 1e-1),
-            Design,
-        ),
+        entry!(node_f, "F", "capacitors behind the switch", relative(0.2), (1e-7, 1e-1), Design,),
         entry!(
             bleeder_ohm,
             "ohm",

@@ -6,17 +6,11 @@ use crate::finger::FingerParams;
 use crate::sensors::FluxParams;
 
 fn layered() -> Params {
-    Params {
-        finger: FingerParams::layered(),
-        ..Params::nominal()
-    }
+    Params { finger: FingerParams::layered(), ..Params::nominal() }
 }
 
 fn with_flux_sensor() -> Params {
-    Params {
-        flux: Some(FluxParams::NOMINAL),
-        ..layered()
-    }
+    Params { flux: Some(FluxParams::NOMINAL), ..layered() }
 }
 
 /// All numbers in the debug output of the parameters.
@@ -83,10 +77,7 @@ fn nominal_values_are_allowed_and_within_their_tolerance() {
         for p in all(&params) {
             assert!(p.least <= p.low && p.low <= p.value, "{p:?}");
             assert!(p.value <= p.high && p.high <= p.most, "{p:?}");
-            assert!(
-                p.distribution != Distribution::Fixed || p.low == p.high,
-                "{p:?}"
-            );
+            assert!(p.distribution != Distribution::Fixed || p.low == p.high, "{p:?}");
             assert!(!p.unit.is_empty() && p.meaning.len() > 3, "{p:?}");
         }
     }
@@ -108,10 +99,7 @@ fn draws_follow_their_distribution_within_the_tolerance() {
         .collect();
     for (i, p) in limits.iter().enumerate() {
         let values = || drawn.iter().map(|draw| draw[i]);
-        assert!(
-            values().all(|value| (p.low..=p.high).contains(&value)),
-            "{p:?}"
-        );
+        assert!(values().all(|value| (p.low..=p.high).contains(&value)), "{p:?}");
         if p.distribution == Distribution::Fixed || p.low == p.high {
             assert!(values().all(|value| value == p.value), "{p:?}");
             continue;
@@ -129,11 +117,7 @@ fn draws_follow_their_distribution_within_the_tolerance() {
             _ => 1.0 / 12.0,
         };
         // Five standard errors of mean and variance (the latter bounded by the fourth moment of a uniform distribution).
-        assert!(
-            (mean - 0.5).abs() < 5.0 * (exact / DRAWS as f64).sqrt(),
-            "{}: mean {mean}",
-            p.key
-        );
+        assert!((mean - 0.5).abs() < 5.0 * (exact / DRAWS as f64).sqrt(), "{}: mean {mean}", p.key);
         assert!(
             (variance / exact - 1.0).abs() < 5.0 * (2.0 / DRAWS as f64).sqrt(),
             "{}: {variance}",
@@ -145,8 +129,7 @@ fn draws_follow_their_distribution_within_the_tolerance() {
         let places = limits.iter().zip(draw);
         let free =
             places.filter(|(p, _)| p.distribution == Distribution::Uniform && p.low < p.high);
-        free.map(|(p, v)| ((v - p.low) / (p.high - p.low) * 1e9) as u64)
-            .collect::<Vec<_>>()
+        free.map(|(p, v)| ((v - p.low) / (p.high - p.low) * 1e9) as u64).collect::<Vec<_>>()
     };
     let seen: Vec<u64> = drawn.iter().take(10).flat_map(first).collect();
     let different: HashSet<_> = seen.iter().collect();
@@ -169,20 +152,11 @@ fn draws_depend_on_seed_and_key_only() {
     assert_ne!(draw_of(layered(), 7), draw_of(layered(), 8));
     // A finger of more layers does not change the other draws.
     let (few, many) = (draw_of(Params::nominal(), 7), draw_of(layered(), 7));
-    assert_eq!(
-        (few.tile, few.bridge, few.sensors),
-        (many.tile, many.bridge, many.sensors)
-    );
-    assert_eq!(
-        (few.display, few.finger.surface),
-        (many.display, many.finger.surface)
-    );
+    assert_eq!((few.tile, few.bridge, few.sensors), (many.tile, many.bridge, many.sensors));
+    assert_eq!((few.display, few.finger.surface), (many.display, many.finger.surface));
     assert_eq!(few.finger.air_w_m2k, 0.0, "no air film appears");
     // Nor does a heat-flux sensor.
-    let fitted = Params {
-        flux: None,
-        ..draw_of(with_flux_sensor(), 7)
-    };
+    let fitted = Params { flux: None, ..draw_of(with_flux_sensor(), 7) };
     assert_eq!(many, fitted);
 }
 
@@ -198,10 +172,7 @@ fn unknown_keys_and_values_out_of_range_are_refused_without_change() {
     );
     for value in [0.0, f64::NAN, f64::INFINITY, -5.0] {
         let refused = set(&mut params, "tile.imax_a", value).map_err(message);
-        assert_eq!(
-            refused,
-            Err(format!("tile.imax_a = {value} A; allowed is 0.5 to 30"))
-        );
+        assert_eq!(refused, Err(format!("tile.imax_a = {value} A; allowed is 0.5 to 30")));
     }
     assert_eq!(params, Params::nominal());
     assert_eq!(set(&mut params, "tile.imax_a", 5.5), Ok(()));

@@ -89,16 +89,10 @@ pub struct Tolerance {
 }
 
 /// No tolerance: the parameter is not drawn.
-pub const FIXED: Tolerance = Tolerance {
-    limits: Limits::None,
-    distribution: Distribution::Fixed,
-};
+pub const FIXED: Tolerance = Tolerance { limits: Limits::None, distribution: Distribution::Fixed };
 
 const fn uniform(limits: Limits) -> Tolerance {
-    Tolerance {
-        limits,
-        distribution: Distribution::Uniform,
-    }
+    Tolerance { limits, distribution: Distribution::Uniform }
 }
 
 /// Uniform, within a fraction of the nominal value.
@@ -135,10 +129,7 @@ impl Tolerance {
     }
 
     const fn shaped(self, distribution: Distribution) -> Self {
-        Self {
-            distribution,
-            ..self
-        }
+        Self { distribution, ..self }
     }
 
     pub(super) const fn distribution(&self) -> Distribution {

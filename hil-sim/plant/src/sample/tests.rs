@@ -17,10 +17,7 @@ fn config(material: &str, finger: FingerParams) -> PlantConfig {
         appears_s: 0.0,
         duration_s: 60.0,
         seed: 1,
-        params: Params {
-            finger,
-            ..Params::nominal()
-        },
+        params: Params { finger, ..Params::nominal() },
     }
 }
 
@@ -57,11 +54,7 @@ fn repeated_touches_of_both_fingers_are_those_of_the_plant() {
             // Touches of 0.4 s with a growing force and lifts of 0.3 s.
             for ms in 0..3_000u32 {
                 let since_s = f64::from(ms % 700) * 1e-3;
-                let force_n = if since_s < 0.4 {
-                    0.05 + 4.0 * since_s
-                } else {
-                    0.0
-                };
+                let force_n = if since_s < 0.4 { 0.05 + 4.0 * since_s } else { 0.0 };
                 plant.set_force(force_n);
                 touch.set_force(force_n);
                 plant.step(&BridgeOutputs::default());

@@ -22,12 +22,8 @@ pub struct ConverterParams {
 
 impl ConverterParams {
     /// Typical values of the data sheet; offset and gain error differ from device to device.
-    pub const NOMINAL: Self = Self {
-        offset_counts: 0.0,
-        gain_error: 0.0,
-        inl_counts: 1.5,
-        noise_counts: 0.7,
-    };
+    pub const NOMINAL: Self =
+        Self { offset_counts: 0.0, gain_error: 0.0, inl_counts: 1.5, noise_counts: 0.7 };
 }
 
 /// Upper bits with independent weight errors; between their transitions the profile is smooth.

@@ -30,11 +30,7 @@ pub struct ThermistorDefect {
 
 impl ThermistorDefect {
     /// No defect.
-    pub const NONE: Self = Self {
-        circuit: Circuit::Closed,
-        offset_k: 0.0,
-        resistance_factor: 1.0,
-    };
+    pub const NONE: Self = Self { circuit: Circuit::Closed, offset_k: 0.0, resistance_factor: 1.0 };
 }
 
 /// Defects of the force sensor.
@@ -66,11 +62,7 @@ impl SensorDefects {
     pub const NONE: Self = Self {
         thermistors: [ThermistorDefect::NONE; THERMISTORS],
         connected: [0, 1, 2, 3, 4],
-        force: ForceDefect {
-            open: false,
-            stuck: false,
-            offset_n: 0.0,
-        },
+        force: ForceDefect { open: false, stuck: false, offset_n: 0.0 },
         mirror_stuck_a: None,
     };
 }

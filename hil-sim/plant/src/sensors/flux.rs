@@ -79,13 +79,7 @@ pub struct FluxDefect {
 
 impl Default for FluxDefect {
     fn default() -> Self {
-        Self {
-            circuit: FluxCircuit::Closed,
-            stuck: false,
-            gain: 1.0,
-            zero_w_m2: 0.0,
-            noise: 1.0,
-        }
+        Self { circuit: FluxCircuit::Closed, stuck: false, gain: 1.0, zero_w_m2: 0.0, noise: 1.0 }
     }
 }
 

@@ -15,12 +15,7 @@ pub struct FirstOrderLag {
 impl FirstOrderLag {
     /// A lag with a time constant, s, above 0.
     pub const fn new(time_constant_s: f64) -> Self {
-        Self {
-            time_constant_s,
-            step_s: 0.0,
-            decay: 1.0,
-            steps: 0.0,
-        }
+        Self { time_constant_s, step_s: 0.0, decay: 1.0, steps: 0.0 }
     }
 
     fn set_step(&mut self, step_s: f64) {
@@ -88,20 +83,12 @@ mod tests {
 
     #[test]
     fn dead_time_delays_by_whole_steps() {
-        for (delay_s, steps) in [
-            (0.0, 0),
-            (0.4e-3, 0),
-            (1e-3, 1),
-            (8e-3, 8),
-            (Delay::MAX_S, MAX_STEPS),
-        ] {
+        for (delay_s, steps) in
+            [(0.0, 0), (0.4e-3, 0), (1e-3, 1), (8e-3, 8), (Delay::MAX_S, MAX_STEPS)]
+        {
             let mut delay = Delay::new(delay_s, -1.0);
             for value in 0..200 {
-                let expected = if value < steps {
-                    -1.0
-                } else {
-                    (value - steps) as f64
-                };
+                let expected = if value < steps { -1.0 } else { (value - steps) as f64 };
                 assert_eq!(delay.push(value as f64), expected, "{delay_s} s");
             }
         }

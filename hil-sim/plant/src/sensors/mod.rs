@@ -165,8 +165,7 @@ impl Sensors {
 
     /// Reseeds the noise of the converter.
     pub fn reseed_noise(&mut self, seed: u64) {
-        self.converter
-            .reseed_noise(Xoshiro256PlusPlus::seed_from_u64(seed));
+        self.converter.reseed_noise(Xoshiro256PlusPlus::seed_from_u64(seed));
     }
 
     /// Advances by a step, s, to the inputs `state` at its end: temperatures moved linearly, the force was constant. The
@@ -178,9 +177,7 @@ impl Sensors {
         }
         let delayed_n = self.force_delay.push(state.force_n);
         if !self.defects.force.stuck {
-            self.force_n = self
-                .force_lag
-                .step_response(step_s, self.force_n, delayed_n);
+            self.force_n = self.force_lag.step_response(step_s, self.force_n, delayed_n);
         }
         for index in 0..THERMISTORS {
             let ratio = self.pin_ratio(index);
@@ -192,9 +189,7 @@ impl Sensors {
             );
             self.ratios[index] = ratio;
         }
-        self.mirror_a = self
-            .mirror_lag
-            .step_response(step_s, self.mirror_a, state.mirror_a);
+        self.mirror_a = self.mirror_lag.step_response(step_s, self.mirror_a, state.mirror_a);
         self.mirror_ripple = state.mirror_ripple;
         self.supply_counts = state.supply_counts;
         self.level = self.counts;
@@ -295,8 +290,7 @@ impl Sensors {
         let scan = (SCANS_PER_STEP - 1).saturating_sub(remaining);
         let phase = (mirror.sampling_phase + scan as f64 * mirror.phase_step).fract();
         let current_a = (self.mirror_a + self.mirror_ripple.at_phase(phase)).abs();
-        self.converter
-            .with_offset_and_gain(mirror.counts(current_a) * self.reference_scale())
+        self.converter.with_offset_and_gain(mirror.counts(current_a) * self.reference_scale())
     }
 
     fn update_counts(&mut self) {
@@ -319,17 +313,8 @@ impl Sensors {
 fn sites(params: &SensorParams, state: &SensorInputs) -> [Site; THERMISTORS] {
     let edge_c =
         state.skin_before_c + params.skin_sees_contact * (state.skin_c - state.skin_before_c);
-    let surfaces_c = [
-        state.display_c,
-        state.display_c,
-        state.sink_c,
-        edge_c,
-        state.room_c,
-    ];
-    surfaces_c.map(|surface_c| Site {
-        surface_c,
-        room_c: state.room_c,
-    })
+    let surfaces_c = [state.display_c, state.display_c, state.sink_c, edge_c, state.room_c];
+    surfaces_c.map(|surface_c| Site { surface_c, room_c: state.room_c })
 }
 
 #[cfg(test)]

@@ -106,31 +106,13 @@ impl SensorParams {
         thermistors: [
             BONDED,
             BONDED,
-            ThermistorParams {
-                lag_s: 1.0,
-                ..BONDED
-            },
-            ThermistorParams {
-                lag_s: 0.3,
-                dissipation_w_k: 3e-3,
-                lead_share: 0.01,
-                ..BONDED
-            },
-            ThermistorParams {
-                lag_s: 2.0,
-                dissipation_w_k: 1e-3,
-                lead_share: 0.0,
-                ..BONDED
-            },
+            ThermistorParams { lag_s: 1.0, ..BONDED },
+            ThermistorParams { lag_s: 0.3, dissipation_w_k: 3e-3, lead_share: 0.01, ..BONDED },
+            ThermistorParams { lag_s: 2.0, dissipation_w_k: 1e-3, lead_share: 0.0, ..BONDED },
         ],
         divider_lag_s: 0.6e-3,
         skin_sees_contact: 0.0125,
-        force: ForceParams {
-            zero_counts: 410.0,
-            counts_per_n: 300.0,
-            lag_s: 1e-3,
-            delay_s: 0.0,
-        },
+        force: ForceParams { zero_counts: 410.0, counts_per_n: 300.0, lag_s: 1e-3, delay_s: 0.0 },
         mirror: MirrorParams {
             counts_per_a: 400.0,
             gain_error: 0.0,
@@ -139,11 +121,7 @@ impl SensorParams {
             sampling_phase: 0.0,
             phase_step: 0.0614,
         },
-        reference: ReferenceParams {
-            volt: 3.3,
-            error: 0.0,
-            excitation_duty: 1.0,
-        },
+        reference: ReferenceParams { volt: 3.3, error: 0.0, excitation_duty: 1.0 },
         converter: ConverterParams::NOMINAL,
     };
 }

@@ -10,10 +10,7 @@ const NOMINAL_INPUTS: SensorInputs = SensorInputs {
     room_c: 22.0,
     force_n: 0.0,
     mirror_a: 0.0,
-    mirror_ripple: InductorRipple {
-        half_a: 0.0,
-        width: 0.0,
-    },
+    mirror_ripple: InductorRipple { half_a: 0.0, width: 0.0 },
     supply_counts: 0.0,
 };
 
@@ -44,10 +41,7 @@ fn channels_come_in_scan_order() {
         room_c: 40.0,
         force_n: 2.0,
         mirror_a: 3.0,
-        mirror_ripple: InductorRipple {
-            half_a: 0.0,
-            width: 0.0,
-        },
+        mirror_ripple: InductorRipple { half_a: 0.0, width: 0.0 },
         supply_counts: 3464.0,
     };
     let [display, check, sink, skin, room, force, current, supply] = counts(ideal(), &state);
@@ -79,10 +73,7 @@ fn counts_stay_within_twelve_bits() {
 #[test]
 fn skin_thermistor_responds_weakly_to_the_contact() {
     // Thesis: a change of 0.05 deg C while the skin under the contact changed by 3 to 5 deg C.
-    let touched = SensorInputs {
-        skin_c: 30.0,
-        ..NOMINAL_INPUTS
-    };
+    let touched = SensorInputs { skin_c: 30.0, ..NOMINAL_INPUTS };
     let sensors = Sensors::new(ideal(), &touched, 1);
     let slope = (ideal().thermistors[3].ratio(33.5) - ideal().thermistors[3].ratio(34.5)) * CODES;
     let fell_c = (sensors.counts[Channel::Skin as usize]
@@ -106,11 +97,7 @@ fn each_thermistor_has_its_own_parameters() {
 
 #[test]
 fn reference_error_affects_force_and_current_only() {
-    let state = SensorInputs {
-        force_n: 5.0,
-        mirror_a: 4.0,
-        ..NOMINAL_INPUTS
-    };
+    let state = SensorInputs { force_n: 5.0, mirror_a: 4.0, ..NOMINAL_INPUTS };
     let mut params = ideal();
     params.reference.error = 0.01;
     let (nominal, moved) = (counts(ideal(), &state), counts(params, &state));
@@ -125,13 +112,7 @@ fn mirror_has_gain_error_and_offset_but_no_negative_current() {
     params.mirror.gain_error = 0.05;
     params.mirror.offset_a = -0.1;
     let at = |mirror_a| {
-        counts(
-            params,
-            &SensorInputs {
-                mirror_a,
-                ..NOMINAL_INPUTS
-            },
-        )[Channel::Current as usize]
+        counts(params, &SensorInputs { mirror_a, ..NOMINAL_INPUTS })[Channel::Current as usize]
     };
     assert_eq!((at(0.0), at(0.05), at(2.0)), (0, 0, 800));
 }
@@ -139,10 +120,7 @@ fn mirror_has_gain_error_and_offset_but_no_negative_current() {
 #[test]
 fn force_sensor_has_a_first_order_lag() {
     let mut sensors = Sensors::new(ideal(), &NOMINAL_INPUTS, 1);
-    let pressed = SensorInputs {
-        force_n: 2.0,
-        ..NOMINAL_INPUTS
-    };
+    let pressed = SensorInputs { force_n: 2.0, ..NOMINAL_INPUTS };
     for k in 1..=6 {
         sensors.step(0.5e-3, &pressed);
         let expected_n = 2.0 * (1.0 - (-0.5 * f64::from(k)).exp());
@@ -154,9 +132,7 @@ fn force_sensor_has_a_first_order_lag() {
 fn same_seed_gives_the_same_codes() {
     let run = |seed| {
         let mut sensors = Sensors::new(SensorParams::NOMINAL, &NOMINAL_INPUTS, seed);
-        (0..500)
-            .map(|k| sensors.convert(Channel::ALL[k % CHANNELS]))
-            .collect::<Vec<_>>()
+        (0..500).map(|k| sensors.convert(Channel::ALL[k % CHANNELS])).collect::<Vec<_>>()
     };
     assert_eq!(run(5), run(5));
     assert_ne!(run(5), run(6));
@@ -170,20 +146,11 @@ fn conversions_of_a_tick_interpolate_linearly_over_the_step() {
     params.converter.inl_counts = 0.0;
     let mut sensors = Sensors::new(params, &NOMINAL_INPUTS, 1);
     // 2 N are 600 counts above the zero of 410: 37.5 counts per conversion.
-    sensors.step(
-        1e-3,
-        &SensorInputs {
-            force_n: 2.0,
-            ..NOMINAL_INPUTS
-        },
-    );
+    sensors.step(1e-3, &SensorInputs { force_n: 2.0, ..NOMINAL_INPUTS });
     for k in 1..=16 {
         let code = sensors.convert(Channel::Force);
         let level = 410.0 + 37.5 * f64::from(k);
-        assert!(
-            (f64::from(code) - level).abs() <= 0.5,
-            "conversion {k}: {code}"
-        );
+        assert!((f64::from(code) - level).abs() <= 0.5, "conversion {k}: {code}");
     }
     assert_eq!(sensors.convert(Channel::Force), 1010, "and stay there");
 }
@@ -194,10 +161,7 @@ fn a_scan_has_the_codes_of_its_channels_one_by_one() {
         display_c: 20.0,
         force_n: 2.0,
         mirror_a: 1.5,
-        mirror_ripple: InductorRipple {
-            half_a: 0.4,
-            width: 0.3,
-        },
+        mirror_ripple: InductorRipple { half_a: 0.4, width: 0.3 },
         supply_counts: 3464.0,
         ..NOMINAL_INPUTS
     };
@@ -215,11 +179,7 @@ fn a_scan_has_the_codes_of_its_channels_one_by_one() {
             by_channel.step(1e-3, &moved);
             for scan in 0..SCANS_PER_STEP + 2 {
                 let expected = Channel::ALL.map(|channel| by_channel.convert(channel));
-                assert_eq!(
-                    by_scan.convert_scan(),
-                    expected,
-                    "scan {scan}, {single} before"
-                );
+                assert_eq!(by_scan.convert_scan(), expected, "scan {scan}, {single} before");
             }
         }
     }

@@ -90,9 +90,7 @@ impl Thermistor {
     /// Advances by a step, s, in which the surroundings moved linearly to `site`.
     pub fn step(&mut self, step_s: f64, site: &Site) {
         let target_c = self.target_c(site);
-        self.reached_c = self
-            .lag
-            .ramp_response(step_s, self.reached_c, self.target_c, target_c);
+        self.reached_c = self.lag.ramp_response(step_s, self.reached_c, self.target_c, target_c);
         self.target_c = target_c;
         self.update_ratio();
     }

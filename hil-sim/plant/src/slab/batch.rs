@@ -154,11 +154,7 @@ impl<const L: usize> SlabBatch<L> {
     /// Mean temperature of a node over the last step, deg C.
     pub fn mean_c(&self, lane: usize, node: usize) -> f64 {
         let i = self.cells - 1 - node;
-        tr_bdf2::step_mean(
-            self.temperature[i][lane],
-            self.first[i][lane],
-            self.second[i][lane],
-        )
+        tr_bdf2::step_mean(self.temperature[i][lane], self.first[i][lane], self.second[i][lane])
     }
 
     /// Begins a step, whose length is given by its index, with the heat flux into each surface at its start, W/m2.
@@ -224,10 +220,7 @@ impl<const L: usize> SlabBatch<L> {
 
     fn surface_equations(&self, step: usize, solved: [f64; L]) -> [SurfaceEquation; L] {
         let pivot = &self.factors[step].pivot;
-        std::array::from_fn(|l| SurfaceEquation {
-            pivot: pivot[l],
-            rhs: solved[l] * pivot[l],
-        })
+        std::array::from_fn(|l| SurfaceEquation { pivot: pivot[l], rhs: solved[l] * pivot[l] })
     }
 
     /// Factorises for a length of step, unless that is up to date.

@@ -17,9 +17,7 @@ impl DepthProbe {
     /// A probe at a depth, m, of a slab with at least four cells; none outside of the slab.
     pub fn at(slab: &Slab, depth_m: f64) -> Option<Self> {
         let above = slab.depth_m.partition_point(|d| *d <= depth_m);
-        let first = above
-            .saturating_sub(NODES / 2)
-            .min(slab.cells().checked_sub(NODES)?);
+        let first = above.saturating_sub(NODES / 2).min(slab.cells().checked_sub(NODES)?);
         let deepest_m = slab.depth_m.last()?;
         if !(0.0..=*deepest_m).contains(&depth_m) {
             return None;

@@ -22,11 +22,7 @@ pub struct Grading {
 
 impl Grading {
     /// The mesh of every simulation. The surface cell is the diffusion length of 4 us; its error falls with `a t / width^2`.
-    pub const STANDARD: Self = Self {
-        first: 0.002,
-        growth: 1.12,
-        depth: 4.0,
-    };
+    pub const STANDARD: Self = Self { first: 0.002, growth: 1.12, depth: 4.0 };
 }
 
 /// A cell of the mesh.
@@ -41,10 +37,7 @@ pub struct Cell {
 impl Cell {
     /// A cell of a series in which each is `growth` times as wide as the one before.
     pub fn graded(width_m: f64, growth: f64) -> Self {
-        Self {
-            width_m,
-            node_m: width_m / (1.0 + growth.sqrt()),
-        }
+        Self { width_m, node_m: width_m / (1.0 + growth.sqrt()) }
     }
 }
 
@@ -69,16 +62,10 @@ pub fn fill(thickness_m: f64, first_m: f64, growth: f64) -> Vec<Cell> {
             most = middle;
         }
     }
-    let g = if sum(1.0) * first_m > thickness_m {
-        1.0
-    } else {
-        most
-    };
+    let g = if sum(1.0) * first_m > thickness_m { 1.0 } else { most };
     // Equal cells may have to be narrower; the rounding of the factor is distributed over all cells.
     let first_m = thickness_m / sum(g);
-    (0..cells as i32)
-        .map(|i| Cell::graded(first_m * g.powi(i), g))
-        .collect()
+    (0..cells as i32).map(|i| Cell::graded(first_m * g.powi(i), g)).collect()
 }
 
 #[cfg(test)]
@@ -90,10 +77,7 @@ mod tests {
         for thickness_m in [1e-5, 1.01e-4, 2.5e-4, 1e-3, 0.07] {
             let cells = fill(thickness_m, 1e-4, 1.15);
             let sum: f64 = cells.iter().map(|c| c.width_m).sum();
-            assert!(
-                (sum / thickness_m - 1.0).abs() < 1e-14,
-                "{thickness_m}: {sum}"
-            );
+            assert!((sum / thickness_m - 1.0).abs() < 1e-14, "{thickness_m}: {sum}");
             for pair in cells.windows(2) {
                 assert!(pair[1].width_m / pair[0].width_m < 1.15 + 1e-12);
             }
@@ -116,9 +100,7 @@ mod tests {
         let cells = fill(1e9, 1.0, growth);
         let mut admittance = 0.0;
         for (i, cell) in cells.iter().enumerate().rev() {
-            let before = i
-                .checked_sub(1)
-                .map_or(0.0, |b| cells[b].width_m - node(&cells[b]));
+            let before = i.checked_sub(1).map_or(0.0, |b| cells[b].width_m - node(&cells[b]));
             admittance = 1.0 / (1.0 / (admittance + s * cell.width_m) + before + node(cell));
         }
         1.0 / admittance
@@ -134,9 +116,6 @@ mod tests {
                 .fold(0.0, f64::max)
         };
         assert!(worst(1.15, |c| c.node_m) < 2e-8);
-        assert!(
-            worst(1.15, |c| 0.5 * c.width_m) > 1e-3,
-            "nodes in the middle"
-        );
+        assert!(worst(1.15, |c| 0.5 * c.width_m) > 1e-3, "nodes in the middle");
     }
 }

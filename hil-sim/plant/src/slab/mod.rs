@@ -103,11 +103,7 @@ impl Slab {
         };
         // Width of the next cell in diffusion lengths, depth of its face, and resistance from the node before to it.
         let (mut next, mut face_m, mut behind_m2k_w) = (grading.first, 0.0, 0.0);
-        for Layer {
-            thickness_m,
-            medium,
-        } in layers
-        {
+        for Layer { thickness_m, medium } in layers {
             let k = medium.conductivity_w_mk;
             let a = medium.diffusivity_m2_s();
             let thickness_m = if thickness_m.is_finite() {
@@ -131,21 +127,15 @@ impl Slab {
                     slab.link_w_m2k.push(1.0 / ahead_m2k_w);
                 }
                 slab.depth_m.push(face_m + cell.node_m);
-                slab.capacity_j_m2k
-                    .push(medium.capacity_j_m3k * cell.width_m);
+                slab.capacity_j_m2k.push(medium.capacity_j_m3k * cell.width_m);
                 slab.blood_w_m2k.push(medium.perfusion_w_m3k * cell.width_m);
-                slab.metabolism_w_m2
-                    .push(medium.metabolism_w_m3 * cell.width_m);
+                slab.metabolism_w_m2.push(medium.metabolism_w_m3 * cell.width_m);
                 behind_m2k_w = (cell.width_m - cell.node_m) / k;
                 face_m += cell.width_m;
                 next = cell.width_m * grading.growth / a.sqrt();
             }
         }
-        if let BackBoundary::Film {
-            film_w_m2k,
-            temperature_c,
-        } = back
-        {
+        if let BackBoundary::Film { film_w_m2k, temperature_c } = back {
             slab.back = (1.0 / (behind_m2k_w + 1.0 / film_w_m2k), temperature_c);
         }
         slab

@@ -20,10 +20,8 @@ pub fn steady_state(slab: &Slab, surface_c: f64, loss_w_m2: f64) -> Option<Stead
     let mut exchange = slab.blood_w_m2k.clone();
     exchange[n - 1] += slab.back.0;
     if exchange.iter().sum::<f64>() <= 0.0 {
-        return (loss_w_m2 == 0.0 && metabolism == 0.0).then(|| SteadyState {
-            core_c: surface_c,
-            node_c: vec![surface_c; n],
-        });
+        return (loss_w_m2 == 0.0 && metabolism == 0.0)
+            .then(|| SteadyState { core_c: surface_c, node_c: vec![surface_c; n] });
     }
     // Temperatures above the core, eliminated from the depth; every pivot is a sum of positive terms.
     let (mut conductance, mut heat) = (vec![0.0; n], vec![0.0; n]);
@@ -44,8 +42,5 @@ pub fn steady_state(slab: &Slab, surface_c: f64, loss_w_m2: f64) -> Option<Stead
         above_c[i] = (link * above_c[i - 1] + heat[i]) / (link + conductance[i]);
     }
     let core_c = surface_c + loss_w_m2 * slab.surface_m2k_w - above_c[0];
-    Some(SteadyState {
-        core_c,
-        node_c: above_c.iter().map(|t| core_c + t).collect(),
-    })
+    Some(SteadyState { core_c, node_c: above_c.iter().map(|t| core_c + t).collect() })
 }

@@ -15,17 +15,11 @@ const TISSUE: Medium = Medium {
 };
 
 fn layer(thickness_m: f64, medium: Medium) -> Layer {
-    Layer {
-        thickness_m,
-        medium,
-    }
+    Layer { thickness_m, medium }
 }
 
 /// Isothermal core at the deepest face.
-const CORE: BackBoundary = BackBoundary::Film {
-    film_w_m2k: f64::INFINITY,
-    temperature_c: 0.0,
-};
+const CORE: BackBoundary = BackBoundary::Film { film_w_m2k: f64::INFINITY, temperature_c: 0.0 };
 
 /// One slab whose surface is held at a temperature, or insulated.
 struct HeldSlab {
@@ -39,9 +33,7 @@ impl HeldSlab {
         let flux = self.surface_w_m2k * (self.surface_c - self.slab.surface_c(0));
         let close = |row: SurfaceEquation, u: f64| [row.rhs / (row.pivot + u)];
         let [row] = self.slab.first_stage(index, [flux]);
-        let [row] = self
-            .slab
-            .second_stage(index, close(row, self.surface_w_m2k));
+        let [row] = self.slab.second_stage(index, close(row, self.surface_w_m2k));
         self.slab.finish_step(index, close(row, self.surface_w_m2k));
     }
 }
@@ -85,10 +77,7 @@ fn temperature_step_of_a_half_space_follows_the_error_function() {
                         break;
                     }
                     let off_c = held.slab.node_c(0, node) - exact_c;
-                    assert!(
-                        off_c.abs() < 6e-3,
-                        "off by {off_c} at z = {z} after {t_s} s"
-                    );
+                    assert!(off_c.abs() < 6e-3, "off by {off_c} at z = {z} after {t_s} s");
                 }
             }
         }
@@ -100,19 +89,12 @@ fn temperature_step_of_a_half_space_follows_the_error_function() {
 #[test]
 fn layers_in_steady_state_conduct_as_resistances_in_series() {
     let layers = [(0.65e-3, 0.21), (1.2e-3, 0.37), (4e-3, 0.16)];
-    let dead = |k| Medium {
-        conductivity_w_mk: k,
-        perfusion_w_m3k: 0.0,
-        metabolism_w_m3: 0.0,
-        ..TISSUE
-    };
+    let dead =
+        |k| Medium { conductivity_w_mk: k, perfusion_w_m3k: 0.0, metabolism_w_m3: 0.0, ..TISSUE };
     let film_w_m2k = 50.0;
     let slab = Slab::new(
         &layers.map(|(l, k)| layer(l, dead(k))),
-        BackBoundary::Film {
-            film_w_m2k,
-            temperature_c: 0.0,
-        },
+        BackBoundary::Film { film_w_m2k, temperature_c: 0.0 },
         60.0,
         &Grading::STANDARD,
     );
@@ -120,11 +102,7 @@ fn layers_in_steady_state_conduct_as_resistances_in_series() {
     let steady = steady_state(&slab, 34.0, loss_w_m2).expect("a core");
     let resistance: f64 = layers.iter().map(|(l, k)| l / k).sum::<f64>() + 1.0 / film_w_m2k;
     let core_c = 34.0 + loss_w_m2 * resistance;
-    assert!(
-        (steady.core_c - core_c).abs() < 1e-11,
-        "{} is not {core_c}",
-        steady.core_c
-    );
+    assert!((steady.core_c - core_c).abs() < 1e-11, "{} is not {core_c}", steady.core_c);
     // At every node too.
     for (node, t) in steady.node_c.iter().enumerate() {
         let (mut above, mut left) = (0.0, slab.depth_m[node]);
@@ -132,10 +110,7 @@ fn layers_in_steady_state_conduct_as_resistances_in_series() {
             above += left.min(l) / k;
             left = (left - l).max(0.0);
         }
-        assert!(
-            (t - (34.0 + loss_w_m2 * above)).abs() < 1e-11,
-            "node {node}"
-        );
+        assert!((t - (34.0 + loss_w_m2 * above)).abs() < 1e-11, "node {node}");
     }
 }
 
@@ -152,10 +127,7 @@ fn steady_state_with_blood_and_metabolism_follows_the_hyperbolic_solution() {
     };
     let mut last_c = f64::INFINITY;
     for (growth, name) in [(1.2, "coarse"), (1.0954, "middle"), (1.0466, "fine")] {
-        let grading = Grading {
-            growth,
-            ..Grading::STANDARD
-        };
+        let grading = Grading { growth, ..Grading::STANDARD };
         let slab = Slab::new(&[layer(thickness_m, TISSUE)], CORE, 60.0, &grading);
         let steady = steady_state(&slab, surface_c, loss_w_m2).expect("a core");
         let core_c = surface_c - above_c(0.0);
@@ -183,10 +155,7 @@ fn steady_state_with_blood_and_metabolism_follows_the_hyperbolic_solution() {
             held.slab.finish_step(0, [row.rhs / row.pivot]);
         }
         for (node, t) in steady.node_c.iter().enumerate() {
-            assert!(
-                (held.slab.node_c(0, node) - t).abs() < 1e-9,
-                "node {node} drifts"
-            );
+            assert!((held.slab.node_c(0, node) - t).abs() < 1e-9, "node {node} drifts");
         }
     }
 }
@@ -210,11 +179,7 @@ struct Mode {
 }
 
 /// A mesh whose cells, and their subdivisions, fill the layers of [`Mode`] exactly.
-const COARSE: Grading = Grading {
-    first: 0.0103,
-    growth: 1.078,
-    depth: 4.0,
-};
+const COARSE: Grading = Grading { first: 0.0103, growth: 1.078, depth: 4.0 };
 /// Number of cells in each layer.
 const CELLS: [i32; 3] = [32, 20, 16];
 
@@ -233,11 +198,7 @@ impl Mode {
         });
         let total_m2k_w: f64 = tissue.iter().map(|(l, k, _)| l / k).sum();
         let wave = (PI / total_m2k_w).powi(2);
-        let rate = 1.2
-            * tissue
-                .iter()
-                .map(|(_, k, c)| wave / (k * c))
-                .fold(0.0, f64::max);
+        let rate = 1.2 * tissue.iter().map(|(_, k, c)| wave / (k * c)).fold(0.0, f64::max);
         let layers = tissue.map(|(thickness_m, k, c)| {
             let medium = Medium {
                 conductivity_w_mk: k,
@@ -247,20 +208,12 @@ impl Mode {
             };
             layer(thickness_m, medium)
         });
-        Self {
-            layers: layers.to_vec(),
-            rate,
-            total_m2k_w,
-        }
+        Self { layers: layers.to_vec(), rate, total_m2k_w }
     }
 
     fn shape(&self, depth_m: f64) -> f64 {
         let (mut above, mut left) = (0.0, depth_m);
-        for Layer {
-            thickness_m,
-            medium,
-        } in &self.layers
-        {
+        for Layer { thickness_m, medium } in &self.layers {
             above += left.min(*thickness_m) / medium.conductivity_w_mk;
             left = (left - thickness_m).max(0.0);
         }
@@ -297,19 +250,12 @@ fn space_converges_at_second_order_across_layers() {
     let mut least = f64::INFINITY;
     for _ in 0..3 {
         let growth = grading.growth.sqrt();
-        grading = Grading {
-            first: grading.first / (1.0 + growth),
-            growth,
-            ..grading
-        };
+        grading = Grading { first: grading.first / (1.0 + growth), growth, ..grading };
         let (finer, less) = mode.error(&grading, 1000);
         assert_eq!(finer, 2 * cells);
         let order = f64::log2(error / less);
         println!("{cells} to {finer} cells: {error:.2e} to {less:.2e}, order {order:.3}");
-        assert!(
-            (order - 2.0).abs() < 0.1,
-            "order {order} from {cells} to {finer} cells"
-        );
+        assert!((order - 2.0).abs() < 0.1, "order {order} from {cells} to {finer} cells");
         least = least.min(order);
         (cells, error) = (finer, less);
     }
@@ -319,11 +265,7 @@ fn space_converges_at_second_order_across_layers() {
 #[test]
 fn time_converges_at_second_order() {
     let mode = Mode::new();
-    let fine = Grading {
-        first: 0.002,
-        growth: 1.01,
-        depth: 4.0,
-    };
+    let fine = Grading { first: 0.002, growth: 1.01, depth: 4.0 };
     let (mut last, mut least) = (None, f64::INFINITY);
     for steps in [4, 8, 16, 32] {
         let (_, error) = mode.error(&fine, steps);

@@ -29,10 +29,8 @@ fn a_latched_switch_leaves_less_than_6_v_after_20_ms() {
 #[test]
 fn a_shorted_switch_leaves_12_v() {
     let mut supply = on();
-    supply.set_defects(&SupplyDefects {
-        switch: SwitchDefect::Shorted,
-        ..SupplyDefects::default()
-    });
+    supply
+        .set_defects(&SupplyDefects { switch: SwitchDefect::Shorted, ..SupplyDefects::default() });
     assert!(after(&mut supply, 20, true, 0.0) > 11.9);
 }
 
@@ -46,10 +44,7 @@ fn a_current_lowers_the_voltage_by_ohms_law() {
 /// 120 uF at 12 V hold 1.4 mC.
 #[test]
 fn an_emergency_stop_ends_a_current_at_once_and_leaves_an_idle_supply_to_the_driver() {
-    let stopped = SupplyDefects {
-        emergency_stop: true,
-        ..SupplyDefects::default()
-    };
+    let stopped = SupplyDefects { emergency_stop: true, ..SupplyDefects::default() };
     let mut driving = on();
     driving.set_defects(&stopped);
     assert_eq!(after(&mut driving, 1, false, 4.0), 0.0);
@@ -65,9 +60,6 @@ fn an_emergency_stop_ends_a_current_at_once_and_leaves_an_idle_supply_to_the_dri
 fn the_sense_divider_reads_3464_counts_at_12_v_and_none_with_an_open_wire() {
     let mut supply = on();
     assert!((supply.sensed_counts() - 3464.0).abs() < 1.0);
-    supply.set_defects(&SupplyDefects {
-        sense_open: true,
-        ..SupplyDefects::default()
-    });
+    supply.set_defects(&SupplyDefects { sense_open: true, ..SupplyDefects::default() });
     assert_eq!(supply.sensed_counts(), 0.0);
 }

@@ -11,10 +11,7 @@ use crate::slab::{Layer, Medium};
 use crate::tile::CoolingDefects;
 
 /// Without errors.
-const IDEAL: FluxParams = FluxParams {
-    noise_w_m2: 0.0,
-    ..FluxParams::NOMINAL
-};
+const IDEAL: FluxParams = FluxParams { noise_w_m2: 0.0, ..FluxParams::NOMINAL };
 
 fn fitted(flux: Option<FluxParams>, finger: FingerParams) -> Plant {
     let mut config = config("granite");
@@ -31,10 +28,7 @@ const SKIN_M: f64 = 0.5e-3;
 /// Skin on a core at 34 deg C: a body that has a steady state with a flux.
 fn skin_on_a_core() -> FingerParams {
     FingerParams {
-        layers: vec![Layer {
-            thickness_m: SKIN_M,
-            medium: Medium::without_blood(&SKIN),
-        }],
+        layers: vec![Layer { thickness_m: SKIN_M, medium: Medium::without_blood(&SKIN) }],
         core_w_m2k: Some(f64::INFINITY),
         ..FingerParams::homogeneous()
     }
@@ -42,23 +36,15 @@ fn skin_on_a_core() -> FingerParams {
 
 /// All that is seen of a plant, the codes included.
 fn seen(plant: &mut Plant) -> ([u16; CHANNELS], [f64; 5]) {
-    let values = [
-        plant.display_c(),
-        plant.skin_c(),
-        plant.skin_real_c(),
-        plant.sink_c(),
-        plant.current_a(),
-    ];
+    let values =
+        [plant.display_c(), plant.skin_c(), plant.skin_real_c(), plant.sink_c(), plant.current_a()];
     (plant.convert_scan(), values)
 }
 
 #[test]
 fn a_sensor_without_resistance_changes_nothing_else() {
     let finger = FingerParams::homogeneous;
-    let weightless = FluxParams {
-        resistance_m2k_w: 0.0,
-        ..FluxParams::NOMINAL
-    };
+    let weightless = FluxParams { resistance_m2k_w: 0.0, ..FluxParams::NOMINAL };
     let mut plants =
         [None, Some(weightless), Some(FluxParams::NOMINAL)].map(|flux| fitted(flux, finger()));
     for step in 0..400 {
@@ -83,17 +69,11 @@ fn the_layer_is_in_series_with_skin_and_contact() {
         let contact_w_m2k =
             conductance_at_hardness::<f64>(&SKIN.surface, &REFERENCE_DISPLAY) * relative.powf(0.95);
         for layer_m2k_w in [0.0, 3e-5, 2.3e-4] {
-            let flux = FluxParams {
-                resistance_m2k_w: layer_m2k_w,
-                ..IDEAL
-            };
+            let flux = FluxParams { resistance_m2k_w: layer_m2k_w, ..IDEAL };
             let mut plant = fitted(Some(flux), skin_on_a_core());
             plant.set_force(force_n);
             plant.set_defects(&Defects {
-                cooling: CoolingDefects {
-                    held_c: Some(24.0),
-                    ..CoolingDefects::default()
-                },
+                cooling: CoolingDefects { held_c: Some(24.0), ..CoolingDefects::default() },
                 ..Defects::default()
             });
             run(&mut plant, 60.0, &BridgeOutputs::default());
@@ -134,10 +114,7 @@ fn readings_add_up_to_the_heat_that_the_finger_gives() {
         let off_j_m2 = read_j_m2 + held_j_m2 - given_j_m2;
         let rounding_j_m2 = 0.5 / IDEAL.counts_per_w_m2 * seconds;
         assert!(off_j_m2.abs() < 0.5 * rounding_j_m2, "{off_j_m2} J/m2");
-        assert!(
-            off_j_m2.abs() < 1e-3 * given_j_m2,
-            "{off_j_m2} of {given_j_m2}"
-        );
+        assert!(off_j_m2.abs() < 1e-3 * given_j_m2, "{off_j_m2} of {given_j_m2}");
     }
 }
 
@@ -165,10 +142,7 @@ fn without_contact_the_sensor_sees_the_air_film_on_the_display() {
 fn defects_reach_the_sensor() {
     let mut plant = fitted(Some(IDEAL), FingerParams::homogeneous());
     plant.set_defects(&Defects {
-        flux: FluxDefect {
-            zero_w_m2: 838.9,
-            ..FluxDefect::default()
-        },
+        flux: FluxDefect { zero_w_m2: 838.9, ..FluxDefect::default() },
         ..Defects::default()
     });
     run(&mut plant, 0.01, &BridgeOutputs::default());

@@ -56,15 +56,9 @@ fn object(layers: &str, back: &str) -> ObjectConfig {
         .collect();
     let (touched, _) = layers[0];
     ObjectConfig {
-        layers: layers
-            .iter()
-            .map(|(material, m)| ObjectConfig::layer(material, *m))
-            .collect(),
+        layers: layers.iter().map(|(material, m)| ObjectConfig::layer(material, *m)).collect(),
         back: match back {
-            "held" => BackBoundary::Film {
-                film_w_m2k: f64::INFINITY,
-                temperature_c: 24.0,
-            },
+            "held" => BackBoundary::Film { film_w_m2k: f64::INFINITY, temperature_c: 24.0 },
             _ => BackBoundary::Insulated,
         },
         ..ObjectConfig::half_space(*touched, 24.0)
@@ -112,9 +106,8 @@ fn layered_objects_and_fingers_follow_their_transmission_lines() {
 /// Skin, deg C, at the times of a contact from 0.2 to 10 s, with a mesh and a step, s.
 fn skin_c(golden: &Golden, grading: &Grading, step_s: f64) -> Vec<f64> {
     let surface = &golden.object.surface;
-    let touch = ContactLaw::NOMINAL
-        .at_force(golden.force_n, &SKIN.surface, surface)
-        .expect("pressed");
+    let touch =
+        ContactLaw::NOMINAL.at_force(golden.force_n, &SKIN.surface, surface).expect("pressed");
     let mut reference =
         ReferenceSolution::on_mesh(34.0, &golden.object, touch, 10.0, (grading, step_s));
     let at = |t_s: f64| {
@@ -154,10 +147,7 @@ fn layered_objects_converge_with_mesh_and_step() {
         let courses = [5e-3, 2.5e-3, 1.25e-3].map(|s| skin_c(golden, &Grading::STANDARD, s));
         let halved = |k: usize| largest_difference(&courses[k], &courses[k + 1]);
         let step = (halved(0) / halved(1)).log2();
-        println!(
-            "{}: orders {mesh:.3} of the mesh, {step:.3} of the steps",
-            golden.layers
-        );
+        println!("{}: orders {mesh:.3} of the mesh, {step:.3} of the steps", golden.layers);
         (mesh_order, step_order) = (mesh_order.min(mesh), step_order.min(step));
     }
     assert_figure("layers.mesh_order", mesh_order);

@@ -31,9 +31,7 @@ fn finger_on_object_follows_the_contact_equations() {
     let mut running: Option<(&str, f64, Plant)> = None;
     let mut seen = 0;
     for (material, [force_n, resistance_m2k_w, t_s, skin_c, object_c, flux_w_m2]) in golden() {
-        let same = running
-            .take()
-            .filter(|(name, n, _)| (*name, *n) == (material, force_n));
+        let same = running.take().filter(|(name, n, _)| (*name, *n) == (material, force_n));
         let (_, _, plant) = running.insert(same.unwrap_or_else(|| {
             let mut plant = plant(material);
             plant.set_force(force_n);
@@ -47,14 +45,8 @@ fn finger_on_object_follows_the_contact_equations() {
             (plant.heat.flux_w_m2(Finger::OnObject) - flux_w_m2).abs() / (10.0 / resistance_m2k_w);
         let allowed_mk = 1.0;
         let at = format!("{material} at {force_n} N after {t_s} s");
-        assert!(
-            skin_off_mk < allowed_mk,
-            "{at}: skin off by {skin_off_mk} mK"
-        );
-        assert!(
-            object_off_mk < allowed_mk,
-            "{at}: object off by {object_off_mk} mK"
-        );
+        assert!(skin_off_mk < allowed_mk, "{at}: skin off by {skin_off_mk} mK");
+        assert!(object_off_mk < allowed_mk, "{at}: object off by {object_off_mk} mK");
         assert!(flux_off < 1e-4, "{at}: flux off by {flux_off} of its start");
         seen += 1;
     }
@@ -111,14 +103,7 @@ impl Volterra {
 #[test]
 fn force_steps_lifting_and_landing_again_follow_the_integral_equation() {
     // From each time on, s, a force, N.
-    let script = [
-        (0.0, 0.5),
-        (0.4, 2.0),
-        (1.2, 0.1),
-        (1.6, 0.0),
-        (2.1, 2.0),
-        (3.0, 0.0),
-    ];
+    let script = [(0.0, 0.5), (0.4, 2.0), (1.2, 0.1), (1.6, 0.0), (2.1, 2.0), (3.0, 0.0)];
     let mut worst_mk = 0.0f64;
     for material in ["copper", "granite", "abs", "foam"] {
         let object: &Material = find(material).expect("known");
@@ -134,9 +119,7 @@ fn force_steps_lifting_and_landing_again_follow_the_integral_equation() {
                 let t_s = from_s + after_s;
                 let left_s = t_s - plant.time_s();
                 run(&mut plant, left_s, &BridgeOutputs::default());
-                let mut to_here = Volterra {
-                    pieces: exact.pieces.clone(),
-                };
+                let mut to_here = Volterra { pieces: exact.pieces.clone() };
                 to_here.advance(t_s, touch.map(|t| t.resistance_m2k_w), 250, kappa);
                 let skin_c = 34.0 - per_skin * to_here.memory(t_s);
                 let off_mk = 1e3 * (plant.skin_real_c() - skin_c).abs();
@@ -192,10 +175,7 @@ fn first_steps_after_landing_are_resolved() {
                 let skin_off_mk = 1e3 * (plant.skin_real_c() - want.skin_c).abs();
                 let object_off_mk = 1e3 * (plant.object_c() - want.object_c).abs();
                 let off_mk = skin_off_mk.max(object_off_mk);
-                assert!(
-                    off_mk < 1.0,
-                    "{material} at {force_n} N, step {k}: off by {off_mk} mK"
-                );
+                assert!(off_mk < 1.0, "{material} at {force_n} N, step {k}: off by {off_mk} mK");
             }
         }
     }
@@ -228,11 +208,7 @@ fn every_material_at_every_force_follows_equations_6_5_to_6_7() {
         }
     }
     let keys = ["truth.skin", "truth.object", "truth.flux"];
-    let early = [
-        "truth.skin_before",
-        "truth.object_before",
-        "truth.flux_before",
-    ];
+    let early = ["truth.skin_before", "truth.object_before", "truth.flux_before"];
     for (key, worst) in keys.into_iter().chain(early).zip(worst.concat()) {
         assert_figure(key, worst);
     }

@@ -24,11 +24,7 @@ impl Relative {
     fn new(shape: Shape, reference_k: f64, variation: f64) -> Self {
         let [c, l, q] = shape;
         let scale = variation / (c + reference_k * (l + reference_k * q));
-        Self {
-            constant: 1.0 - variation + scale * c,
-            linear: scale * l,
-            quadratic: scale * q,
-        }
+        Self { constant: 1.0 - variation + scale * c, linear: scale * l, quadratic: scale * q }
     }
 
     fn at(&self, k: f64) -> f64 {

@@ -16,11 +16,7 @@ pub struct CoolingDefects {
 
 impl CoolingDefects {
     /// No defect.
-    pub const NONE: Self = Self {
-        resistance_factor: 1.0,
-        coolant_c: None,
-        held_c: None,
-    };
+    pub const NONE: Self = Self { resistance_factor: 1.0, coolant_c: None, held_c: None };
 }
 
 impl Default for CoolingDefects {

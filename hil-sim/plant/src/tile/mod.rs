@@ -123,9 +123,7 @@ impl Tile {
 
     /// Sets the defects of the sink's cooling.
     pub fn set_cooling(&mut self, defects: &CoolingDefects) {
-        let coolant_c = defects
-            .coolant_c
-            .unwrap_or(self.room_c + self.params.coolant_k);
+        let coolant_c = defects.coolant_c.unwrap_or(self.room_c + self.params.coolant_k);
         let (to_c, k_w) = match defects.held_c {
             Some(held_c) => (held_c, THERMOSTAT_W_K.recip()),
             None => (coolant_c, self.params.sink_k_w * defects.resistance_factor),
@@ -142,11 +140,7 @@ impl Tile {
     /// Sets the area of the patch that the finger covers, m2; the rest of the plate exchanges heat with the air.
     pub fn cover(&mut self, area_m2: f64) {
         for (z, m2) in self.zones.area_m2.into_iter().enumerate() {
-            let free_m2 = if z == PATCH {
-                (m2 - area_m2).max(0.0)
-            } else {
-                m2
-            };
+            let free_m2 = if z == PATCH { (m2 - area_m2).max(0.0) } else { m2 };
             let film_w_k = self.params.film_w_m2k * free_m2;
             self.network.source[0][z] = film_w_k * self.room_c;
             self.network.feedback[0][z] = -film_w_k;
@@ -172,11 +166,7 @@ impl Tile {
             for link in 0..LINKS {
                 let next_c = self.network.extrapolated_c(COLD_TAB + link + 1, z, step_s);
                 let between_c = 0.5 * (here_c + next_c);
-                let half_cell = if link == 0 || link + 1 == LINKS {
-                    2.0
-                } else {
-                    1.0
-                };
+                let half_cell = if link == 0 || link + 1 == LINKS { 2.0 } else { 1.0 };
                 self.network.axial[COLD_TAB + link][z] =
                     share * all_w_k * half_cell * self.legs.conductivity(between_c);
                 let seebeck_v_k = share * all_v_k * self.legs.seebeck(between_c);
@@ -194,10 +184,7 @@ impl Tile {
 
     /// Electrical load of the [prepared](Self::prepare) step; the Seebeck voltage opposes a cooling current.
     pub const fn load(&self) -> Load {
-        Load {
-            seebeck_v: self.seebeck_v,
-            resistance_ohm: self.resistance_ohm,
-        }
+        Load { seebeck_v: self.seebeck_v, resistance_ohm: self.resistance_ohm }
     }
 
     /// Sets the current of the coming step; positive cools the display.

@@ -116,11 +116,7 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
             lateral: zero,
             source: zero,
             feedback: zero,
-            sink: SinkNode {
-                capacity: 1.0,
-                temperature: temperature_c,
-                ..SinkNode::default()
-            },
+            sink: SinkNode { capacity: 1.0, temperature: temperature_c, ..SinkNode::default() },
             temperature: [[temperature_c; Z]; N],
             power: zero,
             first: zero,
@@ -173,11 +169,7 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
 
     /// Heat capacity, J/K, and temperature, deg C, of every node.
     pub fn nodes(&self) -> impl Iterator<Item = (f64, f64)> {
-        let levels = self
-            .capacity
-            .as_flattened()
-            .iter()
-            .zip(self.temperature.as_flattened());
+        let levels = self.capacity.as_flattened().iter().zip(self.temperature.as_flattened());
         let sink = (self.sink.capacity, self.sink.temperature);
         levels.map(|(capacity, t)| (*capacity, *t)).chain([sink])
     }
@@ -240,11 +232,7 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
         above[0] = inflow_w;
         for i in 0..N {
             for z in 0..Z {
-                let next_c = if i + 1 < N {
-                    t[i + 1][z]
-                } else {
-                    self.sink.temperature
-                };
+                let next_c = if i + 1 < N { t[i + 1][z] } else { self.sink.temperature };
                 let below = self.axial[i][z] * (t[i][z] - next_c);
                 self.power[i][z] =
                     self.source[i][z] + self.feedback[i][z] * t[i][z] + above[z] - below;
@@ -291,22 +279,13 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
         self.add_level(&mut block, below);
         let inverse = invert(block);
         self.inverse[below] = inverse;
-        let levels: f64 = eliminated(&inverse, &self.axial[below])
-            .iter()
-            .flatten()
-            .sum();
+        let levels: f64 = eliminated(&inverse, &self.axial[below]).iter().flatten().sum();
         self.sink.inverse =
             1.0 / (tr_bdf2::storage(self.sink.capacity, self.step_s) - self.sink.feedback + levels);
     }
 
     fn factorise_columns(&mut self) {
-        let Columns {
-            inverse,
-            down,
-            from_above,
-            from_below,
-            across,
-        } = &mut self.columns;
+        let Columns { inverse, down, from_above, from_below, across } = &mut self.columns;
         let axial = &self.axial;
         let mut carry = axial[Self::ABOVE];
         let mut share = axial[Self::ABOVE];
@@ -374,10 +353,8 @@ impl<const N: usize, const Z: usize, const FIRST: usize, const LAST: usize>
         let (axial, columns) = (&self.axial, &self.columns);
         // What the columns give to the plates, and the plates downwards.
         for i in FIRST..=LAST {
-            let (up, down) = (
-                times(&columns.from_above[i], &x[i]),
-                times(&columns.from_below[i], &x[i]),
-            );
+            let (up, down) =
+                (times(&columns.from_above[i], &x[i]), times(&columns.from_below[i], &x[i]));
             add(&mut x[above], &up);
             add(&mut x[below], &down);
         }

@@ -12,11 +12,7 @@ const ROOM_C: f64 = 24.0;
 
 /// The nominal module with constant properties and no exchange with the air.
 fn plain() -> TileParams {
-    TileParams {
-        variation: 0.0,
-        film_w_m2k: 0.0,
-        ..TileParams::NOMINAL
-    }
+    TileParams { variation: 0.0, film_w_m2k: 0.0, ..TileParams::NOMINAL }
 }
 
 /// The tile after steps under a constant current and a uniform heat load on its plate, W.
@@ -25,10 +21,7 @@ fn after(params: TileParams, current_a: f64, load_w: f64, step_s: f64, steps: us
     for z in 0..ZONES {
         tile.network.source[0][z] += load_w * tile.share[z];
     }
-    let current = Current {
-        mean_a: current_a,
-        ..Current::default()
-    };
+    let current = Current { mean_a: current_a, ..Current::default() };
     for _ in 0..steps {
         tile.prepare(step_s);
         tile.drive(current);
@@ -41,11 +34,7 @@ fn after(params: TileParams, current_a: f64, load_w: f64, step_s: f64, steps: us
 #[test]
 fn steady_state_follows_the_module_equations() {
     let params = plain();
-    let (a, r, k) = (
-        params.seebeck_v_k(),
-        params.resistance_ohm(),
-        params.conductance_w_k(),
-    );
+    let (a, r, k) = (params.seebeck_v_k(), params.resistance_ohm(), params.conductance_w_k());
     for current_a in [-3.0, -0.5, 0.0, 1.0, 4.0, 6.0] {
         for load_w in [0.0, 1.0, 5.0] {
             let tile = after(params, current_a, load_w, REST_S, 6);
@@ -77,12 +66,7 @@ fn steady_state_follows_the_module_equations() {
 /// Steady-state temperature of the display plate with a load of 1 W, deg C.
 fn plate_c(sink_k_w: f64, current_a: f64) -> f64 {
     // The study neglected plates and paste.
-    let params = TileParams {
-        sink_k_w,
-        ceramic_w_mk: 1e6,
-        paste_w_k: 1e6,
-        ..plain()
-    };
+    let params = TileParams { sink_k_w, ceramic_w_mk: 1e6, paste_w_k: 1e6, ..plain() };
     after(params, current_a, 1.0, REST_S, 6).patch_c()
 }
 
@@ -121,9 +105,7 @@ fn varying_properties_keep_the_data_sheet() {
         let tile = after(params, current_a, 0.0, REST_S, 60);
         tile.network.node_c(HOT_TAB, 0) - tile.network.node_c(COLD_TAB, 0)
     };
-    let most_k = (40..80)
-        .map(|i| difference_k(0.1 * f64::from(i)))
-        .fold(0.0, f64::max);
+    let most_k = (40..80).map(|i| difference_k(0.1 * f64::from(i))).fold(0.0, f64::max);
     let sheet = TileParams::NOMINAL;
     assert_figure("plant.largest_difference", most_k);
     assert!((most_k / sheet.dtmax_k - 1.0).abs() < 0.1, "{most_k} K");
@@ -136,25 +118,18 @@ fn initial_slope_of_the_plate_is_typical_of_its_class() {
     // Largest slope 2.7 K/s per A, within 15 %.
     let (step_s, window) = (0.5e-3, 20);
     for current_a in [1.0, 3.0, 6.0] {
-        let plate_c: Vec<f64> = (0..20)
-            .map(|n| after(plain(), current_a, 0.0, step_s, n * window).patch_c())
-            .collect();
+        let plate_c: Vec<f64> =
+            (0..20).map(|n| after(plain(), current_a, 0.0, step_s, n * window).patch_c()).collect();
         let fastest_k = plate_c.windows(2).map(|w| w[0] - w[1]).fold(0.0, f64::max);
         let slope = fastest_k / (window as f64 * step_s) / current_a;
-        assert!(
-            (slope / 2.7 - 1.0).abs() < 0.15,
-            "{slope} K/s per A at {current_a} A"
-        );
+        assert!((slope / 2.7 - 1.0).abs() < 0.15, "{slope} K/s per A at {current_a} A");
     }
 }
 
 /// Reference solution: mean temperature rise of the patch, K/W, on a disc with a convective back, meshed in 4000 rings.
 fn patch_rise_k(params: &TileParams, sheet_w_k: f64, back_w_m2k: f64) -> f64 {
     let n = 4000;
-    let (patch_m, edge_m) = (
-        (params.patch_m2 / PI).sqrt(),
-        (params.plate_m2() / PI).sqrt(),
-    );
+    let (patch_m, edge_m) = ((params.patch_m2 / PI).sqrt(), (params.plate_m2() / PI).sqrt());
     let ring_m = edge_m / n as f64;
     let area = |i: usize| PI * ring_m * ring_m * (2 * i + 1) as f64;
     let inside = |i: usize| {
@@ -176,11 +151,7 @@ fn patch_rise_k(params: &TileParams, sheet_w_k: f64, back_w_m2k: f64) -> f64 {
     }
     let mut rise = vec![0.0; n];
     for i in (0..n).rev() {
-        let from_outside = if i + 1 < n {
-            link(i) * rise[i + 1]
-        } else {
-            0.0
-        };
+        let from_outside = if i + 1 < n { link(i) * rise[i + 1] } else { 0.0 };
         rise[i] = (loads[i] + from_outside) / pivots[i];
     }
     (0..n).map(|i| rise[i] * inside(i)).sum::<f64>() / params.patch_m2
@@ -201,20 +172,12 @@ fn three_zones_approximate_the_heat_spreading_of_a_plate() {
             network.feedback[0][z] = -back_w_m2k * zones.area_m2[z];
         }
         for _ in 0..6 {
-            network.first_stage(
-                REST_S,
-                if network.sink_c() == 0.0 { 1.0 } else { 0.0 },
-                0.0,
-                0.0,
-            );
+            network.first_stage(REST_S, if network.sink_c() == 0.0 { 1.0 } else { 0.0 }, 0.0, 0.0);
             network.second_stage(0.0);
         }
         let exact_k = patch_rise_k(&params, sheet_w_k, back_w_m2k);
         let off = network.node_c(0, PATCH) / exact_k - 1.0;
-        println!(
-            "back {back_w_m2k} W/(m2 K): {exact_k:.3} K/W, zones off by {:.1} %",
-            100.0 * off
-        );
+        println!("back {back_w_m2k} W/(m2 K): {exact_k:.3} K/W, zones off by {:.1} %", 100.0 * off);
         off_percent.push((1000.0 * off).round() / 10.0);
     }
     assert_row("plant.zones_off", &off_percent);

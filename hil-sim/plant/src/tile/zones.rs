@@ -40,11 +40,7 @@ impl Zones {
                 PI * (edge_m[z].powi(2) - hole_m.powi(2))
             }),
             shape: std::array::from_fn(|z| {
-                if z + 1 < ZONES {
-                    1.0 / (inward(z) + outward(z + 1))
-                } else {
-                    0.0
-                }
+                if z + 1 < ZONES { 1.0 / (inward(z) + outward(z + 1)) } else { 0.0 }
             }),
         }
     }

@@ -16,15 +16,11 @@ type Row = HashMap<String, String>;
 fn golden(name: &str) -> Vec<Row> {
     let path = format!("{}/tests/data/{name}.csv", env!("CARGO_MANIFEST_DIR"));
     let rows = csv::Reader::from_path(path).expect("golden table");
-    rows.into_deserialize()
-        .collect::<Result<_, _>>()
-        .expect("golden row")
+    rows.into_deserialize().collect::<Result<_, _>>().expect("golden row")
 }
 
 fn number(row: &Row, column: &str) -> f64 {
-    row[column]
-        .parse()
-        .unwrap_or_else(|_| panic!("{column} of {row:?}"))
+    row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
 }
 
 /// Optics and surroundings of a golden row.
@@ -44,10 +40,7 @@ fn conditions(row: &Row) -> (Optic, Surroundings) {
 }
 
 fn noiseless(optic: Optic) -> CameraParams {
-    CameraParams {
-        netd_k: 0.0,
-        ..CameraParams::thesis(optic)
-    }
+    CameraParams { netd_k: 0.0, ..CameraParams::thesis(optic) }
 }
 
 fn camera(params: &CameraParams, surroundings: &Surroundings, seed: u64) -> Camera {
@@ -87,11 +80,7 @@ fn radiance_is_planck_s_law_over_the_band() {
         let weights = [7.0, 32.0, 12.0, 32.0, 7.0];
         let panel = |panel: i32| {
             let node = |(i, weight): (usize, f64)| {
-                weight
-                    * spectral(
-                        7.5e-6 + step_m * (f64::from(4 * panel) + i as f64),
-                        t_c + 273.15,
-                    )
+                weight * spectral(7.5e-6 + step_m * (f64::from(4 * panel) + i as f64), t_c + 273.15)
             };
             weights.into_iter().enumerate().map(node).sum::<f64>()
         };
@@ -110,10 +99,7 @@ fn slope_is_the_derivative() {
         .map(|row| (number(row, "T_C"), number(row, "U_7.5_13um_W_m2_sr")))
         .collect();
     let mut checked = 0;
-    for around in radiances
-        .windows(5)
-        .filter(|around| around[4].0 - around[0].0 == 4.0)
-    {
+    for around in radiances.windows(5).filter(|around| around[4].0 - around[0].0 == 4.0) {
         let [a, b, _, d, e] = [0, 1, 2, 3, 4].map(|i: usize| around[i].1);
         let expected = (a - 8.0 * b + 8.0 * d - e) / 12.0;
         let relative = (radiance_per_k(around[2].0) / expected - 1.0).abs();
@@ -148,10 +134,7 @@ fn optics_are_those_of_table_5_3() {
     ];
     for (optic, [transmissivity, reflectivity, emissivity]) in table {
         let optic = optic.expect("a window");
-        assert_eq!(
-            [optic.transmissivity, optic.reflectivity],
-            [transmissivity, reflectivity]
-        );
+        assert_eq!([optic.transmissivity, optic.reflectivity], [transmissivity, reflectivity]);
         assert!((optic.emissivity() - emissivity).abs() < 1e-15);
     }
     assert_eq!(Optic::None.window(), None);
@@ -185,15 +168,8 @@ fn inversion_recovers_any_target() {
             for (ambient_c, window_c, splitter_c) in
                 [(24.0, 27.0, 25.0), (-20.0, 60.0, 10.0), (45.0, 5.0, 45.0)]
             {
-                let params = CameraParams {
-                    emissivity,
-                    ..noiseless(optic)
-                };
-                let surroundings = Surroundings {
-                    ambient_c,
-                    window_c,
-                    splitter_c,
-                };
+                let params = CameraParams { emissivity, ..noiseless(optic) };
+                let surroundings = Surroundings { ambient_c, window_c, splitter_c };
                 let mut camera = camera(&params, &surroundings, 1);
                 let mut before_c = f64::NEG_INFINITY;
                 for target_c in (-40..=125).map(f64::from) {
@@ -212,19 +188,10 @@ fn inversion_recovers_any_target() {
 fn optics_have_no_effect_in_thermal_equilibrium() {
     for optic in OPTICS {
         for t_c in [-40.0, 0.0, 24.0, 34.0, 120.0] {
-            let reflection = SelfReflection {
-                camera_c: t_c,
-                share: 1.0,
-            };
-            let params = CameraParams {
-                self_reflection: Some(reflection),
-                ..noiseless(optic)
-            };
+            let reflection = SelfReflection { camera_c: t_c, share: 1.0 };
+            let params = CameraParams { self_reflection: Some(reflection), ..noiseless(optic) };
             let reading = camera(&params, &Surroundings::at(t_c), 1).read(t_c);
-            assert!(
-                (reading.apparent_c - t_c).abs() <= 1e-11,
-                "{optic:?} {t_c}: {reading:?}"
-            );
+            assert!((reading.apparent_c - t_c).abs() <= 1e-11, "{optic:?} {t_c}: {reading:?}");
         }
     }
 }
@@ -242,14 +209,8 @@ fn self_reflection_of_a_warm_camera_raises_the_reading() {
         [(Optic::Baf2, 0.77, 0.04), (Optic::Zns, 0.65, 0.22)]
     {
         for share in [0.0, 0.5, 1.0] {
-            let reflection = SelfReflection {
-                camera_c: 30.0,
-                share,
-            };
-            let params = CameraParams {
-                self_reflection: Some(reflection),
-                ..noiseless(optic)
-            };
+            let reflection = SelfReflection { camera_c: 30.0, share };
+            let params = CameraParams { self_reflection: Some(reflection), ..noiseless(optic) };
             let reading = camera(&params, &Surroundings::at(24.0), 1).read(27.0);
             let expected =
                 radiances["27"] + share * reflectivity * 0.54 * excess / (0.95 * transmissivity);
@@ -263,16 +224,10 @@ fn self_reflection_of_a_warm_camera_raises_the_reading() {
 fn statistics(params: &CameraParams, target_c: f64, seed: u64) -> ([f64; 2], [f64; 2]) {
     const COUNT: u32 = 40_000;
     let mut camera = camera(params, &Surroundings::at(24.0), seed);
-    let exact_c = self::camera(
-        &CameraParams {
-            netd_k: 0.0,
-            ..*params
-        },
-        &Surroundings::at(24.0),
-        seed,
-    )
-    .read(target_c)
-    .apparent_c;
+    let exact_c =
+        self::camera(&CameraParams { netd_k: 0.0, ..*params }, &Surroundings::at(24.0), seed)
+            .read(target_c)
+            .apparent_c;
     let readings: Vec<[f64; 2]> = (0..COUNT)
         .map(|_| camera.read(target_c))
         .map(|reading| [reading.recovered_c - target_c, reading.apparent_c - exact_c])
@@ -288,58 +243,34 @@ fn statistics(params: &CameraParams, target_c: f64, seed: u64) -> ([f64; 2], [f6
 #[test]
 fn noise_equals_the_netd_without_bias_and_is_amplified_by_optics() {
     for (seed, optic) in OPTICS.into_iter().enumerate() {
-        let black = CameraParams {
-            emissivity: 1.0,
-            ..CameraParams::thesis(optic)
-        };
+        let black = CameraParams { emissivity: 1.0, ..CameraParams::thesis(optic) };
         // The NETD is specified at an apparent temperature of 30 deg C.
         let target_c = camera(&noiseless(optic), &Surroundings::at(24.0), 1).recovered_c(30.0);
         let params = CameraParams::thesis(optic);
         let ([bias_k, recovered_k], [apparent_bias_k, apparent_k]) =
             statistics(&params, target_c, seed as u64);
-        assert!(
-            (apparent_k / params.netd_k - 1.0).abs() < 0.02,
-            "{optic:?} {apparent_k}"
-        );
+        assert!((apparent_k / params.netd_k - 1.0).abs() < 0.02, "{optic:?} {apparent_k}");
         // Four standard errors.
-        assert!(
-            apparent_bias_k.abs() < 4.0 * apparent_k / 200.0,
-            "{optic:?} {apparent_bias_k}"
-        );
-        assert!(
-            bias_k.abs() < 4.0 * recovered_k / 200.0,
-            "{optic:?} {bias_k}"
-        );
+        assert!(apparent_bias_k.abs() < 4.0 * apparent_k / 200.0, "{optic:?} {apparent_bias_k}");
+        assert!(bias_k.abs() < 4.0 * recovered_k / 200.0, "{optic:?} {bias_k}");
         // Losses of the optics and the slope of Planck's law at the target amplify the noise.
-        let window = optic
-            .window()
-            .map_or(1.0, |window| window.transmissivity * 0.54);
+        let window = optic.window().map_or(1.0, |window| window.transmissivity * 0.54);
         let magnified = radiance_per_k(30.0) / (0.95 * window * radiance_per_k(target_c));
         assert!(
             (recovered_k / (params.netd_k * magnified) - 1.0).abs() < 0.02,
             "{optic:?} {recovered_k}"
         );
-        let averaged = CameraParams {
-            pixels: 100,
-            ..black
-        };
+        let averaged = CameraParams { pixels: 100, ..black };
         let (_, [_, averaged_k]) = statistics(&averaged, 30.0, 7);
         let (_, [_, single_k]) = statistics(&black, 30.0, 8);
-        assert!(
-            (10.0 * averaged_k / single_k - 1.0).abs() < 0.03,
-            "{optic:?} {averaged_k}"
-        );
+        assert!((10.0 * averaged_k / single_k - 1.0).abs() < 0.03, "{optic:?} {averaged_k}");
     }
 }
 
 #[test]
 fn same_seed_gives_the_same_readings() {
     let readings = |seed| {
-        let mut camera = camera(
-            &CameraParams::thesis(Optic::Baf2),
-            &Surroundings::at(24.0),
-            seed,
-        );
+        let mut camera = camera(&CameraParams::thesis(Optic::Baf2), &Surroundings::at(24.0), seed);
         [27.0, 27.0, 30.0].map(|target_c| camera.read(target_c).u_tot)
     };
     assert_eq!(readings(3), readings(3));
@@ -353,72 +284,32 @@ fn wrong_parameters_are_named() {
     let room = Surroundings::at(24.0);
     let reflection = |camera_c, share| Some(SelfReflection { camera_c, share });
     for (params, surroundings, expected) in [
+        (CameraParams { emissivity: 0.0, ..fine }, room, "emissivity 0; allowed is above 0 to 1"),
+        (CameraParams { emissivity: 1.1, ..fine }, room, "emissivity 1.1; allowed is above 0 to 1"),
         (
-            CameraParams {
-                emissivity: 0.0,
-                ..fine
-            },
-            room,
-            "emissivity 0; allowed is above 0 to 1",
-        ),
-        (
-            CameraParams {
-                emissivity: 1.1,
-                ..fine
-            },
-            room,
-            "emissivity 1.1; allowed is above 0 to 1",
-        ),
-        (
-            CameraParams {
-                netd_k: -0.1,
-                ..fine
-            },
+            CameraParams { netd_k: -0.1, ..fine },
             room,
             "netd_k -0.1; allowed is a finite number from 0 on",
         ),
-        (
-            CameraParams { pixels: 0, ..fine },
-            room,
-            "pixels 0; allowed is 1 or more",
-        ),
+        (CameraParams { pixels: 0, ..fine }, room, "pixels 0; allowed is 1 or more"),
+        (fine, Surroundings { window_c: f64::NAN, ..room }, "window_c NaN; allowed is -100 to 200"),
         (
             fine,
-            Surroundings {
-                window_c: f64::NAN,
-                ..room
-            },
-            "window_c NaN; allowed is -100 to 200",
-        ),
-        (
-            fine,
-            Surroundings {
-                splitter_c: 300.0,
-                ..room
-            },
+            Surroundings { splitter_c: 300.0, ..room },
             "splitter_c 300; allowed is -100 to 200",
         ),
         (
             fine,
-            Surroundings {
-                ambient_c: -101.0,
-                ..room
-            },
+            Surroundings { ambient_c: -101.0, ..room },
             "ambient_c -101; allowed is -100 to 200",
         ),
         (
-            CameraParams {
-                self_reflection: reflection(201.0, 1.0),
-                ..fine
-            },
+            CameraParams { self_reflection: reflection(201.0, 1.0), ..fine },
             room,
             "camera_c 201; allowed is -100 to 200",
         ),
         (
-            CameraParams {
-                self_reflection: reflection(30.0, 1.5),
-                ..fine
-            },
+            CameraParams { self_reflection: reflection(30.0, 1.5), ..fine },
             room,
             "camera_share 1.5; allowed is 0 to 1",
         ),

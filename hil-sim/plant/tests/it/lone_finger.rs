@@ -21,18 +21,11 @@ fn skin_and_flux_on_half_spaces_follow_the_closed_form() {
     };
     let pressure_pa = pressure_pa(2.0);
     for (name, material) in MATERIALS {
-        let exact = Contact::new(
-            (&SKIN, SKIN_C),
-            (&material, OBJECT_C),
-            &REFERENCE_DISPLAY,
-            pressure_pa,
-        );
+        let exact =
+            Contact::new((&SKIN, SKIN_C), (&material, OBJECT_C), &REFERENCE_DISPLAY, pressure_pa);
         let m2k_w = contact_resistance::<f64>(&SKIN.surface, &material.surface, pressure_pa);
         let touched = finger.on_object(m2k_w, 2000, &ObjectConfig::half_space(material, OBJECT_C));
-        assert_eq!(
-            (touched.skin_c.len(), touched.flux_w_m2.len()),
-            (2001, 2001)
-        );
+        assert_eq!((touched.skin_c.len(), touched.flux_w_m2.len()), (2001, 2001));
         for ms in [0, 1, 5, 50, 500, 2000] {
             let exact = exact.at(f64::from(ms) / 1e3);
             let off_k = touched.skin_c[ms as usize] - exact.skin_c;
@@ -40,10 +33,7 @@ fn skin_and_flux_on_half_spaces_follow_the_closed_form() {
             let exact_w_m2 = (exact.skin_c - exact.object_c) / m2k_w;
             let off_w_m2 = touched.flux_w_m2[ms as usize] - exact_w_m2;
             let landing_w_m2 = (SKIN_C - OBJECT_C) / m2k_w;
-            assert!(
-                off_w_m2.abs() < 3e-4 * landing_w_m2,
-                "{name}, {ms} ms: {off_w_m2} W/m2"
-            );
+            assert!(off_w_m2.abs() < 3e-4 * landing_w_m2, "{name}, {ms} ms: {off_w_m2} W/m2");
         }
     }
 }

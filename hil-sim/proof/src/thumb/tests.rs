@@ -7,13 +7,7 @@ fn effect(first: u16, second: u16) -> Effect {
 
 #[test]
 fn instructions_have_the_length_of_their_encoding() {
-    for (first, length) in [
-        (0x4770, 2),
-        (0xe7fe, 2),
-        (0xe92d, 4),
-        (0xf000, 4),
-        (0xfb00, 4),
-    ] {
+    for (first, length) in [(0x4770, 2), (0xe7fe, 2), (0xe92d, 4), (0xf000, 4), (0xfb00, 4)] {
         assert_eq!(decode(0, first, 0).length, length, "{first:#x}");
     }
 }
@@ -45,14 +39,7 @@ fn jumps_calls_and_returns_are_decoded() {
         // it eq ; ite ne ; itte lo ; dsb sy ; msr basepri, r0 ; nop ; svc 0
         (0xbf08, 0, Effect::IfThen { same: 1, count: 1 }),
         (0xbf14, 0, Effect::IfThen { same: 1, count: 2 }),
-        (
-            0xbf3a,
-            0,
-            Effect::IfThen {
-                same: 0b011,
-                count: 3,
-            },
-        ),
+        (0xbf3a, 0, Effect::IfThen { same: 0b011, count: 3 }),
         (0xf3bf, 0x8f4f, Effect::Next),
         (0xf380, 0x8811, Effect::Next),
         (0xbf00, 0, Effect::Next),
@@ -120,11 +107,7 @@ fn floating_point_arithmetic_is_distinguished_from_moves() {
         (0xeef1, 0xfa10, false),
     ];
     for (first, second, expected) in cases {
-        assert_eq!(
-            decode(0, first, second).float,
-            expected,
-            "{first:04x} {second:04x}"
-        );
+        assert_eq!(decode(0, first, second).float, expected, "{first:04x} {second:04x}");
     }
 }
 
@@ -138,10 +121,6 @@ fn exclusive_stores_are_recognised() {
         (0xe852, 0x0f00, false),
         (0xe9c2, 0x0100, false),
     ] {
-        assert_eq!(
-            decode(0, first, second).exclusive,
-            expected,
-            "{first:04x} {second:04x}"
-        );
+        assert_eq!(decode(0, first, second).exclusive, expected, "{first:04x} {second:04x}");
     }
 }

@@ -53,11 +53,7 @@ impl BoardBench {
     /// # Errors
     /// The plant does not accept a value.
     pub fn world(&self) -> Result<World, ConfigError> {
-        let mut world = self
-            .board
-            .setup()
-            .on_the_bench()?
-            .with_chip(self.board.chip);
+        let mut world = self.board.setup().on_the_bench()?.with_chip(self.board.chip);
         self.apply(&mut world);
         Ok(world)
     }
@@ -70,28 +66,18 @@ impl BoardBench {
     fn defects(&self) -> Defects {
         let (board, connected) = (&self.board, &self.connected);
         let mut defects = board.defects;
-        for (thermistor, circuit) in defects
-            .sensors
-            .thermistors
-            .iter_mut()
-            .zip(connected.thermistors)
+        for (thermistor, circuit) in
+            defects.sensors.thermistors.iter_mut().zip(connected.thermistors)
         {
             thermistor.circuit = circuit;
         }
         let weight_n = connected.weight_n;
         defects.sensors.force.open |= !connected.load_cell;
-        defects.sensors.force.offset_n += if board.force_is_reversed {
-            -weight_n
-        } else {
-            weight_n
-        };
+        defects.sensors.force.offset_n +=
+            if board.force_is_reversed { -weight_n } else { weight_n };
         defects.bridge.output = connected.output;
         let has_supply = connected.supply && (!connected.stop || board.stop_is_bypassed);
-        defects.bridge.supply_v = Some(if has_supply {
-            board.wiring.supply_v
-        } else {
-            0.0
-        });
+        defects.bridge.supply_v = Some(if has_supply { board.wiring.supply_v } else { 0.0 });
         defects.supply.emergency_stop = connected.stop && !board.stop_is_bypassed;
         defects.supply.stop_sense_open |= connected.stop;
         defects

@@ -18,11 +18,7 @@ pub struct LossyLine<E> {
 impl<E> LossyLine<E> {
     /// The line of a board to this engine.
     pub const fn new(engine: E, interval: Option<u64>) -> Self {
-        Self {
-            engine,
-            interval,
-            sent: 0,
-        }
+        Self { engine, interval, sent: 0 }
     }
 }
 

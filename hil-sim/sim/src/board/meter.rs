@@ -57,11 +57,7 @@ pub fn value(bench: &BoardBench, point: MeterPoint, world: &World) -> f64 {
         MeterPoint::ScopeLoadVolt => pulse.mean_v,
         MeterPoint::ScopeLoadRipple => pulse.ripple_v,
         MeterPoint::ScopeMirrorRipple => {
-            let share = board
-                .params
-                .sensors
-                .mirror
-                .ripple_share(board.params.bridge.pwm_hz);
+            let share = board.params.sensors.mirror.ripple_share(board.params.bridge.pwm_hz);
             MIRROR_V_A * share * pulse.inductor_half_a * TRIANGLE_RMS
         }
     }

@@ -60,10 +60,7 @@ impl Board {
         let broken = BROKEN_BOARDS.iter().find(|broken| broken.name == name);
         if broken.is_none() && name != SOUND {
             let names: Vec<_> = BROKEN_BOARDS.iter().map(|broken| broken.name).collect();
-            return Err(format!(
-                "board '{name}'; known: {SOUND} {}",
-                names.join(" ")
-            ));
+            return Err(format!("board '{name}'; known: {SOUND} {}", names.join(" ")));
         }
         let mut board = Self::sound(seed);
         if let Some(broken) = broken {
@@ -100,10 +97,7 @@ impl Board {
 
     /// Moves the comparator's thresholds by what the ladder's resistors differ from their nominal values.
     fn set_thresholds(&mut self) {
-        let nominal = Wiring {
-            ladder_ohm: Wiring::NOMINAL.ladder_ohm,
-            ..self.wiring
-        };
+        let nominal = Wiring { ladder_ohm: Wiring::NOMINAL.ladder_ohm, ..self.wiring };
         let shift_k = |side: usize| {
             let at_c = |wiring: &Wiring| tap_c(wiring.taps_v()[side] / wiring.rail_3_v);
             at_c(&self.wiring) - at_c(&nominal)
@@ -121,12 +115,8 @@ impl Board {
 
 /// Temperature at which a nominal thermistor in a nominal divider gives this ratio, deg C.
 fn tap_c(ratio: f64) -> f64 {
-    let ThermistorParams {
-        at_25c_ohm,
-        beta_k,
-        pull_up_ohm,
-        ..
-    } = Params::nominal().sensors.thermistors[0];
+    let ThermistorParams { at_25c_ohm, beta_k, pull_up_ohm, .. } =
+        Params::nominal().sensors.thermistors[0];
     let ohm = pull_up_ohm * ratio / (1.0 - ratio);
     const ZERO_C_K: f64 = 273.15;
     ((25.0 + ZERO_C_K).recip() + (ohm / at_25c_ohm).ln() / beta_k).recip() - ZERO_C_K

@@ -90,22 +90,11 @@ impl Wiring {
         let n = Self::NOMINAL;
         // A resistor of 1 %, and a meter of 1 %.
         let mut resistor = |ohm: f64| draw(ohm, 0.02);
-        let [in1_ohm, in2_ohm, enable_ohm, boot0_ohm, nfault_ohm] = [
-            n.in1_ohm,
-            n.in2_ohm,
-            n.enable_ohm,
-            n.boot0_ohm,
-            n.nfault_ohm,
-        ]
-        .map(&mut resistor);
-        let [test_ohm, side_ohm, side_to_level_ohm, level_ohm, sense_ohm] = [
-            n.test_ohm,
-            n.side_ohm,
-            n.side_to_level_ohm,
-            n.level_ohm,
-            n.sense_ohm,
-        ]
-        .map(&mut resistor);
+        let [in1_ohm, in2_ohm, enable_ohm, boot0_ohm, nfault_ohm] =
+            [n.in1_ohm, n.in2_ohm, n.enable_ohm, n.boot0_ohm, n.nfault_ohm].map(&mut resistor);
+        let [test_ohm, side_ohm, side_to_level_ohm, level_ohm, sense_ohm] =
+            [n.test_ohm, n.side_ohm, n.side_to_level_ohm, n.level_ohm, n.sense_ohm]
+                .map(&mut resistor);
         Self {
             in1_ohm,
             in2_ohm,
@@ -172,10 +161,7 @@ mod tests {
         let ohm = Wiring::NOMINAL.side_to_ground_ohm(0.0);
         // 4.7 k beside 6.34 k + 5 k.
         assert!((ohm - 3322.8).abs() < 0.1, "{ohm}");
-        let missing = Wiring {
-            side_ohm: f64::INFINITY,
-            ..Wiring::NOMINAL
-        };
+        let missing = Wiring { side_ohm: f64::INFINITY, ..Wiring::NOMINAL };
         assert!((missing.side_to_ground_ohm(0.0) - 11_340.0).abs() < 0.1);
     }
 }

@@ -55,10 +55,7 @@ pub fn with_person(scene: &Scene) -> Result<Cow<'_, Scene>, CommissionError> {
     };
     let mut scene = scene.clone();
     let lines = [format!("person {CODE} {data}"), format!("person {CODE}")];
-    let lines = lines.map(|line| HostLine {
-        t_s: CHOOSE_AT_S,
-        line,
-    });
+    let lines = lines.map(|line| HostLine { t_s: CHOOSE_AT_S, line });
     scene.host.splice(..0, lines);
     Ok(Cow::Owned(scene))
 }
@@ -91,22 +88,13 @@ fn on_another_day(scene: &Scene) -> Scene {
     for (number, (name, t_s)) in CONTACTS.into_iter().enumerate() {
         let lifts_s = t_s + CONTACT_S;
         on_day.forces.extend([
-            Force {
-                t_s,
-                force_n: FORCE_N,
-                ramp_s: 0.0,
-            },
-            Force {
-                t_s: lifts_s,
-                force_n: 0.0,
-                ramp_s: LIFTING_S,
-            },
+            Force { t_s, force_n: FORCE_N, ramp_s: 0.0 },
+            Force { t_s: lifts_s, force_n: 0.0, ramp_s: LIFTING_S },
         ]);
         if number > 0 {
-            on_day.host.push(HostLine {
-                t_s: t_s - CHOSEN_BEFORE_S,
-                line: format!("material {name}"),
-            });
+            on_day
+                .host
+                .push(HostLine { t_s: t_s - CHOSEN_BEFORE_S, line: format!("material {name}") });
         }
         on_day.duration_s = lifts_s + END_AFTER_S;
     }
@@ -123,14 +111,7 @@ fn first_object() -> Object {
     let (_, copper) = MATERIALS[0];
     let material = find(name).copied().unwrap_or(copper);
     let ObjectConfig { layers, back, .. } = ObjectConfig::half_space(material, 0.0);
-    Object {
-        name: name.into(),
-        material,
-        start_c: None,
-        appears_t_s: 0.0,
-        layers,
-        back,
-    }
+    Object { name: name.into(), material, start_c: None, appears_t_s: 0.0, layers, back }
 }
 
 /// Why enrolment failed, or what was learnt; `None` if the contacts were not trusted. Computed once.

@@ -61,10 +61,6 @@ impl FrequencyResponse {
         };
         let ((a, b), (c, d)) = (fundamental(&surface_c), fundamental(&current_a));
         let phase_lag_rad = (d.atan2(c) - (-b).atan2(-a)).rem_euclid(TAU);
-        Ok(Self {
-            w: TAU / (period as f64 * STEP_S),
-            k_a: a.hypot(b) / c.hypot(d),
-            phase_lag_rad,
-        })
+        Ok(Self { w: TAU / (period as f64 * STEP_S), k_a: a.hypot(b) / c.hypot(d), phase_lag_rad })
     }
 }

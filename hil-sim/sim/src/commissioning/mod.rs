@@ -51,10 +51,7 @@ pub fn settings_for_scene(scene: &Scene) -> Result<Vec<String>, CommissionError>
     };
     // Its errors in the plant are those that are left after its gain was calibrated and its zero taken.
     if let Some(flux) = &scene.params.flux {
-        let sensor = FluxSensor {
-            counts_per_w_m2: flux.counts_per_w_m2,
-            ..FluxSensor::DESIGNED
-        };
+        let sensor = FluxSensor { counts_per_w_m2: flux.counts_per_w_m2, ..FluxSensor::DESIGNED };
         lines.push(PlainCommand::FluxSensor(Some(sensor)).to_string());
     }
     if scene.measured_surface {

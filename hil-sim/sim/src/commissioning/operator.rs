@@ -25,10 +25,7 @@ pub fn commission<E: Engine>(
     engine: &mut E,
     watch: &mut dyn FnMut(&CommissioningEvent),
 ) -> Result<CommissioningRecord, CommissionError> {
-    let mut operator = SimulatedOperator {
-        surroundings: SimulatedSurroundings::new(setup),
-        watch,
-    };
+    let mut operator = SimulatedOperator { surroundings: SimulatedSurroundings::new(setup), watch };
     let mut client = Client::new(SimulatedLink::new(engine));
     commissioning::commission(&mut client, None, &mut operator)
 }

@@ -112,17 +112,9 @@ impl CommissioningSetup {
             metabolism_w_m3: 0.0,
         };
         let mut params = self.params.clone();
-        params.finger.layers = vec![Layer {
-            thickness_m: f64::INFINITY,
-            medium,
-        }];
+        params.finger.layers = vec![Layer { thickness_m: f64::INFINITY, medium }];
         params.finger.resistance_factor = phantom.resistance_factor;
-        self.world(
-            params,
-            self.room_c + phantom.above_room_k,
-            self.room_c,
-            "with a phantom",
-        )
+        self.world(params, self.room_c + phantom.above_room_k, self.room_c, "with a phantom")
     }
 
     /// The place of use with the skin thermistor in the air.
@@ -130,12 +122,7 @@ impl CommissioningSetup {
     /// # Errors
     /// The plant does not accept a value.
     pub fn on_the_bench(&self) -> Result<World, ConfigError> {
-        self.world(
-            self.params.clone(),
-            self.room_c,
-            self.room_c,
-            "on the bench",
-        )
+        self.world(self.params.clone(), self.room_c, self.room_c, "on the bench")
     }
 
     /// The skin thermistor in a bath, deg C.
@@ -143,12 +130,7 @@ impl CommissioningSetup {
     /// # Errors
     /// The plant does not accept a value.
     pub fn skin_in_bath(&self, bath_c: f64) -> Result<World, ConfigError> {
-        self.world(
-            self.params.clone(),
-            bath_c,
-            self.room_c,
-            &format!("skin {bath_c}"),
-        )
+        self.world(self.params.clone(), bath_c, self.room_c, &format!("skin {bath_c}"))
     }
 
     /// The room thermistor in a bath, deg C.

@@ -49,10 +49,7 @@ impl SimulatedSurroundings {
 
     /// Surroundings of a board that is brought up.
     pub fn of_board(board: BoardBench) -> Self {
-        Self {
-            board: Some(board.clone()),
-            ..Self::new(&board.setup())
-        }
+        Self { board: Some(board.clone()), ..Self::new(&board.setup()) }
     }
 
     /// The same with another phantom.
@@ -196,13 +193,11 @@ impl SimulatedSurroundings {
                 format!("ok {:.3}", self.reference_c(world, thermistor))
             }
             SurroundingsRequest::Bath(thermistor, bath_c) => {
-                self.put_into_bath(world, thermistor, bath_c)
-                    .map_err(|error| error.to_string())?;
+                self.put_into_bath(world, thermistor, bath_c).map_err(|error| error.to_string())?;
                 "ok".into()
             }
             SurroundingsRequest::Phantom(place) => {
-                self.move_phantom(world, place)
-                    .map_err(|error| error.to_string())?;
+                self.move_phantom(world, place).map_err(|error| error.to_string())?;
                 "ok".into()
             }
             SurroundingsRequest::Force(force_n) => {

@@ -151,10 +151,7 @@ impl Finger {
     /// The samples of the tick whose scans are complete, with the scatter of the thermistors if the device needs it, and with
     /// the inputs that all fingers share.
     fn samples(&mut self, shared: DigitalInputs, needs_scatter: bool) -> Samples {
-        let inputs = DigitalInputs {
-            bridge_fault: self.fault,
-            ..shared
-        };
+        let inputs = DigitalInputs { bridge_fault: self.fault, ..shared };
         self.fault = self.world.bridge_fault();
         Samples::from_scans(&self.scans, inputs, needs_scatter)
     }
@@ -174,11 +171,7 @@ impl Finger {
             Drive::On(duty) => {
                 let (a, b) = duty.input_high_times(pwm_period_steps);
                 let leg = |part: u16| Leg::Duty(f64::from(part) / f64::from(pwm_period_steps));
-                BridgeOutputs {
-                    a: leg(a),
-                    b: leg(b),
-                    enabled: true,
-                }
+                BridgeOutputs { a: leg(a), b: leg(b), enabled: true }
             }
         }
     }
@@ -300,10 +293,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         let (to_boundary_us, waits_from_us) = if FINGERS == 1 {
             (SCAN_TO_BOUNDARY_US, TRIGGER_WAITS_FROM_US)
         } else {
-            (
-                SCAN_TO_BOUNDARY_OF_FIVE_FINGERS_US,
-                TRIGGER_OF_FIVE_FINGERS_WAITS_FROM_US,
-            )
+            (SCAN_TO_BOUNDARY_OF_FIVE_FINGERS_US, TRIGGER_OF_FIVE_FINGERS_WAITS_FROM_US)
         };
         let at_us = self.now_ns / 1000 + u64::from(after_us) + to_boundary_us;
         let us = (at_us % 1000) as u16;
@@ -374,10 +364,7 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
             (finger.fault, finger.outputs, finger.flux_code) = (false, OFF, None);
             finger.learner = Learner::new();
         }
-        self.resets.push(DeviceReset {
-            t_s: self.now_ns as f64 * 1e-9,
-            cause,
-        });
+        self.resets.push(DeviceReset { t_s: self.now_ns as f64 * 1e-9, cause });
     }
 
     fn send_line(&mut self, line: &dyn Display) {
@@ -388,9 +375,8 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
 
     /// Writes the settings and restarts; the time that this takes is not modelled.
     fn store_and_restart(&mut self, order: StorageOrder) {
-        self.stored = decode_settings_record(&self.handler.record_to_save_or_forget(order))
-            .ok()
-            .flatten();
+        self.stored =
+            decode_settings_record(&self.handler.record_to_save_or_forget(order)).ok().flatten();
         self.restart(ResetCause::Software);
     }
 
@@ -406,15 +392,10 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
             let executed = line
                 .map_err(|error| WithSourceFinger::from_whole_device(Error::from(error)))
                 .and_then(|line| {
-                    self.handler.answer(&line, |finger, command| {
-                        self.device.execute(finger, command)
-                    })
+                    self.handler
+                        .answer(&line, |finger, command| self.device.execute(finger, command))
                 });
-            if let Ok(WithSourceFinger {
-                content: Reply::Restart(order),
-                ..
-            }) = &executed
-            {
+            if let Ok(WithSourceFinger { content: Reply::Restart(order), .. }) = &executed {
                 self.store_and_restart(*order);
             }
             match executed {

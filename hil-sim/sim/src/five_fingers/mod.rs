@@ -103,9 +103,7 @@ pub fn run<H: FiveFingerEngine>(
         .collect::<Result<_, _>>())
     .map_err(RunError::Commission)?;
     let enrolled = scenes.iter().map(commissioning::with_person);
-    let enrolled: Vec<_> = enrolled
-        .collect::<Result<_, _>>()
-        .map_err(RunError::Commission)?;
+    let enrolled: Vec<_> = enrolled.collect::<Result<_, _>>().map_err(RunError::Commission)?;
     let began = Instant::now();
     let mut set_up_from_ms = SET_UP_FROM_MS;
     let mut fingers: [_; FINGERS] = std::array::from_fn(|finger| {
@@ -199,12 +197,7 @@ fn injections<S: std::error::Error + 'static>(
             return Ok((ms as u64, fault));
         }
         let time_s = |ms: u64| (ms as f64 - zero_ms as f64) / 1e3;
-        Err(RunError::InjectionTime {
-            fault,
-            t_s,
-            from_s: time_s(0),
-            to_s: time_s(end_ms),
-        })
+        Err(RunError::InjectionTime { fault, t_s, from_s: time_s(0), to_s: time_s(end_ms) })
     };
     of_all.map(since_start).collect()
 }

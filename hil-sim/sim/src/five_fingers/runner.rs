@@ -32,9 +32,8 @@ pub fn run_scenes_on<E: FiveFingerEngine>(
     scenes: &[Scene; FINGERS],
     start: impl FnOnce([World; FINGERS]) -> anyhow::Result<E>,
 ) -> anyhow::Result<Vec<(Outcome, Figures)>> {
-    let worlds: Vec<_> = (scenes.iter().map(World::of_five_fingers))
-        .collect::<Result<_, _>>()
-        .context("plant")?;
+    let worlds: Vec<_> =
+        (scenes.iter().map(World::of_five_fingers)).collect::<Result<_, _>>().context("plant")?;
     let worlds: [World; FINGERS] = (worlds.try_into()).ok().context("one world for a scene")?;
     let outcomes = run(scenes, &mut start(worlds)?, |_| ()).map_err(|error| match error {
         RunError::NotInjected(error) => anyhow::Error::from(error),

@@ -32,18 +32,14 @@ fn curve(
         color,
         // Wider, because the curve of the real skin lies on top of it.
         stroke: Stroke::Solid(if color == SKIN { 4 } else { 2 }),
-        points: points
-            .filter_map(|(i, row)| Some((row.t_s, value(i, row)?)))
-            .collect(),
+        points: points.filter_map(|(i, row)| Some((row.t_s, value(i, row)?))).collect(),
     }
 }
 
 /// Skin temperature recovered from the camera. It is sampled separately because most rows have no frame.
 fn camera(rows: &[TraceRow]) -> Curve {
-    let frames: Vec<_> = rows
-        .iter()
-        .filter_map(|row| Some((row.t_s, row.camera?.recovered_c)))
-        .collect();
+    let frames: Vec<_> =
+        rows.iter().filter_map(|row| Some((row.t_s, row.camera?.recovered_c))).collect();
     let every = frames.len().div_ceil(POINTS).max(1);
     Curve {
         name: "skin, recovered from the camera".into(),
@@ -63,35 +59,23 @@ pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
     let display_errors = display_errors(scene, outcome);
     let mut temperatures = vec![
         curve("skin on the display", SKIN, rows, |_, row| Some(row.skin_c)),
-        curve("skin on the real object", REAL, rows, |_, row| {
-            Some(row.skin_real_c)
-        }),
+        curve("skin on the real object", REAL, rows, |_, row| Some(row.skin_real_c)),
         curve("display", DISPLAY, rows, |_, row| Some(row.display_c)),
-        curve("set-point", SETPOINT, rows, |_, row| {
-            row.device.as_ref()?.setpoint_c
-        }),
+        curve("set-point", SETPOINT, rows, |_, row| row.device.as_ref()?.setpoint_c),
     ];
     if scene.infrared.is_some() {
         // Drawn first, below the others, because it is one of them with noise.
         temperatures.insert(0, camera(rows));
     }
     let errors = [
-        curve(
-            "skin minus skin on the real object",
-            SKIN,
-            rows,
-            |i, row| contacts[i].map(|_| (row.skin_c - row.skin_real_c) * 1e3),
-        ),
+        curve("skin minus skin on the real object", SKIN, rows, |i, row| {
+            contacts[i].map(|_| (row.skin_c - row.skin_real_c) * 1e3)
+        }),
         curve("display minus exact set-point", DISPLAY, rows, |i, _| {
             display_errors[i].map(|(_, error_k)| error_k * 1e3)
         }),
     ];
-    let current = [curve(
-        "current (positive cools)",
-        CURRENT,
-        rows,
-        |_, row| Some(row.current_a),
-    )];
+    let current = [curve("current (positive cools)", CURRENT, rows, |_, row| Some(row.current_a))];
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();

@@ -11,17 +11,12 @@ const REFUSED_SHOWN: usize = 5;
 pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
     let errors = |errors: Option<ErrorFigures>| {
         errors.map_or("no contact".into(), |errors| {
-            let max = errors
-                .max_after_50ms
-                .map_or("none".into(), |max| format!("{max:.1} mK"));
+            let max = errors.max_after_50ms.map_or("none".into(), |max| format!("{max:.1} mK"));
             format!("{max} after 50 ms, {:.1} mK RMS", errors.rms)
         })
     };
     let cost = |cost: CostPerTick| match cost {
-        CostPerTick {
-            mean: Some(mean),
-            max: Some(max),
-        } => format!("{mean:.0} mean, {max} max"),
+        CostPerTick { mean: Some(mean), max: Some(max) } => format!("{mean:.0} mean, {max} max"),
         _ => "unknown to this engine".into(),
     };
     let list = |events: Vec<String>| match events.as_slice() {
@@ -29,14 +24,8 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
         events => events.join(", "),
     };
     let at = |what: &str, t_s: f64| format!("{what} at {t_s:.3} s");
-    let faults = figures
-        .faults
-        .iter()
-        .map(|fault| at(&fault.fault, fault.t_s));
-    let resets = figures
-        .resets
-        .iter()
-        .map(|reset| at(&reset.cause, reset.t_s));
+    let faults = figures.faults.iter().map(|fault| at(&fault.fault, fault.t_s));
+    let resets = figures.resets.iter().map(|reset| at(&reset.cause, reset.t_s));
     let mut rows = vec![
         ("material", figures.material.clone()),
         ("object", figures.object.clone()),
@@ -48,37 +37,20 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
             "skin on the display",
             format!("{:.2} to {:.2} C", figures.skin_c.min, figures.skin_c.max),
         ),
-        (
-            "thermal dose",
-            format!("{:.3} min CEM43", figures.cem43_min),
-        ),
-        (
-            "display",
-            format!(
-                "{:.2} to {:.2} C",
-                figures.display_c.min, figures.display_c.max
-            ),
-        ),
+        ("thermal dose", format!("{:.3} min CEM43", figures.cem43_min)),
+        ("display", format!("{:.2} to {:.2} C", figures.display_c.min, figures.display_c.max)),
         (
             "kernel evaluations",
-            figures
-                .kernel_evaluations
-                .map_or("unknown".into(), |n| n.to_string()),
+            figures.kernel_evaluations.map_or("unknown".into(), |n| n.to_string()),
         ),
         ("instructions a tick", cost(figures.instructions_per_tick)),
-        (
-            "cycles a tick",
-            format!("{} (estimated)", cost(figures.cycles_per_tick)),
-        ),
+        ("cycles a tick", format!("{} (estimated)", cost(figures.cycles_per_tick))),
     ];
     if let (Some(load), Some(stack)) = (figures.cpu_load, figures.stack_bytes) {
         rows.push(("CPU load", format!("{:.1} % (estimated)", load * 100.0)));
         rows.push(("stack used", format!("{stack} bytes")));
     }
-    rows.push((
-        "real-time factor",
-        format!("{:.0}", figures.real_time_factor),
-    ));
+    rows.push(("real-time factor", format!("{:.0}", figures.real_time_factor)));
     rows.push(("faults", list(faults.collect())));
     rows.push(("resets", list(resets.collect())));
     if figures.answered_lines > 0 {
@@ -100,11 +72,9 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
 
 /// The figures, one per line.
 pub fn table(figures: &Figures) -> String {
-    rows(figures)
-        .into_iter()
-        .fold(String::new(), |mut text, (name, value)| {
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "{name:<21}{value}");
-            text
-        })
+    rows(figures).into_iter().fold(String::new(), |mut text, (name, value)| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{name:<21}{value}");
+        text
+    })
 }

@@ -92,11 +92,8 @@ impl Default for Device {
 }
 
 fn flash_timing<'de, D: Deserializer<'de>>(deserializer: D) -> Result<FlashTiming, D::Error> {
-    const NAMES: [&str; FlashTiming::ALL.len()] = [
-        FlashTiming::ALL[0].name(),
-        FlashTiming::ALL[1].name(),
-        FlashTiming::ALL[2].name(),
-    ];
+    const NAMES: [&str; FlashTiming::ALL.len()] =
+        [FlashTiming::ALL[0].name(), FlashTiming::ALL[1].name(), FlashTiming::ALL[2].name()];
     let index = deserializer.deserialize_str(OneOf(&NAMES))?;
     Ok(FlashTiming::ALL[index])
 }

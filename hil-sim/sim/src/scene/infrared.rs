@@ -31,18 +31,13 @@ impl Infrared {
     /// # Errors
     /// As [`Camera::new`].
     pub fn camera(&self, seed: u64) -> Result<Camera, ParameterError> {
-        Camera::new(
-            &self.params,
-            &self.surroundings,
-            stream_seed(seed, "infrared"),
-        )
+        Camera::new(&self.params, &self.surroundings, stream_seed(seed, "infrared"))
     }
 
     /// Whether there is a frame in the millisecond that ends `ms` after time zero.
     pub fn has_frame(&self, ms: u64) -> bool {
         let frame = |ms: u64| (ms as f64 * self.rate_hz / 1e3 + SLACK).floor();
-        ms.checked_sub(1)
-            .is_none_or(|before| frame(ms) > frame(before))
+        ms.checked_sub(1).is_none_or(|before| frame(ms) > frame(before))
     }
 }
 
@@ -99,16 +94,9 @@ pub(super) fn infrared(
     };
     match infrared.camera(0) {
         Ok(_) => Ok(infrared),
-        Err(ParameterError {
-            name,
-            value,
-            allowed,
-        }) => {
+        Err(ParameterError { name, value, allowed }) => {
             let problem = format!("infrared.{name} = {value}; allowed is {allowed}");
-            Err(source.error(
-                Some(span(table, name).unwrap_or_else(|| file.span())),
-                problem,
-            ))
+            Err(source.error(Some(span(table, name).unwrap_or_else(|| file.span())), problem))
         }
     }
 }

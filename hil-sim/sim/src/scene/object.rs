@@ -34,9 +34,7 @@ impl Object {
             BackBoundary::Film { film_w_m2k, .. } => format!("film {film_w_m2k}"),
         };
         let line = format!("object slab {}mm {back}", in_mm(thickness_m));
-        Request::parse(&line, &Settings::default())
-            .is_ok()
-            .then_some(line)
+        Request::parse(&line, &Settings::default()).is_ok().then_some(line)
     }
 
     /// Its layers, from the touched face down, and its back, on one line: by the name of a material, or by conductivity and
@@ -61,22 +59,16 @@ impl Object {
         };
         let layers: Vec<_> = self.layers.iter().map(layer).collect();
         let back = match self.back {
-            _ if self
-                .layers
-                .last()
-                .is_some_and(|last| last.thickness_m.is_infinite()) =>
-            {
+            _ if self.layers.last().is_some_and(|last| last.thickness_m.is_infinite()) => {
                 String::new()
             }
             BackBoundary::Insulated => "; back insulated".into(),
-            BackBoundary::Film {
-                film_w_m2k,
-                temperature_c,
-            } if film_w_m2k.is_infinite() => format!("; back held at {temperature_c} C"),
-            BackBoundary::Film {
-                film_w_m2k,
-                temperature_c,
-            } => format!("; back film of {film_w_m2k} W/(m2 K) to {temperature_c} C"),
+            BackBoundary::Film { film_w_m2k, temperature_c } if film_w_m2k.is_infinite() => {
+                format!("; back held at {temperature_c} C")
+            }
+            BackBoundary::Film { film_w_m2k, temperature_c } => {
+                format!("; back film of {film_w_m2k} W/(m2 K) to {temperature_c} C")
+            }
         };
         layers.join(" | ") + &back
     }
@@ -103,9 +95,8 @@ pub(super) fn object(
         ("slope_rad", &object.slope_rad),
     ];
     let (name, material) = if let Some(name) = &object.material {
-        if let Some((key, number)) = properties
-            .iter()
-            .find_map(|(key, number)| Some((key, number.as_ref()?)))
+        if let Some((key, number)) =
+            properties.iter().find_map(|(key, number)| Some((key, number.as_ref()?)))
         {
             let problem = format!(
                 "object.{key} beside object.material; allowed is either a name or properties"
@@ -113,11 +104,8 @@ pub(super) fn object(
             return Err(source.error(Some(number.span()), problem));
         }
         let Some(material) = find(name.get_ref()) else {
-            let problem = format!(
-                "object.material = {:?}; known are {}",
-                name.get_ref(),
-                known_materials()
-            );
+            let problem =
+                format!("object.material = {:?}; known are {}", name.get_ref(), known_materials());
             return Err(source.error(Some(name.span()), problem));
         };
         (name.get_ref().clone(), *material)
@@ -129,23 +117,11 @@ pub(super) fn object(
         .as_ref()
         .map(|start_c| source.within("object.start_c", start_c, -20.0, 60.0))
         .transpose()?;
-    let appears_t_s = source.within_or(
-        0.0,
-        "object.appears_t_s",
-        &object.appears_t_s,
-        0.0,
-        duration_s,
-    )?;
+    let appears_t_s =
+        source.within_or(0.0, "object.appears_t_s", &object.appears_t_s, 0.0, duration_s)?;
     let layers = layers(source, object, &material)?;
     let back = back(source, object, (&layers, room_c, start_c.unwrap_or(room_c)))?;
-    Ok(Object {
-        name,
-        material,
-        start_c,
-        appears_t_s,
-        layers,
-        back,
-    })
+    Ok(Object { name, material, start_c, appears_t_s, layers, back })
 }
 
 /// The layers of the scene, or one layer of the object's material if the scene has none.
@@ -171,10 +147,8 @@ fn layers(
         let key = |field: &str| format!("object.layer.{i}.{field}");
         let (file, [k, rho, c]) = (layer.get_ref(), &LAYER_RANGES);
         if file.thickness_m.is_none() && i < last {
-            let problem = format!(
-                "{} is missing; only the last layer may be endless",
-                key("thickness_m")
-            );
+            let problem =
+                format!("{} is missing; only the last layer may be endless", key("thickness_m"));
             return Err(source.error(Some(layer.span()), problem));
         }
         let number =
@@ -203,9 +177,7 @@ fn back(
         let problem = format!("object.{key} has no meaning here; allowed is {key} beside {needed}");
         Err(source.error(Some(span), problem))
     };
-    let endless = layers
-        .last()
-        .is_some_and(|last| last.thickness_m.is_infinite());
+    let endless = layers.last().is_some_and(|last| last.thickness_m.is_infinite());
     if let (true, Some(back)) = (endless, &object.back) {
         let needed = if object.layer.is_empty() {
             "object.thickness_m"
@@ -214,10 +186,7 @@ fn back(
         };
         return meaningless("back", back.span(), needed);
     }
-    let kind = object
-        .back
-        .as_ref()
-        .map_or(file::Back::Insulated, |back| *back.get_ref());
+    let kind = object.back.as_ref().map_or(file::Back::Insulated, |back| *back.get_ref());
     if let (file::Back::Insulated, Some(number)) = (kind, &object.back_c) {
         return meaningless("back_c", number.span(), "back = \"held\" or \"film\"");
     }
@@ -240,14 +209,10 @@ fn back(
     };
     Ok(match (kind, film) {
         (file::Back::Insulated, _) => BackBoundary::Insulated,
-        (_, Some(film_w_m2k)) => BackBoundary::Film {
-            film_w_m2k,
-            temperature_c: back_c(room_c)?,
-        },
-        (_, None) => BackBoundary::Film {
-            film_w_m2k: f64::INFINITY,
-            temperature_c: back_c(start_c)?,
-        },
+        (_, Some(film_w_m2k)) => BackBoundary::Film { film_w_m2k, temperature_c: back_c(room_c)? },
+        (_, None) => {
+            BackBoundary::Film { film_w_m2k: f64::INFINITY, temperature_c: back_c(start_c)? }
+        }
     })
 }
 
@@ -267,23 +232,9 @@ fn custom(
         };
         *value = *number.get_ref();
     }
-    let [
-        conductivity_w_mk,
-        density_kg_m3,
-        specific_heat_j_kgk,
-        roughness_um,
-        slope_rad,
-    ] = values;
-    let surface = Surface {
-        conductivity_w_mk,
-        roughness_um,
-        slope_rad,
-    };
-    let material = Material {
-        surface,
-        density_kg_m3,
-        specific_heat_j_kgk,
-    };
+    let [conductivity_w_mk, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad] = values;
+    let surface = Surface { conductivity_w_mk, roughness_um, slope_rad };
+    let material = Material { surface, density_kg_m3, specific_heat_j_kgk };
     match Request::parse(&custom_line(&material), &Settings::default()) {
         Ok(_) => Ok(material),
         Err(refused) => {
@@ -295,17 +246,11 @@ fn custom(
 
 /// The line that sends a material's properties to the device.
 pub(crate) fn custom_line(material: &Material) -> String {
-    let Surface {
-        conductivity_w_mk,
-        roughness_um,
-        slope_rad,
-    } = material.surface;
+    let Surface { conductivity_w_mk, roughness_um, slope_rad } = material.surface;
     let (density, heat) = (material.density_kg_m3, material.specific_heat_j_kgk);
     // Nine decimals are more than the device keeps, and five such numbers fit its line.
     let numbers = [conductivity_w_mk, density, heat, roughness_um, slope_rad]
         .map(|number| format!("{number:.9}"));
-    let short = numbers
-        .each_ref()
-        .map(|number| number.trim_end_matches('0').trim_end_matches('.'));
+    let short = numbers.each_ref().map(|number| number.trim_end_matches('0').trim_end_matches('.'));
     format!("material custom {}", short.join(" "))
 }

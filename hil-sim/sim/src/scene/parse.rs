@@ -48,19 +48,10 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         file::Mode::Contact => ContactModel::ContactResistance,
         file::Mode::SemiInfinite => ContactModel::SemiInfinite,
     };
-    let (faults, injections) = faults(
-        &source,
-        &file.fault,
-        file.device.flux_sensor,
-        duration_s,
-        file.seed,
-    )?;
-    let (nominal, params, draws) = params(
-        &source,
-        file.finger.as_ref(),
-        file.plant.as_ref(),
-        file.device.flux_sensor,
-    )?;
+    let (faults, injections) =
+        faults(&source, &file.fault, file.device.flux_sensor, duration_s, file.seed)?;
+    let (nominal, params, draws) =
+        params(&source, file.finger.as_ref(), file.plant.as_ref(), file.device.flux_sensor)?;
     let assumed_finger = assumed_finger(&file, &params, &draws);
     let scene = Scene {
         duration_s,
@@ -73,11 +64,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         enrolled: enrolled(&source, &file.device, assumed_finger)?,
         chip: chip(&source, &file.device)?,
         mode,
-        law: file
-            .law
-            .as_ref()
-            .map(|name| law(&source, name))
-            .transpose()?,
+        law: file.law.as_ref().map(|name| law(&source, name)).transpose()?,
         object: object(&source, &file.object, duration_s, room_c)?,
         assumed_finger,
         object_as_half_space: file.object.get_ref().told.is_some(),
@@ -97,10 +84,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         host: (file.host.iter())
             .map(|host| {
                 let t_s = source.time("host.t_s", &host.t_s, duration_s)?;
-                Ok(HostLine {
-                    t_s,
-                    line: host.line.get_ref().clone(),
-                })
+                Ok(HostLine { t_s, line: host.line.get_ref().clone() })
             })
             .collect::<Result<_, _>>()?,
         course: None,
@@ -128,10 +112,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
 /// finger of layers or the thesis's, in air or on a pad before its contact.
 fn assumed_finger(file: &File, params: &Params, draws: &Draws) -> AssumedFinger {
     let drawn = draws.finger.and_then(|finger| finger.tissue);
-    let given = file
-        .finger
-        .as_ref()
-        .is_some_and(|finger| finger.get_ref().air_w_m2k.is_some());
+    let given = file.finger.as_ref().is_some_and(|finger| finger.get_ref().air_w_m2k.is_some());
     match file.device.finger {
         Some(file::AssumedFinger::Thesis) => AssumedFinger::Thesis,
         Some(file::AssumedFinger::Mean) => AssumedFinger::Mean,
@@ -199,9 +180,7 @@ fn chip(source: &Source<'_>, device: &file::Device) -> Result<ChipState, SceneEr
 
 /// The control law of a name, with the names of the device's protocol.
 fn law(source: &Source<'_>, name: &Spanned<String>) -> Result<Law, SceneError> {
-    let known = Law::PROTOCOL_WORDS
-        .iter()
-        .find(|(word, _)| word == name.get_ref());
+    let known = Law::PROTOCOL_WORDS.iter().find(|(word, _)| word == name.get_ref());
     known.map(|(_, law)| *law).ok_or_else(|| {
         let words: Vec<_> = Law::PROTOCOL_WORDS.iter().map(|(word, _)| *word).collect();
         let problem = format!("law = {:?}; known are {}", name.get_ref(), words.join(", "));

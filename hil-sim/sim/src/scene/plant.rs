@@ -47,12 +47,7 @@ pub(super) fn params(
         parameters::draw_contact(&mut params, seed);
     }
     if let Some(finger) = finger {
-        draws.finger = drawn_finger(
-            source,
-            finger.get_ref(),
-            nominal.finger.clone(),
-            &mut params,
-        )?;
+        draws.finger = drawn_finger(source, finger.get_ref(), nominal.finger.clone(), &mut params)?;
     }
     for (key, value, span) in values {
         if key != DRAW && key != CONTACT_DRAW {
@@ -72,18 +67,10 @@ fn drawn_finger(
     let Some(seed) = &finger.draw else {
         return Ok(None);
     };
-    let seed = seed_of(
-        source,
-        &("finger.draw".into(), *seed.get_ref(), seed.span()),
-    )?;
-    params.finger = FingerParams {
-        surface: params.finger.surface,
-        ..undrawn
-    };
-    let layered = matches!(
-        finger.tissue.as_ref().map(Spanned::get_ref),
-        Some(file::Tissue::Layered)
-    );
+    let seed = seed_of(source, &("finger.draw".into(), *seed.get_ref(), seed.span()))?;
+    params.finger = FingerParams { surface: params.finger.surface, ..undrawn };
+    let layered =
+        matches!(finger.tissue.as_ref().map(Spanned::get_ref), Some(file::Tissue::Layered));
     let draw = parameters::draw_finger(&mut params.finger, seed, layered);
     vessels(finger, params);
     films(source, finger, params)?;
@@ -100,10 +87,9 @@ fn values(
         return Ok(values);
     };
     let ParameterNode::Table(entries) = plant.get_ref() else {
-        return Err(source.error(
-            Some(plant.span()),
-            "plant is a number; allowed is a table of parameters",
-        ));
+        return Err(
+            source.error(Some(plant.span()), "plant is a number; allowed is a table of parameters")
+        );
     };
     for (key, node) in entries {
         collect(key.get_ref().clone(), node, &mut values);
@@ -178,10 +164,7 @@ fn finger_values(
     params: &mut Params,
 ) -> Result<(), SceneError> {
     if !finger.layer.is_empty() {
-        let unset = Layer {
-            thickness_m: f64::INFINITY,
-            medium: Medium::without_blood(&SKIN),
-        };
+        let unset = Layer { thickness_m: f64::INFINITY, medium: Medium::without_blood(&SKIN) };
         params.finger.layers = vec![unset; finger.layer.len()];
         for (i, layer) in finger.layer.iter().enumerate() {
             let last = i + 1 == finger.layer.len();
@@ -223,14 +206,8 @@ fn layer_values(
     layer: &Spanned<file::Layer>,
     last: bool,
 ) -> Result<(), SceneError> {
-    let file::Layer {
-        thickness_m,
-        k_w_mk,
-        rho_kg_m3,
-        c_j_kgk,
-        perfusion_1_s,
-        metabolism_w_m3,
-    } = layer.get_ref();
+    let file::Layer { thickness_m, k_w_mk, rho_kg_m3, c_j_kgk, perfusion_1_s, metabolism_w_m3 } =
+        layer.get_ref();
     let mut set = |field: &str, value: f64, span: Range<usize>| {
         source.set(params, &format!("{key}.{field}"), value, span)
     };

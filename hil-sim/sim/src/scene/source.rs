@@ -31,11 +31,7 @@ impl std::error::Error for SceneError {}
 
 impl SceneError {
     pub(super) fn unreadable(file: &Path, error: &std::io::Error) -> Self {
-        Self {
-            file: file.into(),
-            line: None,
-            problem: format!("cannot be read: {error}"),
-        }
+        Self { file: file.into(), line: None, problem: format!("cannot be read: {error}") }
     }
 }
 
@@ -51,22 +47,13 @@ impl Source<'_> {
             let before = self.text.as_bytes().iter().take(span.start);
             before.filter(|byte| **byte == b'\n').count() + 1
         });
-        SceneError {
-            file: self.file.into(),
-            line,
-            problem: problem.into(),
-        }
+        SceneError { file: self.file.into(), line, problem: problem.into() }
     }
 
     /// The problem of a value of the wrong type or word by key, value and what is allowed, as other problems are told, from the
     /// file reader's words; `None` if its error is about something else than a value on the line of its key.
     pub fn wrong_value(&self, span: Option<Range<usize>>, problem: &str) -> Option<String> {
-        let of_values = [
-            "invalid type: ",
-            "invalid value: ",
-            "unknown variant ",
-            "expected ",
-        ];
+        let of_values = ["invalid type: ", "invalid value: ", "unknown variant ", "expected "];
         if !of_values.iter().any(|start| problem.starts_with(start)) {
             return None;
         }
@@ -81,10 +68,7 @@ impl Source<'_> {
             header.split(']').next()
         });
         let path: Vec<_> = (tables.take(1).chain([key])).map(str::trim).collect();
-        Some(format!(
-            "{} = {value}; allowed is {allowed}",
-            path.join(".")
-        ))
+        Some(format!("{} = {value}; allowed is {allowed}", path.join(".")))
     }
 
     /// The number, if it lies within the range.

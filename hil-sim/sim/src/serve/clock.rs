@@ -36,13 +36,7 @@ pub struct Clock {
 impl Clock {
     /// A clock that starts now.
     pub fn start(speed: Speed) -> Self {
-        Self {
-            speed,
-            start: Instant::now(),
-            ms: 0,
-            late: false,
-            run_on_ms: 0,
-        }
+        Self { speed, start: Instant::now(), ms: 0, late: false, run_on_ms: 0 }
     }
 
     /// Start of the device's time.

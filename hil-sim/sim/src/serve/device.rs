@@ -83,11 +83,7 @@ pub struct OneFinger<E> {
 impl<E: Engine> OneFinger<E> {
     /// A device that was just powered up in the world of this scene.
     pub fn new(engine: E, scene: Scene) -> Self {
-        Self {
-            engine,
-            scene,
-            ms: 0,
-        }
+        Self { engine, scene, ms: 0 }
     }
 
     fn inject(&mut self, half: u64, at: impl Fn(u32) -> bool) -> Result<(), NotInjected> {
@@ -133,11 +129,7 @@ pub struct FiveFingers<H> {
 impl<H: FiveFingerEngine> FiveFingers<H> {
     /// A device that was just powered up in the worlds of these scenes, whose processor faults are not injected.
     pub fn new(engine: H, scenes: [Scene; FINGERS]) -> Self {
-        Self {
-            engine,
-            scenes,
-            ms: 0,
-        }
+        Self { engine, scenes, ms: 0 }
     }
 }
 

@@ -29,14 +29,8 @@ pub fn serve_in_step<E: Engine>(
     clock: &mut Clock,
     stop: &AtomicBool,
 ) -> Result<(), E::Stop> {
-    let mut device = InStep {
-        engine,
-        line: device_line,
-        client: None,
-        taken: 0,
-        written: 0,
-        ms: 0,
-    };
+    let mut device =
+        InStep { engine, line: device_line, client: None, taken: 0, written: 0, ms: 0 };
     let mut received = Vec::new();
     // Whether a client of the surroundings has been there.
     let mut begun = false;
@@ -94,12 +88,7 @@ impl Idle {
 /// Removes and returns the first line, without its end. One that is too long is returned as far as it has come, to be refused.
 fn next_line(received: &mut Vec<u8>) -> Option<String> {
     let end = received.iter().position(|byte| *byte == b'\n');
-    let end = end.or_else(|| {
-        received
-            .len()
-            .checked_sub(1)
-            .filter(|end| *end >= LINE_MAX_BYTES)
-    })?;
+    let end = end.or_else(|| received.len().checked_sub(1).filter(|end| *end >= LINE_MAX_BYTES))?;
     let line: Vec<u8> = received.drain(..=end).collect();
     Some(String::from_utf8_lossy(&line).trim_end().into())
 }

@@ -116,12 +116,8 @@ impl TcpLine {
             self.refused = Some(stream);
         } else {
             stream.set_nodelay(true)?;
-            self.client = Some(Client {
-                stream,
-                peer,
-                outgoing: OutgoingBytes::default(),
-                ended: None,
-            });
+            self.client =
+                Some(Client { stream, peer, outgoing: OutgoingBytes::default(), ended: None });
             self.clients += 1;
         }
         Ok(())
@@ -134,8 +130,7 @@ impl ClientLine for TcpLine {
             client.outgoing.flush(&mut client.stream);
         }
         self.receive();
-        self.client
-            .take_if(|client| (client.ended).is_some_and(|at| at.elapsed() > LAST_ANSWERS));
+        self.client.take_if(|client| (client.ended).is_some_and(|at| at.elapsed() > LAST_ANSWERS));
         loop {
             match self.listener.accept() {
                 // A client that has gone already needs no answer.
@@ -145,9 +140,7 @@ impl ClientLine for TcpLine {
             }
         }
         let client = self.client.as_ref();
-        client
-            .is_some_and(|client| client.ended.is_none())
-            .then_some(self.clients)
+        client.is_some_and(|client| client.ended.is_none()).then_some(self.clients)
     }
 
     fn read(&mut self, limit: usize) -> Vec<u8> {

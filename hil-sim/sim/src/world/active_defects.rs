@@ -20,15 +20,8 @@ pub struct ActiveDefects {
 impl ActiveDefects {
     /// Adds a fault to the present ones.
     pub fn add(&mut self, fault: &ActiveFault) {
-        let Defects {
-            sensors,
-            flux,
-            bridge,
-            comparator,
-            supply,
-            cooling,
-            module,
-        } = &mut self.plant;
+        let Defects { sensors, flux, bridge, comparator, supply, cooling, module } =
+            &mut self.plant;
         let (index, value) = (fault.sensor as usize, fault.value);
         let thermistor = &mut sensors.thermistors[index];
         match fault.kind {

@@ -77,10 +77,7 @@ fn force_n(ms: u32) -> f64 {
 const RUN_MS: u32 = 1200;
 
 fn plant(finger: FingerParams) -> Plant {
-    let params = Params {
-        finger,
-        ..Params::nominal()
-    };
+    let params = Params { finger, ..Params::nominal() };
     let copper = *find("copper").expect("a material of the thesis");
     Plant::new(&PlantConfig {
         skin_c: 34.0,
@@ -107,11 +104,7 @@ fn plant_does_not_allocate() {
         let layers = finger.layers.len();
         let mut plant = plant(finger);
         let skin_c = plant.skin_c();
-        let legs = BridgeOutputs {
-            a: Leg::Duty(0.7),
-            b: Leg::Duty(0.3),
-            enabled: true,
-        };
+        let legs = BridgeOutputs { a: Leg::Duty(0.7), b: Leg::Duty(0.3), enabled: true };
         let calls = calls_of(|| {
             for ms in 0..RUN_MS {
                 plant.set_force(force_n(ms));
@@ -133,21 +126,15 @@ fn native_engine_does_not_allocate_without_a_stream() {
     let scene = Scene::parse(text, Path::new("scene.toml")).expect("a sound scene");
     let mut native = NativeEngine::new(World::new(&scene).expect("a sound world"));
     let step = |native: &mut NativeEngine, force_n: f64| {
-        native
-            .world()
-            .set_force_and_faults(force_n, std::iter::empty());
+        native.world().set_force_and_faults(force_n, std::iter::empty());
         let legs = native.legs();
         native.world().step(legs);
         let Ok(()) = native.run_half_ms();
         let Ok(()) = native.run_half_ms();
         legs.enabled
     };
-    for (ms, line) in (0..).zip([
-        "material granite\n",
-        "object room\n",
-        "mode contact\n",
-        "arm\n",
-    ]) {
+    for (ms, line) in (0..).zip(["material granite\n", "object room\n", "mode contact\n", "arm\n"])
+    {
         native.send(line.as_bytes());
         for _ in 0..if ms < 3 { 3 } else { 2600 } {
             step(&mut native, 0.0);

@@ -74,9 +74,7 @@ impl ClientLine for Script<'_> {
     }
 
     fn read(&mut self, limit: usize) -> Vec<u8> {
-        self.waiting
-            .drain(..limit.min(self.waiting.len()))
-            .collect()
+        self.waiting.drain(..limit.min(self.waiting.len())).collect()
     }
 
     fn write(&mut self, bytes: &[u8], _patience: Duration) -> usize {
@@ -89,12 +87,7 @@ impl ClientLine for Script<'_> {
 fn a_client_receives_what_the_engine_sends_when_it_is_given_the_same_lines() {
     let scene = landing();
     let stop = AtomicBool::new(false);
-    let mut line = Script {
-        ms: 0,
-        waiting: Vec::new(),
-        received: Vec::new(),
-        stop: &stop,
-    };
+    let mut line = Script { ms: 0, waiting: Vec::new(), received: Vec::new(), stop: &stop };
     let mut clock = Clock::start(Speed::Max);
     // The clock of a client that is always there.
     clock.wait_for_next_ms(true);
@@ -166,32 +159,20 @@ impl Served {
     fn new() -> Self {
         let mut line = TcpLine::listen("127.0.0.1:0").expect("a free port");
         let address = line.address().expect("an address");
-        let (ms, stop) = (
-            Arc::new(AtomicU64::new(0)),
-            Arc::new(AtomicBool::new(false)),
-        );
+        let (ms, stop) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicBool::new(false)));
         let scene = read_scene(None).expect("a scene");
-        let mut device = Counted {
-            device: OneFinger::new(native(&scene), scene),
-            ms: Arc::clone(&ms),
-        };
+        let mut device =
+            Counted { device: OneFinger::new(native(&scene), scene), ms: Arc::clone(&ms) };
         let stopped = Arc::clone(&stop);
         let server = thread::spawn(move || {
             let mut clock = Clock::start(Speed::Max);
             serve(&mut device, &mut line, &mut clock, &stopped).expect("a device that runs");
         });
-        Self {
-            address,
-            ms,
-            stop,
-            server: Some(server),
-        }
+        Self { address, ms, stop, server: Some(server) }
     }
 
     fn connect(&self) -> Client {
-        Client(BufReader::new(
-            TcpStream::connect(self.address).expect("a connection"),
-        ))
+        Client(BufReader::new(TcpStream::connect(self.address).expect("a connection")))
     }
 
     /// Waits until the device has run for this many milliseconds more.
@@ -294,13 +275,8 @@ fn a_client_that_floods_the_line_is_held_to_its_baud_rate_and_the_next_one_is_an
     let answers = received.iter().filter(|byte| **byte == b'\n').count();
     // A line of six bytes takes 0.06 ms; `Counted` asserts that no more bytes arrive.
     let elapsed = served.ms.load(Ordering::Relaxed) - before;
-    assert!(
-        elapsed as usize * 100 / 6 + 800 >= answers,
-        "{answers} answers in {elapsed} ms"
-    );
-    reading
-        .shutdown(std::net::Shutdown::Both)
-        .expect("a connection");
+    assert!(elapsed as usize * 100 / 6 + 800 >= answers, "{answers} answers in {elapsed} ms");
+    reading.shutdown(std::net::Shutdown::Both).expect("a connection");
     drop((client, reading));
     flood.join().expect("a flood that ends");
     let mut next = served.connect();
@@ -325,9 +301,7 @@ fn a_client_that_does_not_read_holds_up_nobody_and_loses_what_it_does_not_take()
     assert_eq!(client.line(), "ok");
     loop {
         let line = client.line();
-        let tick = line
-            .strip_prefix("T ")
-            .and_then(|rest| rest.split(' ').next());
+        let tick = line.strip_prefix("T ").and_then(|rest| rest.split(' ').next());
         // A line may have lost its beginning or its end.
         ticks.extend(tick.and_then(|tick| tick.parse::<u64>().ok()));
         if ticks.last().is_some_and(|tick| *tick > now) {
@@ -384,13 +358,7 @@ fn only_addresses_of_this_machine_are_listened_on() {
         Ok(line) => panic!("{line:?}"),
         Err(error) => error.to_string(),
     };
-    for address in [
-        "0.0.0.0:0",
-        "192.168.7.8:4000",
-        "[::]:0",
-        "[2001:db8::1]:9",
-        "8.8.8.8:53",
-    ] {
+    for address in ["0.0.0.0:0", "192.168.7.8:4000", "[::]:0", "[2001:db8::1]:9", "8.8.8.8:53"] {
         assert!(
             refusal(address).starts_with(&format!(
                 "{address} is not a loopback address, and whoever reaches the line drives the device; allowed are 127.0.0.1:PORT"

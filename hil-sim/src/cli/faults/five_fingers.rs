@@ -20,13 +20,9 @@ pub fn outlines(
     }
     let runs = FiveFingerRun::all(cases, arguments.seed);
     let needed = Reference::needed(&runs);
-    let references = each(
-        arguments,
-        "five fingers without a fault",
-        name,
-        &needed,
-        |run| Reference::run(device.as_ref(), *run),
-    )
+    let references = each(arguments, "five fingers without a fault", name, &needed, |run| {
+        Reference::run(device.as_ref(), *run)
+    })
     .map_err(Failure::run)?;
     let trials = each(arguments, "five fingers with a fault", name, &runs, |run| {
         run.run(device.as_ref(), &references)

@@ -97,9 +97,7 @@ fn one_or_five(fingers: u8) -> Result<u8, String> {
 
 fn scenes() -> impl TypedValueParser<Value = FaultScene> {
     PossibleValuesParser::new(FaultScene::ALL.map(FaultScene::name)).map(|word| {
-        let known = FaultScene::ALL
-            .into_iter()
-            .find(|place| place.name() == word);
+        let known = FaultScene::ALL.into_iter().find(|place| place.name() == word);
         known.unwrap_or(FaultScene::Copper)
     })
 }
@@ -152,10 +150,7 @@ impl<R: Serialize> RunsReport<'_, R> {
         output::print_report(arguments.json, self, || table(self.runs), None)?;
         match self.failing {
             0 => Ok(()),
-            failing => Err(Failure::run(anyhow!(
-                "{failing} of {} {problem}",
-                self.runs.len()
-            ))),
+            failing => Err(Failure::run(anyhow!("{failing} of {} {problem}", self.runs.len()))),
         }
     }
 }
@@ -174,13 +169,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let device = device.as_ref();
     match arguments.modes {
-        Modes {
-            campaign: Some(count),
-            ..
-        } => campaign::run(arguments, device, 0..count),
-        Modes {
-            flips: Some(count), ..
-        } => {
+        Modes { campaign: Some(count), .. } => campaign::run(arguments, device, 0..count),
+        Modes { flips: Some(count), .. } => {
             let numbers = match arguments.replay {
                 None => 0..count,
                 Some(number) if number < count => number..number + 1,
@@ -195,10 +185,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             flips::run(arguments, device, numbers)
         }
         Modes { pairs: true, .. } => pairs::run(arguments, device),
-        Modes {
-            normal: Some(hours),
-            ..
-        } => normal::run(arguments, device, hours),
+        Modes { normal: Some(hours), .. } => normal::run(arguments, device, hours),
         Modes { .. } => match arguments.replay {
             Some(number) => campaign::run(arguments, device, number..number + 1),
             None => matrix(arguments, device),
@@ -212,11 +199,9 @@ fn matrix(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure
         Some(fingers) => (fingers == 1, fingers != 1),
         None => (true, arguments.scene.is_empty() && arguments.elf.is_none()),
     };
-    let [one_cases, five_cases] = [
-        (has_one, faults::fault_cases as fn() -> _),
-        (has_five, faults::five_finger_cases),
-    ]
-    .map(|(chosen, cases)| if chosen { cases() } else { Vec::new() });
+    let [one_cases, five_cases] =
+        [(has_one, faults::fault_cases as fn() -> _), (has_five, faults::five_finger_cases)]
+            .map(|(chosen, cases)| if chosen { cases() } else { Vec::new() });
     let (one_cases, five_cases) = of_kinds(&arguments.only, one_cases, five_cases)?;
     let plan = MatrixPlan {
         fault_cases: one_cases,
@@ -238,10 +223,7 @@ fn matrix(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure
         faults: &rows,
         five_fingers: &five_rows,
     };
-    let sections = [
-        ("One finger", rows.as_slice()),
-        ("Five fingers", &five_rows),
-    ];
+    let sections = [("One finger", rows.as_slice()), ("Five fingers", &five_rows)];
     let sections = sections.into_iter().filter(|(_, rows)| !rows.is_empty());
     let sections: Vec<_> = sections.collect();
     let page = arguments.out.as_ref();
@@ -250,19 +232,15 @@ fn matrix(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure
             .map_err(Failure::run)?;
     }
     let table = || {
-        let tables = sections
-            .iter()
-            .map(|(title, rows)| format!("{title}\n{}", faults::table(rows)));
+        let tables =
+            sections.iter().map(|(title, rows)| format!("{title}\n{}", faults::table(rows)));
         tables.collect::<Vec<_>>().join("\n")
     };
     let page = page.map(|folder| folder.join(faults::HTML));
     output::print_report(arguments.json, &report, table, page)?;
     match all().filter(|row| !row.holds).count() {
         0 => Ok(()),
-        failing => Err(Failure::run(anyhow!(
-            "{failing} of {} faults do not hold",
-            all().count()
-        ))),
+        failing => Err(Failure::run(anyhow!("{failing} of {} faults do not hold", all().count()))),
     }
 }
 
@@ -272,9 +250,8 @@ fn of_kinds(
     mut one: Vec<FaultCase>,
     mut five: Vec<FaultCase>,
 ) -> Result<(Vec<FaultCase>, Vec<FaultCase>), Failure> {
-    let mut known: Vec<_> = (one.iter().chain(&five))
-        .map(|fault_case| fault_case.fault.kind())
-        .collect();
+    let mut known: Vec<_> =
+        (one.iter().chain(&five)).map(|fault_case| fault_case.fault.kind()).collect();
     if let Some(kind) = only.iter().find(|kind| !known.contains(kind)) {
         known.sort();
         known.dedup();
@@ -293,24 +270,16 @@ fn outlines(
     plan: &MatrixPlan,
     device: &dyn SceneRunner,
 ) -> anyhow::Result<Vec<FaultSummary>> {
-    let trials = each(
-        arguments,
-        "faults",
-        device.name(),
-        &plan.runs(),
-        |(row, point)| {
-            let fault_case = &plan.fault_cases[*row];
-            Ok((*row, FaultRun::run(device, fault_case, *point, plan.seed)?))
-        },
-    );
+    let trials = each(arguments, "faults", device.name(), &plan.runs(), |(row, point)| {
+        let fault_case = &plan.fault_cases[*row];
+        Ok((*row, FaultRun::run(device, fault_case, *point, plan.seed)?))
+    });
     let mut by_row: Vec<Vec<FaultRun>> = plan.fault_cases.iter().map(|_| Vec::new()).collect();
     for (row, trial) in trials? {
         by_row[row].extend(trial);
     }
     let rows = plan.fault_cases.iter().zip(by_row);
-    Ok(rows
-        .map(|(fault_case, trials)| FaultSummary::new(fault_case, trials))
-        .collect())
+    Ok(rows.map(|(fault_case, trials)| FaultSummary::new(fault_case, trials)).collect())
 }
 
 /// Processes the items on the chosen number of threads with a progress bar; without a terminal, prints a line for every

@@ -73,12 +73,7 @@ struct Percentiles {
 impl Percentiles {
     fn new(values: &[f64]) -> Result<Self> {
         let of = |percent| percentile(values, percent).context("no landing was detected");
-        Ok(Self {
-            p50: of(50.0)?,
-            p90: of(90.0)?,
-            p99: of(99.0)?,
-            max: of(100.0)?,
-        })
+        Ok(Self { p50: of(50.0)?, p90: of(90.0)?, p99: of(99.0)?, max: of(100.0)? })
     }
 }
 
@@ -96,21 +91,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             lines.push(measure(kind, image, &scene).map_err(Failure::run)?);
         }
     }
-    let report = Report {
-        landings: arguments.landings,
-        lines,
-    };
+    let report = Report { landings: arguments.landings, lines };
     output::print_report(arguments.json, &report, || table(&report), None)
 }
 
 /// A finger that lands again and again from time zero on.
 fn scene(landings: u16) -> Result<Scene> {
     let mut scene = read_scene(None)?;
-    let force = |ms: u64, force_n| Force {
-        t_s: ms as f64 / 1e3,
-        force_n,
-        ramp_s: 0.0,
-    };
+    let force = |ms: u64, force_n| Force { t_s: ms as f64 / 1e3, force_n, ramp_s: 0.0 };
     scene.forces = (0..u64::from(landings))
         .map(|landing| landing * INTERVAL_MS)
         .flat_map(|ms| [force(ms, FORCE_N), force(ms + TOUCH_MS, 0.0)])

@@ -58,12 +58,7 @@ pub struct Arguments {
     surroundings: Option<String>,
     /// A bare board in place of the scene, for `bring-up`: sound, or with an error of assembly; --surroundings then connect
     /// its parts and read meters, too
-    #[arg(
-        long,
-        value_name = "NAME",
-        requires = "surroundings",
-        conflicts_with = "scene"
-    )]
+    #[arg(long, value_name = "NAME", requires = "surroundings", conflicts_with = "scene")]
     board: Option<String>,
     /// Draw the parts of that board from their tolerances
     #[arg(long, value_name = "SEED", requires = "board")]
@@ -119,9 +114,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         surroundings = Some(line);
     }
     let board = arguments.board.as_deref();
-    let board = board
-        .map(|name| Board::named(name, arguments.draw))
-        .transpose();
+    let board = board.map(|name| Board::named(name, arguments.draw)).transpose();
     let board = board.map_err(|error| Failure::input(anyhow!("--board: {error}")))?;
     let server = Server {
         line,
@@ -178,9 +171,7 @@ type Place = (Box<dyn ClientLine>, String);
 fn open(line: &Line) -> Result<Place, Failure> {
     #[cfg(unix)]
     if line.pty {
-        let (line, path) = pty::PtyLine::open()
-            .context("--pty")
-            .map_err(Failure::run)?;
+        let (line, path) = pty::PtyLine::open().context("--pty").map_err(Failure::run)?;
         return Ok((Box::new(line), path.display().to_string()));
     }
     listen("--tcp", line.tcp.as_deref().unwrap_or_default())
@@ -188,9 +179,7 @@ fn open(line: &Line) -> Result<Place, Failure> {
 
 /// A TCP port, for this option.
 fn listen(option: &'static str, address: &str) -> Result<Place, Failure> {
-    let line = TcpLine::listen(address)
-        .context(option)
-        .map_err(Failure::input)?;
+    let line = TcpLine::listen(address).context(option).map_err(Failure::input)?;
     let place = line.address().map_err(Failure::run)?.to_string();
     Ok((Box::new(line), place))
 }
@@ -220,11 +209,7 @@ impl Server<'_> {
             Some(board) => {
                 let interval = board.lost_bytes_interval;
                 let bench = BoardBench::new(board);
-                (
-                    bench.world(),
-                    SimulatedSurroundings::of_board(bench),
-                    interval,
-                )
+                (bench.world(), SimulatedSurroundings::of_board(bench), interval)
             }
             None => {
                 let setup = CommissioningSetup::new(&scene.params, scene.room_c, scene.seed);
@@ -272,9 +257,6 @@ impl Server<'_> {
 
     fn announce(&self) -> Result<(), Failure> {
         output::print(&self.announcement)?;
-        stdout()
-            .flush()
-            .context("standard output")
-            .map_err(Failure::run)
+        stdout().flush().context("standard output").map_err(Failure::run)
     }
 }

@@ -30,11 +30,7 @@ impl PtyLine {
         let path = ptsname(&file, Vec::new())?;
         // A program that does not set the terminal up, as `cat`, shall read the bytes as they are and without an echo. The
         // settings stay after this end is closed.
-        let programs_end = open(
-            path.as_c_str(),
-            OFlags::RDWR | OFlags::NOCTTY,
-            Mode::empty(),
-        )?;
+        let programs_end = open(path.as_c_str(), OFlags::RDWR | OFlags::NOCTTY, Mode::empty())?;
         let mut settings = tcgetattr(&programs_end)?;
         settings.make_raw();
         tcsetattr(&programs_end, OptionalActions::Now, &settings)?;

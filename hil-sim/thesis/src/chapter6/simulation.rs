@@ -37,9 +37,9 @@ pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
         "neighbours, of 4, whose higher coefficient cools the skin more" => {
             falling(&five(|case| case.drop_k(END_S)))
         }
-        "neighbours, of 4, whose higher coefficient warms itself less" => falling(&five(|case| {
-            case.object_c - case.contact().at(END_S).object_c
-        })),
+        "neighbours, of 4, whose higher coefficient warms itself less" => {
+            falling(&five(|case| case.object_c - case.contact().at(END_S).object_c))
+        }
         "neighbours, of 4, whose higher coefficient takes more flux" => {
             falling(&five(|case| flux(case, END_S)))
         }
@@ -85,10 +85,7 @@ fn rough(roughness_um: f64) -> Case {
 }
 
 fn pressed(force_n: f64) -> Case {
-    Case {
-        pressure_pa: pressure_pa(force_n),
-        ..copper()
-    }
+    Case { pressure_pa: pressure_pa(force_n), ..copper() }
 }
 
 fn flux(case: &Case, t_s: f64) -> f64 {

@@ -19,9 +19,7 @@ pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
         "mean window before contact, as the procedure has it" => 25.9,
         "pressure of the model at {} N" => {
             let mut pressures = THESIS_PRESSURES.iter();
-            pressures
-                .find(|(force_n, _)| *force_n == statement.given())?
-                .1
+            pressures.find(|(force_n, _)| *force_n == statement.given())?.1
         }
         "growth of the area from 0.1 to 2 N" => growth_mm2,
         "part of it below 1 N" => (area_mm2(1.0) - area_mm2(0.1)) / growth_mm2 * 100.0,
@@ -64,9 +62,7 @@ mod tests {
     fn limit_at_1680_pa_is_1_k_below_the_model_at_5900_pa() {
         for window in ["BaF2", "ZnS"] {
             let quantity = format!("{window}, 1.68 kPa, model below the measured");
-            let row = rows(&STATEMENTS, 6)
-                .into_iter()
-                .find(|row| row.quantity == quantity);
+            let row = rows(&STATEMENTS, 6).into_iter().find(|row| row.quantity == quantity);
             let limit = Stated::Below(cut(fall_k(window, 5900.0) - 1.0, 2));
             assert_eq!(row.expect("the statement").stated, limit);
         }

@@ -71,9 +71,7 @@ const POINTS: u32 = 400;
 
 /// Times of a curve, s, denser at the start, where temperatures change fast.
 fn times_s() -> Vec<f64> {
-    (0..=POINTS)
-        .map(|i| END_S * (f64::from(i) / f64::from(POINTS)).powi(2))
-        .collect()
+    (0..=POINTS).map(|i| END_S * (f64::from(i) / f64::from(POINTS)).powi(2)).collect()
 }
 
 /// A curve over time from the solver.
@@ -89,10 +87,7 @@ fn over_time(
         label,
         kind,
         group,
-        points: times_s
-            .into_iter()
-            .zip(surfaces.iter().map(value))
-            .collect(),
+        points: times_s.into_iter().zip(surfaces.iter().map(value)).collect(),
     })
 }
 

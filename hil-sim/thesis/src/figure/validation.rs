@@ -46,12 +46,7 @@ pub(super) fn figure_6_13(solver: &dyn ContactSolver) -> anyhow::Result<[Figure;
         curves,
     };
     Ok([
-        figure(
-            "6-13 A",
-            "Skin and material surface",
-            TEMPERATURE,
-            temperatures,
-        ),
+        figure("6-13 A", "Skin and material surface", TEMPERATURE, temperatures),
         figure("6-13 B", "Heat flux exchanged", FLUX, fluxes),
     ])
 }
@@ -73,13 +68,7 @@ pub(super) fn figure_6_19(solver: &dyn ContactSolver) -> anyhow::Result<Vec<Figu
             y: "fall / K",
             curves: vec![
                 falls(solver, &window, any, "model", Kind::Dashed)?,
-                falls(
-                    solver,
-                    &window,
-                    measured,
-                    "at the five pressures",
-                    Kind::Dots,
-                )?,
+                falls(solver, &window, measured, "at the five pressures", Kind::Dots)?,
             ],
         })
     };
@@ -102,24 +91,18 @@ fn falls(
         label: label.into(),
         kind,
         group: 0,
-        points: pressures_pa
-            .into_iter()
-            .map(fall)
-            .collect::<anyhow::Result<_>>()?,
+        points: pressures_pa.into_iter().map(fall).collect::<anyhow::Result<_>>()?,
     })
 }
 
 pub(super) fn figure_6_20(solver: &dyn ContactSolver) -> anyhow::Result<Vec<Figure>> {
     let figure = |(key, _, number): (&'static str, _, _)| {
         let window = sample(key);
-        let curves = THESIS_PRESSURES
-            .iter()
-            .enumerate()
-            .map(|(group, (force_n, pressure_pa))| {
-                let label = format!("{:.2} kPa ({force_n} N)", pressure_pa * 1e-3);
-                let case = Case::validation(window.material, *pressure_pa);
-                over_time(solver, &case, |at| at.skin_c, (label, Kind::Line, group))
-            });
+        let curves = THESIS_PRESSURES.iter().enumerate().map(|(group, (force_n, pressure_pa))| {
+            let label = format!("{:.2} kPa ({force_n} N)", pressure_pa * 1e-3);
+            let case = Case::validation(window.material, *pressure_pa);
+            over_time(solver, &case, |at| at.skin_c, (label, Kind::Line, group))
+        });
         Ok(Figure {
             number,
             title: format!("Skin surface on {}, 34 and 26 °C", window.name),

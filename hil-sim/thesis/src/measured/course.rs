@@ -42,23 +42,11 @@ pub(super) struct Before {
 
 impl Before {
     /// Section 3.2.
-    pub const DISCRIMINATION: Self = Self {
-        skin_c: 33.0,
-        room_c: 24.0,
-        object_c: 24.0,
-    };
+    pub const DISCRIMINATION: Self = Self { skin_c: 33.0, room_c: 24.0, object_c: 24.0 };
     /// Section 4.4.
-    pub const DISPLAY: Self = Self {
-        skin_c: 34.96,
-        room_c: 23.0,
-        object_c: 23.0,
-    };
+    pub const DISPLAY: Self = Self { skin_c: 34.96, room_c: 23.0, object_c: 23.0 };
     /// Section 6.4.
-    pub const VALIDATION: Self = Self {
-        skin_c: 34.6,
-        room_c: 23.7,
-        object_c: 25.9,
-    };
+    pub const VALIDATION: Self = Self { skin_c: 34.6, room_c: 23.7, object_c: 25.9 };
 }
 
 /// Fall of the skin's temperature over the time of a contact, K.
@@ -92,10 +80,7 @@ impl Course {
         let candidates = (1..=1000).map(|i| 0.01 * f64::from(i));
         candidates
             .map(|tau_s| (squares(tau_s), tau_s))
-            .fold(
-                (f64::MAX, 0.0),
-                |best, next| if next.0 < best.0 { next } else { best },
-            )
+            .fold((f64::MAX, 0.0), |best, next| if next.0 < best.0 { next } else { best })
             .1
     }
 }
@@ -108,10 +93,7 @@ pub(super) struct Courses {
 
 impl Courses {
     pub fn new(variant: Variant) -> Self {
-        Self {
-            variant,
-            known: BTreeMap::new(),
-        }
+        Self { variant, known: BTreeMap::new() }
     }
 
     /// The course of a contact with a material at a force, N.
@@ -179,10 +161,9 @@ fn object(touched: Touched, of: &str, before: Before) -> ObjectConfig {
     let whole = ObjectConfig::half_space(material, before.object_c);
     match touched {
         Touched::Real => whole,
-        Touched::Window => ObjectConfig {
-            layers: vec![ObjectConfig::layer(&material, WINDOW_M)],
-            ..whole
-        },
+        Touched::Window => {
+            ObjectConfig { layers: vec![ObjectConfig::layer(&material, WINDOW_M)], ..whole }
+        }
         Touched::Simulated => {
             let held_c = interface_temperature(&SKIN, before.skin_c, &material, before.object_c);
             let thin = ObjectConfig::layer(&touched_material("copper"), ObjectConfig::THINNEST_M);
@@ -190,10 +171,7 @@ fn object(touched: Touched, of: &str, before: Before) -> ObjectConfig {
                 surface: REFERENCE_DISPLAY,
                 layers: vec![thin],
                 start_c: held_c,
-                back: BackBoundary::Film {
-                    film_w_m2k: f64::INFINITY,
-                    temperature_c: held_c,
-                },
+                back: BackBoundary::Film { film_w_m2k: f64::INFINITY, temperature_c: held_c },
             }
         }
     }
@@ -201,21 +179,12 @@ fn object(touched: Touched, of: &str, before: Before) -> ObjectConfig {
 
 /// A material of the thesis, or one of its literature with handbook properties and a finish that is assumed.
 fn touched_material(name: &str) -> Material {
-    let other = |[
-        k,
-        density_kg_m3,
-        specific_heat_j_kgk,
-        roughness_um,
-        slope_rad,
-    ]: [f64; 5]| Material {
-        surface: Surface {
-            conductivity_w_mk: k,
-            roughness_um,
-            slope_rad,
-        },
-        density_kg_m3,
-        specific_heat_j_kgk,
-    };
+    let other =
+        |[k, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad]: [f64; 5]| Material {
+            surface: Surface { conductivity_w_mk: k, roughness_um, slope_rad },
+            density_kg_m3,
+            specific_heat_j_kgk,
+        };
     match name {
         "glass" => other([1.0, 2500.0, 840.0, 0.05, 0.01]),
         "aluminium" => other([237.0, 2700.0, 897.0, 0.4, 0.05]),

@@ -27,22 +27,10 @@ pub struct Variant {
 
 /// The plants that a measurement is compared with. The first is that of the thesis.
 pub const VARIANTS: [Variant; 4] = [
-    Variant {
-        layered: false,
-        gap: false,
-    },
-    Variant {
-        layered: true,
-        gap: false,
-    },
-    Variant {
-        layered: false,
-        gap: true,
-    },
-    Variant {
-        layered: true,
-        gap: true,
-    },
+    Variant { layered: false, gap: false },
+    Variant { layered: true, gap: false },
+    Variant { layered: false, gap: true },
+    Variant { layered: true, gap: true },
 ];
 
 impl Variant {
@@ -53,26 +41,15 @@ impl Variant {
 
     /// Name of the law of the contact.
     pub const fn contact(self) -> &'static str {
-        if self.gap {
-            "Eq. 6-8 and a gap of 200 W/(m² K)"
-        } else {
-            "Eq. 6-8"
-        }
+        if self.gap { "Eq. 6-8 and a gap of 200 W/(m² K)" } else { "Eq. 6-8" }
     }
 
     fn finger_params(self) -> FingerParams {
-        if self.layered {
-            FingerParams::layered()
-        } else {
-            FingerParams::homogeneous()
-        }
+        if self.layered { FingerParams::layered() } else { FingerParams::homogeneous() }
     }
 
     fn law(self) -> ContactLaw {
-        ContactLaw {
-            gap_w_m2k: if self.gap { GAP_W_M2K } else { 0.0 },
-            ..ContactLaw::NOMINAL
-        }
+        ContactLaw { gap_w_m2k: if self.gap { GAP_W_M2K } else { 0.0 }, ..ContactLaw::NOMINAL }
     }
 }
 
@@ -173,18 +150,13 @@ impl Measurement {
 
     /// Why Eq. 6-8 does not show it; empty where it does.
     pub fn why(&self) -> &'static str {
-        if self.shown() == Shown::Yes {
-            ""
-        } else {
-            self.why
-        }
+        if self.shown() == Shown::Yes { "" } else { self.why }
     }
 
     /// The values of the plants; empty if there are none.
     pub(super) fn plant_texts(&self) -> [String; VARIANTS.len()] {
         let text = |value| format!("{value:.*}", self.measured.decimals_for_computed());
-        self.plant
-            .map_or_else(Default::default, |plant| plant.map(text))
+        self.plant.map_or_else(Default::default, |plant| plant.map(text))
     }
 }
 

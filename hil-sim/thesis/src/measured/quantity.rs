@@ -119,24 +119,18 @@ fn discrimination(courses: &mut Courses, of: &str) -> anyhow::Result<f64> {
 
 /// Fall within 10 s in section 4.4, K.
 fn display(courses: &mut Courses, touched: Touched, of: &str) -> anyhow::Result<f64> {
-    Ok(courses
-        .contact(touched, of, Before::DISPLAY, TOUCH_N)?
-        .end_k())
+    Ok(courses.contact(touched, of, Before::DISPLAY, TOUCH_N)?.end_k())
 }
 
 /// The same of the five materials.
 fn five(courses: &mut Courses, touched: Touched) -> anyhow::Result<Vec<f64>> {
     let materials = five_materials().into_iter();
-    materials
-        .map(|sample| display(courses, touched, sample.name))
-        .collect()
+    materials.map(|sample| display(courses, touched, sample.name)).collect()
 }
 
 /// The same by Eq. 3-1.
 fn by_equation_3_1() -> Vec<f64> {
-    let Before {
-        skin_c, object_c, ..
-    } = Before::DISPLAY;
+    let Before { skin_c, object_c, .. } = Before::DISPLAY;
     let materials = five_materials().into_iter();
     materials
         .map(|sample| {
@@ -171,11 +165,7 @@ fn mean(values: &[f64]) -> f64 {
 /// Pearson's correlation.
 fn correlation(x: &[f64], y: &[f64]) -> f64 {
     let (mean_x, mean_y) = (mean(x), mean(y));
-    let pairs = || {
-        x.iter()
-            .map(|x| x - mean_x)
-            .zip(y.iter().map(|y| y - mean_y))
-    };
+    let pairs = || x.iter().map(|x| x - mean_x).zip(y.iter().map(|y| y - mean_y));
     let sum = |product: fn((f64, f64)) -> f64| pairs().map(product).sum::<f64>();
     sum(|(x, y)| x * y) / (sum(|(x, _)| x * x) * sum(|(_, y)| y * y)).sqrt()
 }

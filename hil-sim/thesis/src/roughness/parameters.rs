@@ -12,10 +12,7 @@ pub(super) fn levelled(x_m: &[f64], z_m: &[f64]) -> Vec<f64> {
     let square = from_middle.iter().map(|x| x * x);
     let product = from_middle.iter().zip(&z_m).map(|(x, z)| x * (z - level));
     let tilt = mean(x_m, &product.collect::<Vec<_>>()) / mean(x_m, &square.collect::<Vec<_>>());
-    let above = from_middle
-        .iter()
-        .zip(&z_m)
-        .map(|(x, z)| z - level - tilt * x);
+    let above = from_middle.iter().zip(&z_m).map(|(x, z)| z - level - tilt * x);
     above.collect()
 }
 
@@ -51,9 +48,7 @@ pub(super) fn mean_slope_rad(x_m: &[f64], y_m: &[f64]) -> f64 {
 /// Mean over the length of a piecewise linear function.
 fn mean(x_m: &[f64], values: &[f64]) -> f64 {
     let steps = x_m.windows(2).zip(values.windows(2));
-    let area: f64 = steps
-        .map(|(x, value)| (x[1] - x[0]) * 0.5 * (value[0] + value[1]))
-        .sum();
+    let area: f64 = steps.map(|(x, value)| (x[1] - x[0]) * 0.5 * (value[0] + value[1])).sum();
     area / (x_m[x_m.len() - 1] - x_m[0])
 }
 

@@ -107,11 +107,7 @@ impl Profile {
             if let Some(&before_m) = x_m.last()
                 && x <= before_m
             {
-                return Err(ProfileError::Order {
-                    line,
-                    x_m: x,
-                    before_m,
-                });
+                return Err(ProfileError::Order { line, x_m: x, before_m });
             }
             lines.push(line);
             x_m.push(x);
@@ -136,11 +132,7 @@ fn check_steps(lines: &[u64], x_m: &[f64]) -> Result<(), ProfileError> {
     }
     let (step_m, line) = longest;
     if step_m > MOST_UNEVEN * shortest_m {
-        return Err(ProfileError::Uneven {
-            line,
-            step_m,
-            shortest_m,
-        });
+        return Err(ProfileError::Uneven { line, step_m, shortest_m });
     }
     Ok(())
 }
@@ -153,9 +145,5 @@ fn number(
 ) -> Result<f64, ProfileError> {
     let cell = row.get(index).unwrap_or("");
     let value = cell.parse().ok().filter(|value: &f64| value.is_finite());
-    value.ok_or_else(|| ProfileError::Cell {
-        line,
-        column,
-        cell: cell.to_owned(),
-    })
+    value.ok_or_else(|| ProfileError::Cell { line, column, cell: cell.to_owned() })
 }

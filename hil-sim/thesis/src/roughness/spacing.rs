@@ -28,9 +28,7 @@ fn mean_height_m(x_m: &[f64], y_m: &[f64]) -> f64 {
         let (lowest, highest) = &mut extremes[part.min(LENGTHS - 1)];
         (*lowest, *highest) = (lowest.min(y), highest.max(y));
     }
-    let heights = extremes
-        .iter()
-        .map(|(lowest, highest)| (highest - lowest).max(0.0));
+    let heights = extremes.iter().map(|(lowest, highest)| (highest - lowest).max(0.0));
     heights.sum::<f64>() / LENGTHS as f64
 }
 

@@ -22,9 +22,7 @@ fn text(points: impl IntoIterator<Item = (f64, f64)>) -> String {
 }
 
 fn measure(points: impl IntoIterator<Item = (f64, f64)>) -> Roughness {
-    Profile::parse(text(points).as_bytes())
-        .expect("a profile")
-        .roughness()
+    Profile::parse(text(points).as_bytes()).expect("a profile").roughness()
 }
 
 /// `steps + 1` equidistant positions from 0 to a length, m.
@@ -56,10 +54,8 @@ fn rsm_m(roughness: &Roughness) -> f64 {
 
 /// Sines of the golden table, from crest to crest, with their parameters.
 fn golden() -> Vec<(Sine, Roughness)> {
-    let path = format!(
-        "{}/../../model/tests/data/roughness_sinusoid.csv",
-        env!("CARGO_MANIFEST_DIR")
-    );
+    let path =
+        format!("{}/../../model/tests/data/roughness_sinusoid.csv", env!("CARGO_MANIFEST_DIR"));
     let rows = csv::Reader::from_path(path).expect("golden table");
     let sine = |row: Result<HashMap<String, String>, _>| {
         let row = row.expect("golden row");
@@ -70,10 +66,7 @@ fn golden() -> Vec<(Sine, Roughness)> {
             slope_rad: number("da_atan_mean_rad"),
             rsm_m: Some(number("RSm_m")),
         };
-        (
-            Sine(number("amplitude_m"), number("period_m"), FRAC_PI_2),
-            roughness,
-        )
+        (Sine(number("amplitude_m"), number("period_m"), FRAC_PI_2), roughness)
     };
     let sines: Vec<_> = rows.into_deserialize().map(sine).collect();
     assert_eq!(sines.len(), 3);
@@ -104,10 +97,7 @@ fn slopes_converge_with_the_sampling() {
     let (sine, expected) = golden()[2];
     let errors = [400, 800, 1600, 3200].map(|steps| {
         let found = measure(sine.sampled(10.0, steps));
-        [
-            relative(found.rdq, expected.rdq),
-            relative(found.slope_rad, expected.slope_rad),
-        ]
+        [relative(found.rdq, expected.rdq), relative(found.slope_rad, expected.slope_rad)]
     });
     for pair in errors.windows(2) {
         // The end points' own slopes are what is left of rdq's error: second order, times their share, a step.
@@ -130,10 +120,7 @@ fn incomplete_periods_cause_an_error_proportional_to_their_length() {
             let error = relative(found.rq_m, rq_m).max(relative(found.rdq, rdq));
             worst = worst.max(40.0 * error);
             // The mean line is not exactly level, and crossings are straight between points.
-            assert!(
-                relative(rsm_m(&found), period_m) < 1e-4,
-                "{phase} {found:?}"
-            );
+            assert!(relative(rsm_m(&found), period_m) < 1e-4, "{phase} {found:?}");
         }
     }
     assert_figure("roughness.cut", worst);
@@ -144,9 +131,8 @@ fn roughness_is_invariant_under_tilt_and_translation() {
     for (sine, _) in golden() {
         let level = measure(sine.sampled(7.3, 1460));
         for tilt in [-0.2, 0.01, 1.0] {
-            let moved = sine
-                .sampled(7.3, 1460)
-                .map(|(x_m, z_m)| (x_m + 0.02, z_m + tilt * x_m - 1e-3));
+            let moved =
+                sine.sampled(7.3, 1460).map(|(x_m, z_m)| (x_m + 0.02, z_m + tilt * x_m - 1e-3));
             let found = measure(moved);
             assert!(relative(found.rq_m, level.rq_m) < 1e-10, "{tilt}");
             assert!(relative(found.rdq, level.rdq) < 1e-9, "{tilt}");
@@ -176,14 +162,8 @@ fn unequal_steps_give_the_same_roughness() {
         let found = measure(places.map(|x_m| (x_m, sine.at(x_m))));
         assert!(relative(found.rq_m, expected.rq_m) < 1e-4, "{found:?}");
         assert!(relative(found.rdq, expected.rdq) < 1e-5, "{found:?}");
-        assert!(
-            relative(found.slope_rad, expected.slope_rad) < 5e-4,
-            "{found:?}"
-        );
-        assert!(
-            relative(rsm_m(&found), rsm_m(&expected)) < 1e-5,
-            "{found:?}"
-        );
+        assert!(relative(found.slope_rad, expected.slope_rad) < 5e-4, "{found:?}");
+        assert!(relative(rsm_m(&found), rsm_m(&expected)) < 1e-5, "{found:?}");
     }
 }
 
@@ -193,19 +173,15 @@ fn slopes_of_a_polynomial_of_sixth_degree_are_exact_in_the_middle() {
     // ends' lower orders are outvoted by a steep middle: heights vanish to fourth order at both ends.
     let bump = |x: f64| (x * (1.0 - x)).powi(3) * 64.0;
     let slope = |x: f64| 192.0 * (x * (1.0 - x)).powi(2) * (1.0 - 2.0 * x);
-    let places: Vec<f64> = (0..=60)
-        .map(|i| (f64::from(i) + 0.35 * f64::from(i % 3)) / 60.0)
-        .collect();
+    let places: Vec<f64> =
+        (0..=60).map(|i| (f64::from(i) + 0.35 * f64::from(i % 3)) / 60.0).collect();
     // The mean line of a symmetric bump is level only for symmetric points: take its tilt from heights.
     let found = measure(places.iter().map(|&x| (x, bump(x))));
     let last = places.len() - 1;
     let weight = |i: usize| 0.5 * (places[(i + 1).min(last)] - places[i.saturating_sub(1)]);
     let total = places[last] - places[0];
     let mean = |value: &dyn Fn(f64) -> f64| {
-        (0..=last)
-            .map(|i| weight(i) * value(places[i]))
-            .sum::<f64>()
-            / total
+        (0..=last).map(|i| weight(i) * value(places[i])).sum::<f64>() / total
     };
     let (middle, level) = (mean(&|x| x), mean(&bump));
     let tilt = mean(&|x| (x - middle) * (bump(x) - level)) / mean(&|x| (x - middle).powi(2));
@@ -221,14 +197,8 @@ fn triangles_and_steps_have_their_analytical_slopes() {
         1e-4 * (4.0 * (phase - 0.5).abs() - 1.0) * 0.5
     };
     let found = measure(even(40e-3, 4000).map(|x_m| (x_m, triangle(x_m))));
-    assert!(
-        relative(found.slope_rad, 0.1_f64.atan()) < 1e-4,
-        "{found:?}"
-    );
-    assert!(
-        relative(found.rq_m, 0.5e-4 / 3_f64.sqrt()) < 1e-3,
-        "{found:?}"
-    );
+    assert!(relative(found.slope_rad, 0.1_f64.atan()) < 1e-4, "{found:?}");
+    assert!(relative(found.rq_m, 0.5e-4 / 3_f64.sqrt()) < 1e-3, "{found:?}");
     assert!(relative(rsm_m(&found), 2e-3) < 1e-5, "{found:?}");
 }
 
@@ -257,16 +227,9 @@ fn spacing_ignores_low_and_narrow_peaks() {
     assert!(relative(rsm_m(&spiked(0.02e-3)), 1e-3) < 1e-3);
     assert!(relative(rsm_m(&spiked(0.1e-3)), 0.5e-3) < 0.05);
     // One speck of dust raises one of the five heights of which Rz is the mean, and hides no peak.
-    let dusty = carrier.sampled(30.0, 30_000).map(|(x_m, z_m)| {
-        (
-            x_m,
-            if (2.19e-3..2.2e-3).contains(&x_m) {
-                150e-6
-            } else {
-                z_m
-            },
-        )
-    });
+    let dusty = carrier
+        .sampled(30.0, 30_000)
+        .map(|(x_m, z_m)| (x_m, if (2.19e-3..2.2e-3).contains(&x_m) { 150e-6 } else { z_m }));
     assert!(relative(rsm_m(&measure(dusty)), 1e-3) < 1e-3);
 }
 
@@ -281,10 +244,7 @@ fn noise_increases_roughness_but_not_spacing() {
     });
     let found = measure(noisy);
     assert!(relative(rsm_m(&found), 0.65e-3) < 1e-3, "{found:?}");
-    assert!(
-        relative(found.rq_m, (50e-12 + noise_m * noise_m).sqrt()) < 5e-3,
-        "{found:?}"
-    );
+    assert!(relative(found.rq_m, (50e-12 + noise_m * noise_m).sqrt()) < 5e-3, "{found:?}");
     // The formula's weights: sum of squares 2 (45² + 9² + 1) / 60² over the step squared.
     let step_m = 50.0 * 0.65e-3 / 10_000.0;
     let from_noise =
@@ -309,26 +269,17 @@ fn gaussian_profiles_follow_eq_6_13() {
     let profile =
         even(length_m, 12_000).map(|x_m| (x_m, waves.iter().map(|wave| wave.at(x_m)).sum()));
     let found = measure(profile);
-    let square_slope: f64 = waves
-        .iter()
-        .map(|wave| 0.5 * (TAU * wave.0 / wave.1).powi(2))
-        .sum();
+    let square_slope: f64 = waves.iter().map(|wave| 0.5 * (TAU * wave.0 / wave.1).powi(2)).sum();
     assert!(relative(found.rq_m, rq_m) < 1e-3, "{found:?}");
     assert!(relative(found.rdq, square_slope.sqrt()) < 1e-3, "{found:?}");
     // Eq. 6-13's 1.25 is sqrt(pi / 2) = 1.2533 rounded.
-    assert!(
-        relative(found.slope_rad, average_slope_rad(found.rdq)) < 0.01,
-        "{found:?}"
-    );
+    assert!(relative(found.slope_rad, average_slope_rad(found.rdq)) < 0.01, "{found:?}");
 }
 
 #[test]
 fn flat_profiles_and_profiles_without_complete_element_have_no_spacing() {
     let flat = measure(even(1e-3, 50).map(|x_m| (x_m, 3e-6)));
-    assert_eq!(
-        (flat.rq_m, flat.rdq, flat.slope_rad, flat.rsm_m),
-        (0.0, 0.0, 0.0, None)
-    );
+    assert_eq!((flat.rq_m, flat.rdq, flat.slope_rad, flat.rsm_m), (0.0, 0.0, 0.0, None));
     // A crest with half a valley on either side crosses its mean line twice: not one element is complete.
     let crest = measure(Sine(1e-6, 1e-3, -FRAC_PI_2).sampled(1.0, 100));
     assert_eq!(crest.rsm_m, None);
@@ -347,51 +298,19 @@ fn invalid_profiles_are_refused_with_their_line() {
     };
     let gap = [&fine[..11], &fine[21..]].concat().join("\n");
     for (text, expected) in [
-        (
-            with(1, "x,z"),
-            "line 1: columns x, z; needed are x_m and z_m",
-        ),
-        (
-            with(1, "x_m"),
-            "line 1: columns x_m; needed are x_m and z_m",
-        ),
+        (with(1, "x,z"), "line 1: columns x, z; needed are x_m and z_m"),
+        (with(1, "x_m"), "line 1: columns x_m; needed are x_m and z_m"),
         (String::new(), "line 1: columns ; needed are x_m and z_m"),
-        (
-            with(9, "7,high"),
-            "line 9: z_m = \"high\"; allowed is a finite number",
-        ),
-        (
-            with(9, "7,NaN"),
-            "line 9: z_m = \"NaN\"; allowed is a finite number",
-        ),
-        (
-            with(9, "inf,0"),
-            "line 9: x_m = \"inf\"; allowed is a finite number",
-        ),
-        (
-            with(9, "7"),
-            "line 9: z_m = \"\"; allowed is a finite number",
-        ),
-        (
-            with(9, "6,0"),
-            "line 9: x_m = 6 after 6; allowed is a greater x_m in every line",
-        ),
-        (
-            with(9, "1.5,0"),
-            "line 9: x_m = 1.5 after 6; allowed is a greater x_m in every line",
-        ),
-        (
-            fine[..LEAST_POINTS].join("\n"),
-            "19 points; allowed is 20 or more",
-        ),
-        (
-            gap,
-            "line 12: a step of 1.1e1 m; allowed is up to 10 times the shortest step, 1e0 m",
-        ),
+        (with(9, "7,high"), "line 9: z_m = \"high\"; allowed is a finite number"),
+        (with(9, "7,NaN"), "line 9: z_m = \"NaN\"; allowed is a finite number"),
+        (with(9, "inf,0"), "line 9: x_m = \"inf\"; allowed is a finite number"),
+        (with(9, "7"), "line 9: z_m = \"\"; allowed is a finite number"),
+        (with(9, "6,0"), "line 9: x_m = 6 after 6; allowed is a greater x_m in every line"),
+        (with(9, "1.5,0"), "line 9: x_m = 1.5 after 6; allowed is a greater x_m in every line"),
+        (fine[..LEAST_POINTS].join("\n"), "19 points; allowed is 20 or more"),
+        (gap, "line 12: a step of 1.1e1 m; allowed is up to 10 times the shortest step, 1e0 m"),
     ] {
-        let error = Profile::parse(text.as_bytes())
-            .expect_err(expected)
-            .to_string();
+        let error = Profile::parse(text.as_bytes()).expect_err(expected).to_string();
         assert!(error.starts_with(expected), "{error}\n{expected}");
     }
 }
@@ -403,27 +322,17 @@ fn files_may_have_comments_spaces_and_other_columns() {
     for (n, (x_m, z_m)) in points.iter().enumerate() {
         writeln!(text, "{n}, {z_m:e} ,\t{x_m}").expect("text grows");
     }
-    let found = Profile::parse(text.as_bytes())
-        .expect("a profile")
-        .roughness();
+    let found = Profile::parse(text.as_bytes()).expect("a profile").roughness();
     assert_eq!(found, measure(points));
 }
 
 #[test]
 fn example_profile_has_the_roughness_stated_in_its_first_line() {
     let path = format!("{}/../../scenes/profile.csv", env!("CARGO_MANIFEST_DIR"));
-    let found = Profile::read(Path::new(&path))
-        .expect("the example")
-        .roughness();
+    let found = Profile::read(Path::new(&path)).expect("the example").roughness();
     // Gaussian heights of 3 µm with correlation exp(-x²/l²), l = 50 µm: Rdq = sqrt 2 Rq / l. 80 correlation
     // lengths are few: a tenth of scatter.
     assert!(relative(found.rq_m, 3e-6) < 0.1, "{found:?}");
-    assert!(
-        relative(found.rdq, 2_f64.sqrt() * found.rq_m / 50e-6) < 0.1,
-        "{found:?}"
-    );
-    assert!(
-        relative(found.slope_rad, average_slope_rad(found.rdq)) < 0.05,
-        "{found:?}"
-    );
+    assert!(relative(found.rdq, 2_f64.sqrt() * found.rq_m / 50e-6) < 0.1, "{found:?}");
+    assert!(relative(found.slope_rad, average_slope_rad(found.rdq)) < 0.05, "{found:?}");
 }

@@ -34,17 +34,14 @@ pub fn chi_squared_against(task: &Task) -> Section {
     let mut counts: [Vec<u32>; 2] = Default::default();
     let mut rows = Vec::new();
     for published in discrimination() {
-        let of = answers
-            .iter()
-            .filter(|answer| answer.pair == [&*published.first, &*published.second]);
+        let of =
+            answers.iter().filter(|answer| answer.pair == [&*published.first, &*published.second]);
         let of: Vec<bool> = of.map(|answer| answer.is_correct).collect();
         if of.is_empty() {
             continue;
         }
-        let (total, correct) = (
-            of.len() as u32,
-            of.iter().filter(|correct| **correct).count() as u32,
-        );
+        let (total, correct) =
+            (of.len() as u32, of.iter().filter(|correct| **correct).count() as u32);
         let of_40 = (published.percent / 100.0 * f64::from(ANSWERS_OF_TABLE_3_3)).round() as u32;
         counts[0].push(correct);
         counts[1].push(of_40);
@@ -52,10 +49,7 @@ pub fn chi_squared_against(task: &Task) -> Section {
     }
     let pairs = rows.len() as f64;
     for (published, total, correct, of_40) in rows {
-        let of_pair = [
-            [correct, total - correct],
-            [of_40, ANSWERS_OF_TABLE_3_3 - of_40],
-        ];
+        let of_pair = [[correct, total - correct], [of_40, ANSWERS_OF_TABLE_3_3 - of_40]];
         let test = contingency(&of_pair).ok();
         table.row(cells![
             format!("{} / {}", published.first, published.second),

@@ -13,12 +13,8 @@ type Property = fn(&Task, &str) -> Option<f64>;
 
 /// Properties of the materials whose logarithm is a covariate.
 const PROPERTIES: [(&str, Property); 3] = [
-    ("roughness Rq", |task, material| {
-        Some(task.materials.get(material)?.surface.roughness_um)
-    }),
-    ("Young's modulus", |_, material| {
-        youngs_modulus_gpa(material)
-    }),
+    ("roughness Rq", |task, material| Some(task.materials.get(material)?.surface.roughness_um)),
+    ("Young's modulus", |_, material| youngs_modulus_gpa(material)),
     ("contact coefficient", Task::effusivity),
 ];
 
@@ -80,18 +76,13 @@ fn covariate(
 ) {
     let what = format!("{}, {name}", design.dependent);
     let levels = &design.cells.levels;
-    let values: Option<Vec<f64>> = levels
-        .iter()
-        .map(|level| doublings(task, level, property))
-        .collect();
+    let values: Option<Vec<f64>> =
+        levels.iter().map(|level| doublings(task, level, property)).collect();
     let Some(values) = values else {
         return section.lacks(&what, "it is zero, or not known, of a material");
     };
     let groups = design.cells.partial.iter().map(|(_, cells)| {
-        let there = values
-            .iter()
-            .zip(cells)
-            .filter_map(|(x, y)| Some((*x, (*y)?)));
+        let there = values.iter().zip(cells).filter_map(|(x, y)| Some((*x, (*y)?)));
         let (covariate, y) = there.unzip();
         Group { covariate, y }
     });

@@ -158,29 +158,16 @@ fn groups(task: &Task, design: &Design) -> Option<Vec<Vec<Vec<f64>>>> {
         let of = task.trials().filter(|(one, _)| *one == participant);
         distinct(of.map(|(_, trial)| trial.record.part.clone()))
     };
-    let participants: Vec<_> = (0..task.participants.len())
-        .map(|one| (one, done(one)))
-        .collect();
+    let participants: Vec<_> = (0..task.participants.len()).map(|one| (one, done(one))).collect();
     if parts.len() < 2 || participants.iter().any(|(_, parts)| parts.len() > 1) {
         return None;
     }
     let group = |part: &String| -> Vec<Vec<f64>> {
-        let members = participants
-            .iter()
-            .filter(|(_, done)| done.first() == Some(part));
+        let members = participants.iter().filter(|(_, done)| done.first() == Some(part));
         let rows = members.filter_map(|(participant, _)| {
-            let cells = design
-                .cells
-                .partial
-                .iter()
-                .find(|(one, _)| one == participant)?;
+            let cells = design.cells.partial.iter().find(|(one, _)| one == participant)?;
             let first = parts.iter().position(|one| one == part)? * levels.len();
-            cells
-                .1
-                .get(first..first + levels.len())?
-                .iter()
-                .copied()
-                .collect::<Option<Vec<f64>>>()
+            cells.1.get(first..first + levels.len())?.iter().copied().collect::<Option<Vec<f64>>>()
         });
         rows.collect()
     };
@@ -196,13 +183,7 @@ fn between(design: &Design, groups: &[Vec<Vec<f64>>], table: &mut Table, section
     match split_plot_of(groups) {
         Ok(anova) => {
             let n = (n, left_out);
-            add_effect(
-                table,
-                design,
-                &format!("{a} (between participants)"),
-                n,
-                &anova.between,
-            );
+            add_effect(table, design, &format!("{a} (between participants)"), n, &anova.between);
             add_effect(table, design, b, n, &anova.within);
             add_effect(table, design, &format!("{a} × {b}"), n, &anova.interaction);
         }
@@ -240,9 +221,7 @@ fn contrasts_of(design: &Design, table: &mut Table, section: &mut Section) {
         let (weights, name): (Vec<f64>, _) = match design.contrast {
             Contrast::First if index == 0 => continue,
             Contrast::First => (
-                (0..levels.len())
-                    .map(|i| is_own(i) - f64::from(u8::from(i == 0)))
-                    .collect(),
+                (0..levels.len()).map(|i| is_own(i) - f64::from(u8::from(i == 0))).collect(),
                 format!("{level} less {}", levels[0]),
             ),
             _ => (
@@ -250,11 +229,7 @@ fn contrasts_of(design: &Design, table: &mut Table, section: &mut Section) {
                 format!("{level} less the mean of all"),
             ),
         };
-        let contrasts = if design.contrast == Contrast::First {
-            count - 1.0
-        } else {
-            count
-        };
+        let contrasts = if design.contrast == Contrast::First { count - 1.0 } else { count };
         match contrast_within(&rows, &weights) {
             Ok(contrast) => table.row(cells![
                 design.dependent.clone(),

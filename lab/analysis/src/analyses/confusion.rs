@@ -23,10 +23,7 @@ fn answers<'a>(task: &'a Task, part: Option<&str>) -> Vec<Answer<'a>> {
     let all = task.trials().filter_map(|(participant, trial)| {
         let word = |text: &'a Option<String>| {
             let text = text.as_deref()?;
-            task.answers
-                .iter()
-                .any(|known| known == text)
-                .then_some(text)
+            task.answers.iter().any(|known| known == text).then_some(text)
         };
         Some(Answer {
             participant,
@@ -35,8 +32,7 @@ fn answers<'a>(task: &'a Task, part: Option<&str>) -> Vec<Answer<'a>> {
             answered: word(&trial.record.answer)?,
         })
     });
-    all.filter(|answer| part.is_none_or(|part| answer.trial.record.part == part))
-        .collect()
+    all.filter(|answer| part.is_none_or(|part| answer.trial.record.part == part)).collect()
 }
 
 /// Counts of a part of the session.
@@ -57,9 +53,7 @@ pub fn confusion(task: &Task) -> Section {
     let mut shares = Table::new(
         "identification",
         "Correct answers by what was presented; n counts answers",
-        [words("part"), words("presented")]
-            .into_iter()
-            .chain(columns()),
+        [words("part"), words("presented")].into_iter().chain(columns()),
     );
     let mut marks = Vec::new();
     let parts = task.parts();
@@ -80,15 +74,10 @@ pub fn confusion(task: &Task) -> Section {
             }
         };
         section.draw(
-            format!(
-                "{part}: answers, and their part of what was presented; n = {}",
-                answers.len()
-            ),
+            format!("{part}: answers, and their part of what was presented; n = {}", answers.len()),
             matrix(&task.answers, &counts),
         );
-        let heads = [words("presented")]
-            .into_iter()
-            .chain(task.answers.iter().map(words));
+        let heads = [words("presented")].into_iter().chain(task.answers.iter().map(words));
         let mut table = Table::new(
             &format!("confusion-{}", super::slug(part)),
             &format!("{part}: answers by what was presented"),
@@ -101,9 +90,8 @@ pub fn confusion(task: &Task) -> Section {
         }
         section.add(table);
         for label in [None].into_iter().chain(task.answers.iter().map(Some)) {
-            let of = answers
-                .iter()
-                .filter(|answer| label.is_none_or(|label| answer.presented == label));
+            let of =
+                answers.iter().filter(|answer| label.is_none_or(|label| answer.presented == label));
             let share = Share::new(
                 of.map(|answer| (answer.participant, answer.presented == answer.answered)),
             );
@@ -179,10 +167,8 @@ pub fn designs(task: &Task) -> Vec<Design> {
         let counts: Vec<_> = participants
             .iter()
             .flat_map(|participant| {
-                let own: Vec<_> = answers
-                    .iter()
-                    .filter(|answer| answer.participant == *participant)
-                    .collect();
+                let own: Vec<_> =
+                    answers.iter().filter(|answer| answer.participant == *participant).collect();
                 let of = |word: &String| {
                     let named = own.iter().filter(|answer| answer.answered == word).count();
                     (*participant, word.clone(), named as f64 / own.len() as f64)
@@ -198,13 +184,7 @@ pub fn designs(task: &Task) -> Vec<Design> {
         if blocks.len() > 1 {
             let by_block: Vec<_> = answers
                 .iter()
-                .map(|answer| {
-                    (
-                        answer.participant,
-                        answer.trial.record.block,
-                        percent(answer),
-                    )
-                })
+                .map(|answer| (answer.participant, answer.trial.record.block, percent(answer)))
                 .collect();
             designs.push(Design::one(
                 format!("correct / %, {part} (learning)"),
@@ -219,13 +199,9 @@ pub fn designs(task: &Task) -> Vec<Design> {
 
 /// Shares correct of a part, by what was presented.
 fn design_of_materials(task: &Task, part: &str, answers: &[Answer<'_>]) -> Design {
-    let correct = answers.iter().map(|answer| {
-        (
-            answer.participant,
-            answer.presented.to_owned(),
-            percent(answer),
-        )
-    });
+    let correct = answers
+        .iter()
+        .map(|answer| (answer.participant, answer.presented.to_owned(), percent(answer)));
     Design::one(
         format!("correct / %, {part}"),
         "presented",
@@ -237,9 +213,7 @@ fn design_of_materials(task: &Task, part: &str, answers: &[Answer<'_>]) -> Desig
 /// Shares correct of each part, by what was presented.
 pub fn designs_of_materials(task: &Task) -> Vec<Design> {
     let parts = task.parts().into_iter();
-    parts
-        .map(|part| design_of_materials(task, part, &answers(task, Some(part))))
-        .collect()
+    parts.map(|part| design_of_materials(task, part, &answers(task, Some(part)))).collect()
 }
 
 /// An answer in per cent correct.
@@ -258,20 +232,12 @@ pub fn design_of_parts(task: &Task) -> Design {
     let observations: Vec<_> = answers
         .iter()
         .map(|answer| {
-            let cell = (
-                answer.trial.record.part.clone(),
-                answer.presented.to_owned(),
-            );
+            let cell = (answer.trial.record.part.clone(), answer.presented.to_owned());
             (answer.participant, cell, percent(answer))
         })
         .collect();
     let presented = words_presented(task, &answers);
-    Design::two(
-        "correct / %",
-        ("part", &parts),
-        ("presented", &presented),
-        &observations,
-    )
+    Design::two("correct / %", ("part", &parts), ("presented", &presented), &observations)
 }
 
 /// Parts of the answers of each cell in a part of the session: presented, answered, share of the row.
@@ -280,9 +246,7 @@ pub fn proportions(task: &Task, part: &str) -> Vec<((String, String), f64)> {
     let mut cells = Vec::new();
     for presented in &task.answers {
         for answered in &task.answers {
-            let row = answers
-                .iter()
-                .filter(|answer| answer.presented == presented);
+            let row = answers.iter().filter(|answer| answer.presented == presented);
             let share = mean(row.map(|answer| f64::from(u8::from(answer.answered == answered))));
             cells.extend(share.map(|share| ((presented.clone(), answered.clone()), share)));
         }
@@ -302,9 +266,7 @@ pub fn measured(task: &Task, of: &str) -> Option<f64> {
     };
     let answers = answers(task, Some(part));
     let percent = |word: Option<&str>| {
-        let of = answers
-            .iter()
-            .filter(|answer| word.is_none_or(|word| answer.presented == word));
+        let of = answers.iter().filter(|answer| word.is_none_or(|word| answer.presented == word));
         Share::new(of.map(|answer| (answer.participant, answer.presented == answer.answered)))
             .percent()
     };

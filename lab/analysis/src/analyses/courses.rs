@@ -56,10 +56,7 @@ pub fn mean_courses(
         contacts: sums.contacts,
         points: sums.points(),
     });
-    (
-        courses.filter(|course| course.points.len() > 1).collect(),
-        unread,
-    )
+    (courses.filter(|course| course.points.len() > 1).collect(), unread)
 }
 
 /// The contacts by the time of their landing.
@@ -121,10 +118,8 @@ impl Sums {
     /// Mean time and mean value of each cell.
     fn points(&self) -> Vec<(f64, f64)> {
         let least = MOST * self.contacts as f64;
-        let whole = self
-            .cells
-            .iter()
-            .filter(|(.., contacts)| *contacts > 0 && *contacts as f64 >= least);
+        let whole =
+            self.cells.iter().filter(|(.., contacts)| *contacts > 0 && *contacts as f64 >= least);
         let means =
             whole.map(|(time, sum, contacts)| (time / *contacts as f64, sum / *contacts as f64));
         means.filter(|(_, mean)| mean.is_finite()).collect()
@@ -149,9 +144,7 @@ fn add_telemetry(
     for row in reader.records() {
         let Ok(row) = row else { continue };
         let number = |place: usize| {
-            row.get(place)
-                .and_then(|cell| cell.parse::<f64>().ok())
-                .and_then(finite)
+            row.get(place).and_then(|cell| cell.parse::<f64>().ok()).and_then(finite)
         };
         let (Some(t_s), Some(value)) = (number(time), number(value)) else {
             continue;
@@ -174,29 +167,17 @@ fn add_telemetry(
 
 /// A table of courses, a row for each time.
 pub fn table(name: &str, caption: &str, unit: &'static str, courses: &[Course]) -> Table {
-    let heads = courses
-        .iter()
-        .map(|course| numbers(course.name.clone(), unit, 4));
+    let heads = courses.iter().map(|course| numbers(course.name.clone(), unit, 4));
     let mut table = Table::new(
         name,
         caption,
-        [numbers("time since the landing", "s", 2)]
-            .into_iter()
-            .chain(heads),
+        [numbers("time since the landing", "s", 2)].into_iter().chain(heads),
     );
-    let longest = courses
-        .iter()
-        .map(|course| course.points.len())
-        .max()
-        .unwrap_or(0);
+    let longest = courses.iter().map(|course| course.points.len()).max().unwrap_or(0);
     for cell in 0..longest {
         let (from_s, to_s) = (cell as f64 * CELL_S, (cell + 1) as f64 * CELL_S);
         let at = |course: &Course| {
-            course
-                .points
-                .iter()
-                .find(|(t, _)| (from_s..to_s).contains(t))
-                .map(|(_, y)| *y)
+            course.points.iter().find(|(t, _)| (from_s..to_s).contains(t)).map(|(_, y)| *y)
         };
         let mut row = cells![0.5 * (from_s + to_s)];
         row.extend(courses.iter().map(|course| at(course).into()));
@@ -215,25 +196,18 @@ pub fn exponential_fit(task: &Task) -> Section {
     );
     let both = parts_with_both_modes(task);
     let name = |trial: &Trial, station: usize| {
-        let stimulus = trial
-            .stimuli()
-            .find(|stimulus| stimulus.station == station)?;
+        let stimulus = trial.stimuli().find(|stimulus| stimulus.station == station)?;
         let group = group(&trial.record.part, &stimulus, &both);
         Some(format!("{}, {}", group.part, group.material))
     };
     let mut names = Vec::new();
     for part in task.parts() {
-        let own = task
-            .trials()
-            .filter(|(_, trial)| trial.record.part == part)
-            .map(|(_, trial)| trial);
-        let stimuli: Vec<_> = own
-            .flat_map(|trial| trial.stimuli().map(move |stimulus| (trial, stimulus)))
-            .collect();
+        let own =
+            task.trials().filter(|(_, trial)| trial.record.part == part).map(|(_, trial)| trial);
+        let stimuli: Vec<_> =
+            own.flat_map(|trial| trial.stimuli().map(move |stimulus| (trial, stimulus))).collect();
         for material in task.sorted(stimuli.iter().map(|(_, stimulus)| stimulus.material)) {
-            let of = stimuli
-                .iter()
-                .filter(|(_, stimulus)| stimulus.material == material);
+            let of = stimuli.iter().filter(|(_, stimulus)| stimulus.material == material);
             names.extend(of.filter_map(|(trial, stimulus)| name(trial, stimulus.station)));
         }
     }
@@ -261,51 +235,28 @@ pub fn exponential_fit(task: &Task) -> Section {
             numbers("R²", "", 4),
         ],
     );
-    let part_of = |course: &Course| {
-        course
-            .name
-            .rsplit_once(", ")
-            .map(|(part, _)| part.to_owned())
-    };
+    let part_of = |course: &Course| course.name.rsplit_once(", ").map(|(part, _)| part.to_owned());
     for part in distinct(courses.iter().map(part_of)) {
         let own = courses.iter().filter(|course| part_of(course) == part);
         let mut curves = Vec::new();
         for (series, course) in own.enumerate() {
             curves.extend(fitted(course, series, &mut table, &mut section));
         }
-        let times = curves
-            .iter()
-            .flat_map(|curve| curve.points.iter().map(|(t, _)| *t));
+        let times = curves.iter().flat_map(|curve| curve.points.iter().map(|(t, _)| *t));
         section.draw(
-            format!(
-                "{}: mean courses (lines) and fits (dashed)",
-                part.unwrap_or_default()
-            ),
-            lines(
-                positive_range(times),
-                "time since the landing / s",
-                "skin / °C",
-                &curves,
-            ),
+            format!("{}: mean courses (lines) and fits (dashed)", part.unwrap_or_default()),
+            lines(positive_range(times), "time since the landing / s", "skin / °C", &curves),
         );
     }
     section.add(table);
-    section.add(self::table(
-        "courses",
-        "Mean courses of the skin",
-        "°C",
-        &courses,
-    ));
+    section.add(self::table("courses", "Mean courses of the skin", "°C", &courses));
     section
 }
 
 /// The curves of a course and of its fit, which gets a row.
 fn fitted(course: &Course, series: usize, table: &mut Table, section: &mut Section) -> Vec<Curve> {
     let (t, y): (Vec<f64>, Vec<f64>) = course.points.iter().copied().unzip();
-    let material = course
-        .name
-        .rsplit_once(", ")
-        .map_or(&*course.name, |(_, material)| material);
+    let material = course.name.rsplit_once(", ").map_or(&*course.name, |(_, material)| material);
     let mut curves = vec![Curve {
         name: material.into(),
         color: color(series),
@@ -319,11 +270,7 @@ fn fitted(course: &Course, series: usize, table: &mut Table, section: &mut Secti
                 name: "its fit".into(),
                 color: color(series),
                 stroke: Stroke::Dashed,
-                points: t
-                    .iter()
-                    .map(|t| (*t, at(*t)))
-                    .filter(|(_, y)| y.is_finite())
-                    .collect(),
+                points: t.iter().map(|t| (*t, at(*t))).filter(|(_, y)| y.is_finite()).collect(),
             });
             table.row(cells![
                 course.name.clone(),

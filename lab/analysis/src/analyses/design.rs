@@ -49,9 +49,8 @@ impl Design {
         (second, seconds): (&str, &[String]),
         observations: &[(usize, (String, String), f64)],
     ) -> Self {
-        let crossed = firsts
-            .iter()
-            .flat_map(|a| seconds.iter().map(move |b| format!("{a}\u{1f}{b}")));
+        let crossed =
+            firsts.iter().flat_map(|a| seconds.iter().map(move |b| format!("{a}\u{1f}{b}")));
         let levels: Vec<String> = crossed.collect();
         let joined: Vec<_> = observations
             .iter()
@@ -59,10 +58,7 @@ impl Design {
             .collect();
         Self {
             dependent: dependent.into(),
-            factors: vec![
-                (first.into(), firsts.to_vec()),
-                (second.into(), seconds.to_vec()),
-            ],
+            factors: vec![(first.into(), firsts.to_vec()), (second.into(), seconds.to_vec())],
             cells: Cells::new(&levels, &joined),
             contrast: Contrast::None,
         }
@@ -82,22 +78,15 @@ impl Design {
                 return row.clone();
             };
             let level = |level: usize| {
-                let cells = row
-                    .iter()
-                    .enumerate()
-                    .filter(move |(cell, _)| match factor {
-                        0 => cell / seconds == level,
-                        _ => cell % seconds == level,
-                    });
+                let cells = row.iter().enumerate().filter(move |(cell, _)| match factor {
+                    0 => cell / seconds == level,
+                    _ => cell % seconds == level,
+                });
                 mean(cells.map(|(_, value)| *value))
             };
             (0..levels.len()).filter_map(level).collect()
         };
-        Some(Marginal {
-            factor: name,
-            levels,
-            rows: self.cells.rows.iter().map(row).collect(),
-        })
+        Some(Marginal { factor: name, levels, rows: self.cells.rows.iter().map(row).collect() })
     }
 }
 

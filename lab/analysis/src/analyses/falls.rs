@@ -54,44 +54,26 @@ pub fn all(task: &Task) -> Vec<Fall> {
 }
 
 fn has_fall(trial: &Trial) -> bool {
-    trial
-        .record
-        .stations
-        .iter()
-        .any(|station| station.skin_fall_k.is_some())
+    trial.record.stations.iter().any(|station| station.skin_fall_k.is_some())
 }
 
 /// Parts in which there are samples and simulated materials.
 pub fn parts_with_both_modes(task: &Task) -> Vec<String> {
     let has = |part: &str, is_simulated: bool| {
         let mut of_part = task.trials().filter(|(_, trial)| trial.record.part == part);
-        of_part.any(|(_, trial)| {
-            trial
-                .stimuli()
-                .any(|stimulus| stimulus.is_simulated == is_simulated)
-        })
+        of_part
+            .any(|(_, trial)| trial.stimuli().any(|stimulus| stimulus.is_simulated == is_simulated))
     };
     let parts = task.parts().into_iter();
-    parts
-        .filter(|part| has(part, true) && has(part, false))
-        .map(str::to_owned)
-        .collect()
+    parts.filter(|part| has(part, true) && has(part, false)).map(str::to_owned).collect()
 }
 
 /// The group of a stimulus.
 pub fn group(part: &str, stimulus: &crate::input::Stimulus<'_>, both: &[String]) -> Group {
-    let mode = if stimulus.is_simulated {
-        "simulated"
-    } else {
-        "real"
-    };
+    let mode = if stimulus.is_simulated { "simulated" } else { "real" };
     let has_both = both.iter().any(|one| one == part);
     Group {
-        part: if has_both {
-            format!("{part}, {mode}")
-        } else {
-            part.into()
-        },
+        part: if has_both { format!("{part}, {mode}") } else { part.into() },
         material: stimulus.material.into(),
     }
 }
@@ -116,10 +98,8 @@ pub fn falls(task: &Task) -> Section {
         section.lacks("Falls", NO_FALLS);
         return section;
     }
-    let measured = |part: &str| {
-        task.trials()
-            .any(|(_, trial)| trial.record.part == part && has_fall(trial))
-    };
+    let measured =
+        |part: &str| task.trials().any(|(_, trial)| trial.record.part == part && has_fall(trial));
     for part in task.parts() {
         if !measured(part) {
             section.lacks(part, NO_FALLS);
@@ -195,16 +175,12 @@ pub fn picture(axis: &str, marks: &[Mark], series: &[&str]) -> anyhow::Result<St
         let (from, to) = mark.interval.unwrap_or((mark.value, mark.value));
         [from, to, mark.value]
     });
-    let (low, high) = ends.fold((0.0_f64, 0.0_f64), |(low, high), end| {
-        (low.min(end), high.max(end))
-    });
+    let (low, high) =
+        ends.fold((0.0_f64, 0.0_f64), |(low, high), end| (low.min(end), high.max(end)));
     let step = nice_step(high - low);
     Intervals {
         axis,
-        range: (
-            (low / step).floor() * step,
-            (high / step).ceil().max(1.0) * step,
-        ),
+        range: ((low / step).floor() * step, (high / step).ceil().max(1.0) * step),
         step,
         series,
         lines: Vec::new(),
@@ -218,9 +194,7 @@ fn nice_step(span: f64) -> f64 {
         return 1.0;
     }
     let decade = 10f64.powf((span / 10.0).log10().floor());
-    let factor = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|factor| factor * decade >= span / 10.0);
+    let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * decade >= span / 10.0);
     factor.unwrap_or(10.0) * decade
 }
 
@@ -281,10 +255,8 @@ pub fn levene(task: &Task) -> Section {
             probabilities("p"),
         ],
     );
-    let roots: Vec<Vec<f64>> = groups
-        .iter()
-        .map(|group| group.iter().map(|fall| fall.sqrt()).collect())
-        .collect();
+    let roots: Vec<Vec<f64>> =
+        groups.iter().map(|group| group.iter().map(|fall| fall.sqrt()).collect()).collect();
     let is_negative = falls.iter().any(|fall| fall.fall_k < 0.0);
     for (name, groups) in [("falls", &groups), ("square roots of the falls", &roots)] {
         if name != "falls" && is_negative {
@@ -320,10 +292,7 @@ pub fn levene(task: &Task) -> Section {
 /// Falls as the analyses of variance use them, and their name.
 fn transformed(task: &Task, falls: &[Fall]) -> (Vec<f64>, &'static str) {
     if needs_root(task, falls) {
-        (
-            falls.iter().map(|fall| fall.fall_k.sqrt()).collect(),
-            "square root of fall / √K",
-        )
+        (falls.iter().map(|fall| fall.fall_k.sqrt()).collect(), "square root of fall / √K")
     } else {
         (falls.iter().map(|fall| fall.fall_k).collect(), "fall / K")
     }
@@ -334,10 +303,7 @@ pub fn designs(task: &Task) -> Vec<Design> {
     let (values, name) = transformed(task, &falls);
     let (parts, materials) = levels(task, &falls);
     let of_part = |part: &String| {
-        let own = falls
-            .iter()
-            .zip(&values)
-            .filter(|(fall, _)| fall.group.part == *part);
+        let own = falls.iter().zip(&values).filter(|(fall, _)| fall.group.part == *part);
         let own: Vec<_> = own
             .map(|(fall, value)| (fall.participant, fall.group.material.clone(), *value))
             .collect();
@@ -360,10 +326,5 @@ pub fn design_of_parts(task: &Task) -> Design {
             (fall.participant, cell, *value)
         })
         .collect();
-    Design::two(
-        name,
-        ("part", &parts),
-        ("material", &materials),
-        &observations,
-    )
+    Design::two(name, ("part", &parts), ("material", &materials), &observations)
 }

@@ -23,9 +23,8 @@ fn contacts(task: &Task) -> Vec<Contact<'_>> {
             continue;
         };
         for stimulus in trial.stimuli() {
-            let station = trial
-                .station(stimulus.station)
-                .filter(|station| station.force_mean_n.is_some());
+            let station =
+                trial.station(stimulus.station).filter(|station| station.force_mean_n.is_some());
             contacts.extend(station.map(|station| Contact {
                 participant,
                 target_n,
@@ -59,10 +58,7 @@ pub fn force_matching(task: &Task) -> Section {
     );
     let contacts = contacts(task);
     if contacts.is_empty() {
-        section.lacks(
-            "Force",
-            "no contact that counts has a target and a measured force",
-        );
+        section.lacks("Force", "no contact that counts has a target and a measured force");
         return section;
     }
     let mut all = Table::new(
@@ -129,17 +125,10 @@ pub fn force_matching(task: &Task) -> Section {
     if courses.is_empty() {
         section.lacks("Picture of the courses", "there is no telemetry of a force");
     } else {
-        let times = positive_range(
-            courses
-                .iter()
-                .flat_map(|course| course.points.iter().map(|(t, _)| *t)),
-        );
+        let times =
+            positive_range(courses.iter().flat_map(|course| course.points.iter().map(|(t, _)| *t)));
         let curves = courses.iter().enumerate().flat_map(|(series, course)| {
-            let target = course
-                .name
-                .trim_end_matches(" N")
-                .parse()
-                .unwrap_or_default();
+            let target = course.name.trim_end_matches(" N").parse().unwrap_or_default();
             let force = Curve {
                 name: format!("{} (n = {})", course.name, course.contacts),
                 color: color(series),
@@ -157,21 +146,11 @@ pub fn force_matching(task: &Task) -> Section {
         let curves: Vec<_> = curves.collect();
         section.draw(
             "Mean courses of the force (lines) and targets (dashed)",
-            lines(
-                times.clone(),
-                "time since the landing / s",
-                "force / N",
-                &curves,
-            ),
+            lines(times.clone(), "time since the landing / s", "force / N", &curves),
         );
     }
     section.add(all);
-    section.add(table(
-        "force-courses",
-        "Mean courses of the force",
-        "N",
-        &courses,
-    ));
+    section.add(table("force-courses", "Mean courses of the force", "N", &courses));
     section
 }
 
@@ -193,12 +172,7 @@ pub fn designs(task: &Task) -> Vec<Design> {
         let has_values = |force: &&String| observations.iter().any(|(_, (_, at), _)| at == *force);
         let forces: Vec<String> = forces.iter().filter(has_values).cloned().collect();
         if materials.len() > 1 {
-            Design::two(
-                name,
-                ("material", &materials),
-                ("force", &forces),
-                &observations,
-            )
+            Design::two(name, ("material", &materials), ("force", &forces), &observations)
         } else {
             let observations: Vec<_> = observations
                 .into_iter()
@@ -209,9 +183,7 @@ pub fn designs(task: &Task) -> Vec<Design> {
     };
     vec![
         of("fall of skin / K", |contact| contact.station.skin_fall_k),
-        of("time to settle / s", |contact| {
-            contact.station.force_settled_s
-        }),
+        of("time to settle / s", |contact| contact.station.force_settled_s),
         of("RMS error over target", |contact| {
             Some(contact.station.force_error_rms_n? / contact.target_n)
         }),

@@ -24,9 +24,7 @@ fn answer<'a>(task: &Task, participant: usize, trial: &'a Trial) -> Option<Answe
     };
     let named = trial.record.answer.as_ref()?;
     let station = task.stations.iter().position(|station| station == named)?;
-    let of_named = stimuli
-        .iter()
-        .find(|stimulus| stimulus.station == station)?;
+    let of_named = stimuli.iter().find(|stimulus| stimulus.station == station)?;
     (one.material == other.material).then_some(Answer {
         participant,
         material: one.material,
@@ -42,9 +40,7 @@ pub fn identical_pairs(task: &Task) -> Section {
          the participants' own shares with one half (degrees of freedom: participants less 1), and is the one to rely on.",
     );
     let all = task.trials();
-    let answers: Vec<_> = all
-        .filter_map(|(who, trial)| answer(task, who, trial))
-        .collect();
+    let answers: Vec<_> = all.filter_map(|(who, trial)| answer(task, who, trial)).collect();
     let Some(last) = task.stations.last().filter(|_| !answers.is_empty()) else {
         section.lacks(
             "Bias",
@@ -72,23 +68,15 @@ pub fn identical_pairs(task: &Task) -> Section {
     );
     let right = task.stations.len() - 1;
     let mut materials: Vec<Option<&str>> = vec![None];
-    materials.extend(
-        task.sorted(answers.iter().map(|answer| answer.material))
-            .into_iter()
-            .map(Some),
-    );
+    materials
+        .extend(task.sorted(answers.iter().map(|answer| answer.material)).into_iter().map(Some));
     for material in materials {
-        let of = answers
-            .iter()
-            .filter(|answer| material.is_none_or(|name| answer.material == name));
+        let of =
+            answers.iter().filter(|answer| material.is_none_or(|name| answer.material == name));
         let of: Vec<_> = of.collect();
-        let sides = Share::new(
-            of.iter()
-                .map(|answer| (answer.participant, answer.station == right)),
-        );
-        let kinds = of
-            .iter()
-            .filter_map(|answer| Some((answer.participant, answer.is_sample?)));
+        let sides =
+            Share::new(of.iter().map(|answer| (answer.participant, answer.station == right)));
+        let kinds = of.iter().filter_map(|answer| Some((answer.participant, answer.is_sample?)));
         let kinds = Share::new(kinds);
         for (share, name) in [(sides, last.as_str()), (kinds, "the real one")] {
             let Some(proportion) = share.proportion() else {
@@ -124,9 +112,6 @@ pub fn identical_pairs(task: &Task) -> Section {
 fn two_sided(proportion: Proportion) -> Option<f64> {
     let wrong = proportion.total() - proportion.correct();
     let most = proportion.correct().max(wrong);
-    let tail = Proportion::new(most, proportion.total())
-        .ok()?
-        .p_by_chance(0.5)
-        .ok()?;
+    let tail = Proportion::new(most, proportion.total()).ok()?.p_by_chance(0.5).ok()?;
     Some((2.0 * tail).min(1.0))
 }

@@ -36,9 +36,7 @@ fn all(task: &Task) -> Vec<(usize, String, &str, f64)> {
 fn conditions(all: &[(usize, String, &str, f64)]) -> Vec<String> {
     let mut conditions = distinct(all.iter().map(|(_, condition, ..)| condition.clone()));
     conditions.sort_by(|one, other| {
-        natural(one)
-            .partial_cmp(&natural(other))
-            .unwrap_or(std::cmp::Ordering::Equal)
+        natural(one).partial_cmp(&natural(other)).unwrap_or(std::cmp::Ordering::Equal)
     });
     conditions
 }
@@ -81,12 +79,9 @@ pub fn magnitudes(task: &Task) -> Section {
     let mut marks = Vec::new();
     for condition in conditions(&all) {
         for (series, station) in task.stations.iter().enumerate() {
-            let own = all
-                .iter()
-                .filter(|(_, of, at, _)| *of == condition && at == station);
-            let own: Vec<_> = own
-                .map(|(participant, .., number)| (*participant, *number))
-                .collect();
+            let own = all.iter().filter(|(_, of, at, _)| *of == condition && at == station);
+            let own: Vec<_> =
+                own.map(|(participant, .., number)| (*participant, *number)).collect();
             let values: Vec<f64> = own.iter().map(|(_, number)| *number).collect();
             let (participants, over, sem) = over_participants(&own);
             table.row(cells![
@@ -109,11 +104,7 @@ pub fn magnitudes(task: &Task) -> Section {
     let stations: Vec<&str> = task.stations.iter().map(String::as_str).collect();
     section.draw(
         "Mean magnitudes",
-        picture(
-            "magnitude, with ± 1 SEM of the participants",
-            &marks,
-            &stations,
-        ),
+        picture("magnitude, with ± 1 SEM of the participants", &marks, &stations),
     );
     section.add(table);
     section
@@ -124,11 +115,7 @@ pub fn design(task: &Task) -> Design {
     let observations: Vec<_> = all
         .iter()
         .map(|(participant, condition, station, number)| {
-            (
-                *participant,
-                (condition.clone(), (*station).to_owned()),
-                *number,
-            )
+            (*participant, (condition.clone(), (*station).to_owned()), *number)
         })
         .collect();
     Design::two(

@@ -71,11 +71,7 @@ pub fn of_task(task: &Task) -> TaskAnalysis {
         title: task.title.clone(),
         cite: task.cite.clone(),
         question: task.question.clone(),
-        participants: task
-            .participants
-            .iter()
-            .map(|one| one.code.clone())
-            .collect(),
+        participants: task.participants.iter().map(|one| one.code.clone()).collect(),
         is_simulated: task.participants.iter().any(|one| one.is_simulated),
         sections,
     }
@@ -99,11 +95,7 @@ const NO_ANSWERS: &str = "no trial that counts has an answer that is scored";
 /// A name of a table of letters, digits and hyphens.
 fn slug(text: &str) -> String {
     let plain = |letter: char| {
-        if letter.is_ascii_alphanumeric() {
-            letter.to_ascii_lowercase()
-        } else {
-            '-'
-        }
+        if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' }
     };
     text.chars().map(plain).collect()
 }

@@ -32,12 +32,7 @@ pub fn pearson_with_model(task: &Task) -> Section {
     let mut correlations = Table::new(
         "pearson-with-model",
         "Correlation over the materials",
-        [
-            words("part"),
-            words("n"),
-            numbers("r", "", 3),
-            probabilities("p"),
-        ],
+        [words("part"), words("n"), numbers("r", "", 3), probabilities("p")],
     );
     for part in &parts {
         let mut pairs = Vec::new();
@@ -54,9 +49,7 @@ pub fn pearson_with_model(task: &Task) -> Section {
                 let object = task.materials.get(material)?;
                 finite(skin_c - interface_temperature(&SKIN, skin_c, object, room_c))
             };
-            let model_k = skin_c
-                .zip(room_c)
-                .and_then(|(skin_c, room_c)| model(skin_c, room_c));
+            let model_k = skin_c.zip(room_c).and_then(|(skin_c, room_c)| model(skin_c, room_c));
             if let Some((measured_k, model_k)) = measured_k.zip(model_k) {
                 table.row(cells![
                     part.clone(),
@@ -75,10 +68,7 @@ pub fn pearson_with_model(task: &Task) -> Section {
         }
     }
     if parts.is_empty() {
-        section.lacks(
-            "Correlation",
-            "no contact that counts has a fall of the skin",
-        );
+        section.lacks("Correlation", "no contact that counts has a fall of the skin");
     }
     section.add(correlations);
     section.add(table);

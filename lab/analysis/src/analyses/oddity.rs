@@ -51,8 +51,7 @@ impl Answer<'_> {
     }
 
     fn mode(&self, task: &Task) -> Option<&'static str> {
-        self.is_high_low(task)
-            .map(|is_high| MODES[usize::from(!is_high)])
+        self.is_high_low(task).map(|is_high| MODES[usize::from(!is_high)])
     }
 }
 
@@ -82,10 +81,7 @@ pub fn oddity(task: &Task) -> Section {
     let sensitivities = || [numbers("d' (oddity)", "", 2), numbers("d' (3AFC)", "", 2)];
     let sensitivity = |share: &Share| {
         let p = share.proportion().map(|proportion| proportion.log_linear());
-        cells![
-            p.and_then(|p| d_prime_oddity(p).ok()),
-            p.and_then(|p| d_prime(3, p).ok())
-        ]
+        cells![p.and_then(|p| d_prime_oddity(p).ok()), p.and_then(|p| d_prime(3, p).ok())]
     };
 
     let mut table = Table::new(
@@ -101,11 +97,8 @@ pub fn oddity(task: &Task) -> Section {
         .chain(columns())
         .chain(sensitivities()),
     );
-    let materials = task.sorted(
-        answers
-            .iter()
-            .flat_map(|answer| [answer.target, answer.distractor]),
-    );
+    let materials =
+        task.sorted(answers.iter().flat_map(|answer| [answer.target, answer.distractor]));
     let mut marks = Vec::new();
     for (i, high) in materials.iter().enumerate() {
         for low in &materials[i + 1..] {
@@ -117,12 +110,8 @@ pub fn oddity(task: &Task) -> Section {
                     continue;
                 }
                 let both = task.effusivity(high).zip(task.effusivity(low));
-                let mut row = cells![
-                    *target,
-                    *distractor,
-                    MODES[series],
-                    both.map(|(high, low)| high / low)
-                ];
+                let mut row =
+                    cells![*target, *distractor, MODES[series], both.map(|(high, low)| high / low)];
                 row.extend(share.cells(task.chance));
                 row.extend(sensitivity(&share));
                 table.row(row);
@@ -139,10 +128,7 @@ pub fn oddity(task: &Task) -> Section {
     let mut table = Table::new(
         "oddity-modes",
         "Correct answers by mode and by the position of the target; n counts answers",
-        [words("trials")]
-            .into_iter()
-            .chain(columns())
-            .chain(sensitivities()),
+        [words("trials")].into_iter().chain(columns()).chain(sensitivities()),
     );
     let mut add = |name: &str, share: &Share| {
         if share.total() > 0 {
@@ -157,10 +143,7 @@ pub fn oddity(task: &Task) -> Section {
         add(mode, &share(&|answer| answer.mode(task) == Some(mode)));
     }
     for (position, station) in task.stations.iter().enumerate() {
-        add(
-            &format!("target at {station}"),
-            &share(&|answer| answer.position == position),
-        );
+        add(&format!("target at {station}"), &share(&|answer| answer.position == position));
     }
     section.add(table);
     section
@@ -179,23 +162,14 @@ pub fn designs(task: &Task) -> Vec<Design> {
     let percent = |answer: &Answer<'_>| 100.0 * f64::from(u8::from(answer.is_correct));
     let owned =
         |names: &[&str]| -> Vec<String> { names.iter().map(|name| (*name).to_owned()).collect() };
-    let materials = owned(
-        &task.sorted(
-            answers
-                .iter()
-                .flat_map(|answer| [answer.target, answer.distractor]),
-        ),
-    );
+    let materials =
+        owned(&task.sorted(answers.iter().flat_map(|answer| [answer.target, answer.distractor])));
     let roles: Vec<_> = answers
         .iter()
         .flat_map(|answer| {
             [(answer.target, "target"), (answer.distractor, "distractor")].map(
                 |(material, role)| {
-                    (
-                        answer.participant,
-                        (material.to_owned(), role.to_owned()),
-                        percent(answer),
-                    )
+                    (answer.participant, (material.to_owned(), role.to_owned()), percent(answer))
                 },
             )
         })
@@ -204,11 +178,7 @@ pub fn designs(task: &Task) -> Vec<Design> {
         .iter()
         .filter_map(|answer| {
             let station = task.stations.get(answer.position)?.clone();
-            Some((
-                answer.participant,
-                (station, answer.mode(task)?.to_owned()),
-                percent(answer),
-            ))
+            Some((answer.participant, (station, answer.mode(task)?.to_owned()), percent(answer)))
         })
         .collect();
     vec![

@@ -35,25 +35,15 @@ pub fn participants(task: &Task) -> Section {
     for participant in &task.participants {
         let trials = &participant.trials;
         let is_void = |record: &&TrialRecord| record.void.is_some();
-        let scored: Vec<bool> = trials
-            .iter()
-            .filter_map(|trial| trial.record.is_correct)
-            .collect();
+        let scored: Vec<bool> = trials.iter().filter_map(|trial| trial.record.is_correct).collect();
         let correct = scored.iter().filter(|correct| **correct).count();
         let asked = task.question.is_some();
-        let silent = trials
-            .iter()
-            .filter(|trial| asked && trial.record.answer.is_none())
-            .count();
+        let silent = trials.iter().filter(|trial| asked && trial.record.answer.is_none()).count();
         let begin_s = participant.records.first().map(|record| record.begin_s);
         let end_s = participant.records.last().map(|record| record.end_s);
         table.row(cells![
             participant.code.clone(),
-            if participant.is_simulated {
-                "yes"
-            } else {
-                "no"
-            },
+            if participant.is_simulated { "yes" } else { "no" },
             participant.planned,
             participant.records.len(),
             participant.records.iter().filter(is_void).count(),
@@ -63,9 +53,7 @@ pub fn participants(task: &Task) -> Section {
             (!scored.is_empty()).then_some(scored.len()),
             (!scored.is_empty()).then(|| 100.0 * correct as f64 / scored.len() as f64),
             median(trials.iter().filter_map(Trial::response_s)),
-            begin_s
-                .zip(end_s)
-                .map(|(begin_s, end_s)| (end_s - begin_s) / 60.0)
+            begin_s.zip(end_s).map(|(begin_s, end_s)| (end_s - begin_s) / 60.0)
         ]);
         if trials.len() < participant.planned && task.staircases.is_empty() {
             section.notes.push(format!(
@@ -90,39 +78,25 @@ fn voids(task: &Task) -> Table {
     let mut table = Table::new(
         "voids",
         "Void trials by reason; n counts attempts",
-        [
-            words("reason"),
-            words("n"),
-            words("participants"),
-            words("for example"),
-        ],
+        [words("reason"), words("n"), words("participants"), words("for example")],
     );
     let records = || {
         let all = task.participants.iter();
         all.flat_map(|one| {
-            one.records
-                .iter()
-                .filter_map(|record| Some((&one.code, record.void.as_ref()?)))
+            one.records.iter().filter_map(|record| Some((&one.code, record.void.as_ref()?)))
         })
     };
     let kind = |reason: &str| -> String {
-        let words = reason
-            .split(' ')
-            .map(|word| match word.trim_end_matches(',').parse::<f64>() {
-                Ok(_) => "…",
-                Err(_) => word,
-            });
+        let words = reason.split(' ').map(|word| match word.trim_end_matches(',').parse::<f64>() {
+            Ok(_) => "…",
+            Err(_) => word,
+        });
         words.collect::<Vec<_>>().join(" ")
     };
     for reason in distinct(records().map(|(_, reason)| kind(reason))) {
-        let own: Vec<_> = records()
-            .filter(|(_, other)| kind(other) == reason)
-            .collect();
+        let own: Vec<_> = records().filter(|(_, other)| kind(other) == reason).collect();
         let participants = distinct(own.iter().map(|(code, _)| *code)).len();
-        let example = own
-            .first()
-            .map(|(_, example)| (*example).clone())
-            .unwrap_or_default();
+        let example = own.first().map(|(_, example)| (*example).clone()).unwrap_or_default();
         table.row(cells![reason, own.len(), participants, example]);
     }
     table
@@ -132,10 +106,8 @@ fn voids(task: &Task) -> Table {
 fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
-    let (low, high) = (
-        values.get(values.len().checked_sub(1)? / 2)?,
-        values.get(values.len() / 2)?,
-    );
+    let (low, high) =
+        (values.get(values.len().checked_sub(1)? / 2)?, values.get(values.len() / 2)?);
     Some((low + high) / 2.0)
 }
 
@@ -143,28 +115,19 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 type Measure = (&'static str, &'static str, usize, fn(&Trial) -> Option<f64>);
 
 /// A measure of a contact.
-type OfStation = (
-    &'static str,
-    &'static str,
-    usize,
-    fn(&StationRecord) -> Option<f64>,
-);
+type OfStation = (&'static str, &'static str, usize, fn(&StationRecord) -> Option<f64>);
 
 const OF_TRIALS: [Measure; 4] = [
     ("response time", "s", 2, Trial::response_s),
     ("time in contact", "s", 2, |trial| trial.record.contact_s),
-    ("touches", "", 1, |trial| {
-        (trial.record.touches > 0).then(|| f64::from(trial.record.touches))
-    }),
+    ("touches", "", 1, |trial| (trial.record.touches > 0).then(|| f64::from(trial.record.touches))),
     ("room", "°C", 2, |trial| trial.record.room_c),
 ];
 
 const OF_STATIONS: [OfStation; 6] = [
     ("skin before", "°C", 2, |station| station.skin_before_c),
     ("fall of skin", "K", 3, |station| station.skin_fall_k),
-    ("set-point at landing", "°C", 2, |station| {
-        station.setpoint_c
-    }),
+    ("set-point at landing", "°C", 2, |station| station.setpoint_c),
     ("display less set-point at landing", "K", 3, |station| {
         Some(station.display_c? - station.setpoint_c?)
     }),
@@ -196,26 +159,18 @@ pub fn measures(task: &Task) -> Section {
         ],
     );
     for part in task.parts() {
-        let own = || {
-            task.trials()
-                .map(|(_, trial)| trial)
-                .filter(|trial| trial.record.part == part)
-        };
+        let own =
+            || task.trials().map(|(_, trial)| trial).filter(|trial| trial.record.part == part);
         for (name, unit, _, value) in OF_TRIALS {
             add(&mut table, [part, name, "", unit], own().filter_map(value));
         }
         for (index, station) in task.stations.iter().enumerate() {
             let of_station = || own().filter_map(|trial| trial.station(index));
             for (name, unit, _, value) in OF_STATIONS {
-                add(
-                    &mut table,
-                    [part, name, station, unit],
-                    of_station().filter_map(value),
-                );
+                add(&mut table, [part, name, station, unit], of_station().filter_map(value));
             }
-            let limited: Vec<bool> = of_station()
-                .filter_map(|station| station.is_limited)
-                .collect();
+            let limited: Vec<bool> =
+                of_station().filter_map(|station| station.is_limited).collect();
             if limited.iter().any(|limited| *limited) {
                 section.notes.push(format!(
                     "{part}, {station}: {} of {} contacts were limited.",
@@ -261,17 +216,8 @@ fn trials(task: &Task) -> Table {
         words("void"),
     ];
     heads.extend(task.factors.iter().map(words));
-    heads.extend(
-        task.stations
-            .iter()
-            .map(|station| words(format!("{station} presents"))),
-    );
-    heads.extend([
-        words("answer"),
-        words("expected"),
-        words("correct"),
-        numbers("level", "K", 4),
-    ]);
+    heads.extend(task.stations.iter().map(|station| words(format!("{station} presents"))));
+    heads.extend([words("answer"), words("expected"), words("correct"), numbers("level", "K", 4)]);
     heads.extend(OF_TRIALS.map(|(name, unit, decimals, _)| numbers(name, unit, decimals)));
     for station in &task.stations {
         heads.extend(
@@ -305,9 +251,7 @@ fn trials(task: &Task) -> Table {
             row.extend(cells![
                 record.answer.clone(),
                 record.expected.clone(),
-                record
-                    .is_correct
-                    .map(|correct| if correct { "yes" } else { "no" }),
+                record.is_correct.map(|correct| if correct { "yes" } else { "no" }),
                 record.staircase_level_k
             ]);
             let trial = Trial {

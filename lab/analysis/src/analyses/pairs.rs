@@ -40,8 +40,7 @@ impl Answer<'_> {
 /// The scored answers to two different materials.
 pub fn answers(task: &Task) -> Vec<Answer<'_>> {
     let all = task.trials();
-    all.filter_map(|(participant, trial)| answer(task, participant, trial))
-        .collect()
+    all.filter_map(|(participant, trial)| answer(task, participant, trial)).collect()
 }
 
 fn answer<'a>(task: &'a Task, participant: usize, trial: &'a Trial) -> Option<Answer<'a>> {
@@ -74,10 +73,7 @@ fn names(task: &Task, answers: &[Answer<'_>]) -> Vec<(String, Option<f64>)> {
     let place = |name: &str| materials.iter().position(|one| *one == name);
     let mut pairs = distinct(answers.iter().map(|answer| (answer.pair, answer.ratio)));
     pairs.sort_by_key(|(pair, _)| pair.map(place));
-    pairs
-        .into_iter()
-        .map(|(pair, ratio)| (pair.join(BETWEEN), ratio))
-        .collect()
+    pairs.into_iter().map(|(pair, ratio)| (pair.join(BETWEEN), ratio)).collect()
 }
 
 /// The answers to a pair, in a mode or in all.
@@ -100,9 +96,7 @@ fn table_columns(mode: bool) -> Vec<Column> {
 
 /// d' of a choice of two, from the log-linear estimate; `None` where chance is not that of a choice of two.
 fn d_prime_of(task: &Task, share: &Share) -> Option<f64> {
-    is_choice_of_two(task)
-        .then(|| d_prime(2, share.proportion()?.log_linear()).ok())
-        .flatten()
+    is_choice_of_two(task).then(|| d_prime(2, share.proportion()?.log_linear()).ok()).flatten()
 }
 
 const CORRECT: &str = "An answer counts as correct by the contact coefficients of the materials, not by what the display did; \
@@ -137,13 +131,7 @@ pub fn pairs(task: &Task) -> Section {
         section.lacks("Pairs", NO_ANSWERS);
         return section;
     }
-    add_shares(
-        task,
-        &answers,
-        ("pairs", "Correct answers by pair"),
-        &[],
-        &mut section,
-    );
+    add_shares(task, &answers, ("pairs", "Correct answers by pair"), &[], &mut section);
     section
 }
 
@@ -159,10 +147,7 @@ pub fn by_mode(task: &Task) -> Section {
         .note(READING)
         .note(d_prime_note(task));
     if answers.iter().all(|answer| answer.mode.is_none()) {
-        section.lacks(
-            "Modes",
-            "no scored trial has a sample and a simulated material that differ",
-        );
+        section.lacks("Modes", "no scored trial has a sample and a simulated material that differ");
         return section;
     }
     add_shares(
@@ -183,11 +168,8 @@ fn add_shares(
     modes: &[&'static str],
     section: &mut Section,
 ) {
-    let mut table = Table::new(
-        name,
-        &format!("{caption}; n counts answers"),
-        table_columns(!modes.is_empty()),
-    );
+    let mut table =
+        Table::new(name, &format!("{caption}; n counts answers"), table_columns(!modes.is_empty()));
     let of_pair = match modes {
         [] => vec![None],
         modes => modes.iter().copied().map(Some).collect(),
@@ -200,19 +182,13 @@ fn add_shares(
             row.extend(mode.map(Into::into));
             row.push(ratio.into());
             row.extend(share.cells(task.chance));
-            row.extend(cells![
-                verdict(&share, task.threshold),
-                d_prime_of(task, &share)
-            ]);
+            row.extend(cells![verdict(&share, task.threshold), d_prime_of(task, &share)]);
             table.row(row);
             marks.extend(share.mark(&*pair, series));
         }
     }
     let series = if modes.is_empty() { &[""][..] } else { modes };
-    section.draw(
-        caption,
-        picture(&marks, series, task.chance, task.threshold),
-    );
+    section.draw(caption, picture(&marks, series, task.chance, task.threshold));
     section.add(table);
 }
 
@@ -237,29 +213,17 @@ fn percent(is_correct: bool) -> f64 {
 
 pub fn design(task: &Task) -> Design {
     let answers = answers(task);
-    let levels: Vec<String> = names(task, &answers)
-        .into_iter()
-        .map(|(pair, _)| pair)
-        .collect();
+    let levels: Vec<String> = names(task, &answers).into_iter().map(|(pair, _)| pair).collect();
     let observations: Vec<_> = answers
         .iter()
-        .map(|answer| {
-            (
-                answer.participant,
-                answer.name(),
-                percent(answer.is_correct),
-            )
-        })
+        .map(|answer| (answer.participant, answer.name(), percent(answer.is_correct)))
         .collect();
     Design::one(DEPENDENT, "pair", &levels, &observations).with(Contrast::Mean)
 }
 
 pub fn by_mode_design(task: &Task) -> Design {
     let answers = answers(task);
-    let levels: Vec<String> = names(task, &answers)
-        .into_iter()
-        .map(|(pair, _)| pair)
-        .collect();
+    let levels: Vec<String> = names(task, &answers).into_iter().map(|(pair, _)| pair).collect();
     let observations: Vec<_> = answers
         .iter()
         .filter_map(|answer| {
@@ -268,22 +232,13 @@ pub fn by_mode_design(task: &Task) -> Design {
         })
         .collect();
     let modes = MODES.map(str::to_owned);
-    Design::two(
-        DEPENDENT,
-        ("pair", &levels),
-        ("mode", &modes),
-        &observations,
-    )
-    .with(Contrast::Mean)
+    Design::two(DEPENDENT, ("pair", &levels), ("mode", &modes), &observations).with(Contrast::Mean)
 }
 
 pub fn design_of_parts(task: &Task) -> Design {
     let answers = answers(task);
     let parts: Vec<String> = task.parts().into_iter().map(str::to_owned).collect();
-    let levels: Vec<String> = names(task, &answers)
-        .into_iter()
-        .map(|(pair, _)| pair)
-        .collect();
+    let levels: Vec<String> = names(task, &answers).into_iter().map(|(pair, _)| pair).collect();
     let observations: Vec<_> = answers
         .iter()
         .map(|answer| {
@@ -291,10 +246,5 @@ pub fn design_of_parts(task: &Task) -> Design {
             (answer.participant, cell, percent(answer.is_correct))
         })
         .collect();
-    Design::two(
-        DEPENDENT,
-        ("part", &parts),
-        ("pair", &levels),
-        &observations,
-    )
+    Design::two(DEPENDENT, ("part", &parts), ("pair", &levels), &observations)
 }

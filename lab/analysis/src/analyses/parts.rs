@@ -57,9 +57,8 @@ pub fn pearson_between_parts(task: &Task) -> Section {
     };
     if task.asks_for("confusion") {
         let parts = task.parts().into_iter();
-        let values: Vec<_> = parts
-            .map(|part| (part.to_owned(), confusion::proportions(task, part)))
-            .collect();
+        let values: Vec<_> =
+            parts.map(|part| (part.to_owned(), confusion::proportions(task, part))).collect();
         compare("confusions", &values);
     }
     if task.asks_for("falls") {
@@ -78,10 +77,7 @@ pub fn pearson_between_parts(task: &Task) -> Section {
         compare("falls", &values.collect::<Vec<_>>());
     }
     if compared == 0 {
-        section.lacks(
-            "Correlation",
-            "two parts with confusions or falls are needed",
-        );
+        section.lacks("Correlation", "two parts with confusions or falls are needed");
     }
     section.add(table);
     section

@@ -28,34 +28,27 @@ fn levels<'a>(trials: impl Iterator<Item = &'a Trial>) -> Vec<Level> {
         if level <= 0.0 {
             continue;
         }
-        let at = match counts
-            .iter()
-            .position(|(known, ..)| (known / level - 1.0).abs() < SAME_LEVEL)
-        {
-            Some(at) => at,
-            None => {
-                counts.push((level, 0, 0));
-                counts.len() - 1
-            }
-        };
+        let at =
+            match counts.iter().position(|(known, ..)| (known / level - 1.0).abs() < SAME_LEVEL) {
+                Some(at) => at,
+                None => {
+                    counts.push((level, 0, 0));
+                    counts.len() - 1
+                }
+            };
         counts[at].1 += u32::from(is_correct);
         counts[at].2 += 1;
     }
     counts.sort_by(|one, other| one.0.total_cmp(&other.0));
     let level = |(level, correct, total): (f64, u32, u32)| {
-        Proportion::new(correct, total)
-            .ok()
-            .map(|answers| Level { level, answers })
+        Proportion::new(correct, total).ok().map(|answers| Level { level, answers })
     };
     counts.into_iter().filter_map(level).collect()
 }
 
 /// Fits for each condition, of all participants together and of each.
 pub fn psychometric_fit(task: &Task) -> Section {
-    let chance = task
-        .chance
-        .filter(|chance| (0.0..1.0).contains(chance))
-        .unwrap_or(0.5);
+    let chance = task.chance.filter(|chance| (0.0..1.0).contains(chance)).unwrap_or(0.5);
     let proportion = chance + PART * (1.0 - chance);
     let mut section = Section::new("psychometric-fit", "Psychometric functions").note(format!(
         "Weibull functions, fitted by maximum likelihood, with chance {chance:.3} and a rate of lapses up to {LAPSE_MAX}. The \
@@ -82,10 +75,7 @@ pub fn psychometric_fit(task: &Task) -> Section {
     );
     let mut curves = Vec::new();
     for (series, condition) in conditions(task).into_iter().enumerate() {
-        let mut groups = vec![(
-            "all".to_owned(),
-            (0..task.participants.len()).collect::<Vec<_>>(),
-        )];
+        let mut groups = vec![("all".to_owned(), (0..task.participants.len()).collect::<Vec<_>>())];
         if task.participants.len() > 1 {
             groups.extend(
                 (0..task.participants.len())
@@ -98,11 +88,7 @@ pub fn psychometric_fit(task: &Task) -> Section {
             });
             let levels = levels(own.map(|(_, trial)| trial));
             let total: u32 = levels.iter().map(|level| level.answers.total()).sum();
-            let model = Model {
-                shape: Shape::Weibull,
-                guess: chance,
-                lapse: 0.0,
-            };
+            let model = Model { shape: Shape::Weibull, guess: chance, lapse: 0.0 };
             let fit = model.fit_with_lapse(&levels, LAPSE_MAX);
             let fitted =
                 fit.and_then(|fit| fit.threshold(proportion).map(|threshold| (fit, threshold)));
@@ -114,9 +100,8 @@ pub fn psychometric_fit(task: &Task) -> Section {
                     if let Some(Err(error)) = &bootstrap {
                         section.lacks(&format!("Interval of {condition}, {name}"), error);
                     }
-                    let interval = bootstrap
-                        .and_then(Result::ok)
-                        .map(|bootstrap| bootstrap.interval);
+                    let interval =
+                        bootstrap.and_then(Result::ok).map(|bootstrap| bootstrap.interval);
                     table.row(cells![
                         condition.clone(),
                         name.clone(),
@@ -144,21 +129,15 @@ pub fn psychometric_fit(task: &Task) -> Section {
         }
     }
     if !curves.is_empty() {
-        let range = positive_range(
-            curves
-                .iter()
-                .flat_map(|curve| curve.points.iter().map(|(x, _)| *x)),
-        );
+        let range =
+            positive_range(curves.iter().flat_map(|curve| curve.points.iter().map(|(x, _)| *x)));
         section.draw(
             "Share of correct answers by level (dots) and fitted function (line), all participants",
             lines(range, "change / K", "correct / %", &curves),
         );
     }
     if table.rows.is_empty() && section.not_possible.is_empty() {
-        section.lacks(
-            "Function",
-            "no trial that counts has a level and an answer that is scored",
-        );
+        section.lacks("Function", "no trial that counts has a level and an answer that is scored");
     }
     section.add(table);
     section
@@ -167,25 +146,18 @@ pub fn psychometric_fit(task: &Task) -> Section {
 /// What a function is fitted for: a staircase, or what the factors say.
 fn condition(task: &Task, trial: &Trial) -> Option<String> {
     trial.change_k()?;
-    Some(
-        match trial.staircase.and_then(|index| task.staircases.get(index)) {
-            Some((name, _)) => name.clone(),
-            None => trial.record.part.clone(),
-        },
-    )
+    Some(match trial.staircase.and_then(|index| task.staircases.get(index)) {
+        Some((name, _)) => name.clone(),
+        None => trial.record.part.clone(),
+    })
 }
 
 fn conditions(task: &Task) -> Vec<String> {
-    crate::cells::distinct(
-        task.trials()
-            .filter_map(|(_, trial)| condition(task, trial)),
-    )
+    crate::cells::distinct(task.trials().filter_map(|(_, trial)| condition(task, trial)))
 }
 
 fn drawn(name: &str, series: usize, levels: &[Level], fit: Option<&Fit>) -> Vec<Curve> {
-    let dots = levels
-        .iter()
-        .map(|level| (level.level, 100.0 * level.answers.value()));
+    let dots = levels.iter().map(|level| (level.level, 100.0 * level.answers.value()));
     let last = levels.last().map_or(0.0, |level| level.level);
     let at = |step: u32| {
         let level = last * f64::from(step) / 200.0;

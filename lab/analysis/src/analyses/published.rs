@@ -18,23 +18,17 @@ pub fn published(task: &Task) -> Option<Section> {
     let mut section = Section::new("published", "Published results beside these")
         .note(format!("Published: {CITATION}."));
     match task.name.as_str() {
-        "p1" => shares(
-            &mut section,
-            "Table 3-3",
-            discrimination(),
-            ANSWERS_OF_TABLE_3_3,
-            |row| pairs::share_of(task, row),
-        ),
-        "p3" | "p3displays" => shares(
-            &mut section,
-            "Table 3-5",
-            localisation(),
-            ANSWERS_OF_TABLE_3_5,
-            |row| oddity::share_of(task, row),
-        ),
-        "p4" => stated(&mut section, "% correct", identification(), |of| {
-            confusion::measured(task, of)
+        "p1" => shares(&mut section, "Table 3-3", discrimination(), ANSWERS_OF_TABLE_3_3, |row| {
+            pairs::share_of(task, row)
         }),
+        "p3" | "p3displays" => {
+            shares(&mut section, "Table 3-5", localisation(), ANSWERS_OF_TABLE_3_5, |row| {
+                oddity::share_of(task, row)
+            })
+        }
+        "p4" => {
+            stated(&mut section, "% correct", identification(), |of| confusion::measured(task, of))
+        }
         "p5" | "p5contact" => stated(&mut section, "% correct", real_against_simulated(), |of| {
             pairs::measured(task, of)
         }),
@@ -105,9 +99,7 @@ fn stated(
     section.notes.push(
         "The thesis shows these results in pictures; its text states what is in the table.".into(),
     );
-    let place = published
-        .first()
-        .map_or(String::new(), |row| row.place.clone());
+    let place = published.first().map_or(String::new(), |row| row.place.clone());
     let mut table = Table::new(
         "published",
         &format!("{place}, {unit}, beside these data"),

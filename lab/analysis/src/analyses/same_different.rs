@@ -120,18 +120,12 @@ pub fn same_different(task: &Task) -> Section {
 
 pub fn design(task: &Task) -> Design {
     let answers = answers(task);
-    let levels: Vec<String> = sorted_pairs(task, &answers)
-        .into_iter()
-        .map(|pair| pair.join(pairs::BETWEEN))
-        .collect();
+    let levels: Vec<String> =
+        sorted_pairs(task, &answers).into_iter().map(|pair| pair.join(pairs::BETWEEN)).collect();
     let observations: Vec<_> = answers
         .iter()
         .map(|answer| {
-            (
-                answer.participant,
-                answer.name(),
-                100.0 * f64::from(u8::from(answer.says_different)),
-            )
+            (answer.participant, answer.name(), 100.0 * f64::from(u8::from(answer.says_different)))
         })
         .collect();
     Design::one("answers \"different\" / %", "pair", &levels, &observations)

@@ -24,9 +24,7 @@ pub struct Share {
 
 impl Share {
     pub fn new(answers: impl IntoIterator<Item = (usize, bool)>) -> Self {
-        Self {
-            answers: answers.into_iter().collect(),
-        }
+        Self { answers: answers.into_iter().collect() }
     }
 
     /// Participant, and 1 for a correct and 0 for another answer.
@@ -59,12 +57,7 @@ impl Share {
     }
 
     pub fn mark(&self, row: impl Into<String>, series: usize) -> Option<Mark> {
-        Some(Mark {
-            row: row.into(),
-            series,
-            value: self.percent()?,
-            interval: self.interval(),
-        })
+        Some(Mark { row: row.into(), series, value: self.percent()?, interval: self.interval() })
     }
 
     /// Cells of [`columns`].
@@ -72,9 +65,7 @@ impl Share {
         let (low, high) = self.interval().unzip();
         let by_chance = chance.and_then(|chance| self.proportion()?.p_by_chance(chance).ok());
         let least = chance.and_then(|chance| criterion(self.total(), chance, ALPHA).ok().flatten());
-        let observed = self
-            .observations()
-            .map(|(participant, value)| (participant, 100.0 * value));
+        let observed = self.observations().map(|(participant, value)| (participant, 100.0 * value));
         let (participants, mean, sem) = over_participants(&observed.collect::<Vec<_>>());
         cells![
             self.total(),

@@ -14,17 +14,12 @@ struct Track<'a> {
 }
 
 fn track<'a>(code: &'a str, trials: &[Trial], staircase: usize) -> Track<'a> {
-    let own = trials
-        .iter()
-        .filter(|trial| trial.staircase == Some(staircase));
+    let own = trials.iter().filter(|trial| trial.staircase == Some(staircase));
     let level = |trial: &Trial| {
         let level_k = trial.record.staircase_level_k.and_then(finite)?;
         Some((level_k, trial.record.is_correct?))
     };
-    Track {
-        participant: code,
-        trials: own.filter_map(level).collect(),
-    }
+    Track { participant: code, trials: own.filter_map(level).collect() }
 }
 
 /// Tracks and thresholds by participant, and their mean.
@@ -58,10 +53,7 @@ pub fn staircase(task: &Task) -> Section {
         for (series, participant) in task.participants.iter().enumerate() {
             let track = track(&participant.code, &participant.trials, index);
             if track.trials.is_empty() {
-                section.lacks(
-                    &format!("{name}, {}", participant.code),
-                    "no trial of it counts",
-                );
+                section.lacks(&format!("{name}, {}", participant.code), "no trial of it counts");
                 continue;
             }
             let mut replayed = initial.clone();
@@ -75,11 +67,7 @@ pub fn staircase(task: &Task) -> Section {
                     "it has not ended with enough reversals",
                 );
             }
-            logarithms.extend(
-                threshold_k
-                    .filter(|threshold| *threshold > 0.0)
-                    .map(f64::ln),
-            );
+            logarithms.extend(threshold_k.filter(|threshold| *threshold > 0.0).map(f64::ln));
             table.row(cells![
                 name.clone(),
                 track.participant,
@@ -117,18 +105,11 @@ pub fn staircase(task: &Task) -> Section {
                 points: wrong_answers,
             });
             let trials = positive_range(
-                curves
-                    .iter()
-                    .flat_map(|curve| curve.points.iter().map(|(x, _)| *x)),
+                curves.iter().flat_map(|curve| curve.points.iter().map(|(x, _)| *x)),
             );
             section.draw(
                 format!("{name}: level by trial (lines) and wrong answers (dots); −1 is 0.1 K"),
-                lines(
-                    trials,
-                    "trial of the staircase",
-                    "log10 of level / K",
-                    &logarithmic(curves),
-                ),
+                lines(trials, "trial of the staircase", "log10 of level / K", &logarithmic(curves)),
             );
         }
     }
@@ -137,18 +118,13 @@ pub fn staircase(task: &Task) -> Section {
 }
 
 fn steps(trials: &[(f64, bool)]) -> Vec<(f64, f64)> {
-    (1..)
-        .zip(trials)
-        .map(|(number, (level_k, _))| (f64::from(number), *level_k))
-        .collect()
+    (1..).zip(trials).map(|(number, (level_k, _))| (f64::from(number), *level_k)).collect()
 }
 
 fn wrong(trials: &[(f64, bool)]) -> Vec<(f64, f64)> {
     let numbered = (1..).zip(trials);
     let wrong = numbered.filter(|(_, (_, is_correct))| !is_correct);
-    wrong
-        .map(|(number, (level_k, _))| (f64::from(number), *level_k))
-        .collect()
+    wrong.map(|(number, (level_k, _))| (f64::from(number), *level_k)).collect()
 }
 
 /// Levels change by factors, so that their logarithms have equal steps.

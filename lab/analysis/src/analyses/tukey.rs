@@ -28,9 +28,7 @@ pub fn tukey(task: &Task) -> Section {
             "tukey-parts",
             "Parts compared at each level, with the error of the interaction; p is that of one level, as in the thesis; beside it \
              times the number of levels (Bonferroni)",
-            columns()
-                .into_iter()
-                .chain([probabilities("p (Bonferroni)")]),
+            columns().into_iter().chain([probabilities("p (Bonferroni)")]),
         );
         for design in design::of_parts(task) {
             parts(&design, &mut table, &mut section);
@@ -38,10 +36,7 @@ pub fn tukey(task: &Task) -> Section {
         section.add(table);
     }
     if section.tables.is_empty() && section.not_possible.is_empty() {
-        section.lacks(
-            "Comparison",
-            "there is no analysis of variance with more than one level",
-        );
+        section.lacks("Comparison", "there is no analysis of variance with more than one level");
     }
     section
 }
@@ -66,12 +61,7 @@ fn levels(design: &Design, table: &mut Table, section: &mut Section) {
         return section.lacks(&design.dependent, why);
     }
     for factor in 0..design.factors.len() {
-        let Some(Marginal {
-            factor: name,
-            levels,
-            rows,
-        }) = design.marginal(factor)
-        else {
+        let Some(Marginal { factor: name, levels, rows }) = design.marginal(factor) else {
             continue;
         };
         // Two means are compared by the analysis of variance itself.
@@ -118,10 +108,7 @@ fn parts(design: &Design, table: &mut Table, section: &mut Section) {
         Ok(anova) => anova,
         Err(error) => return section.lacks(&design.dependent, error),
     };
-    let (error, error_df) = (
-        anova.interaction.mean_square_error(),
-        anova.interaction.error_df,
-    );
+    let (error, error_df) = (anova.interaction.mean_square_error(), anova.interaction.error_df);
     for (index, level) in levels.iter().enumerate() {
         let at = |part: usize| mean(rows.iter().map(|row| row[part * levels.len() + index]));
         let means: Vec<f64> = (0..parts.len()).filter_map(at).collect();

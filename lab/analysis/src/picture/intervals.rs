@@ -42,11 +42,7 @@ impl Intervals<'_> {
         let left = rows.iter().map(|row| width(row)).max().unwrap_or(0) + MARGIN;
         let has_legend = self.series.len() > 1;
         let longest = self.series.iter().map(|name| width(name)).max();
-        let legend = if has_legend {
-            longest.unwrap_or(0) + 40
-        } else {
-            90
-        };
+        let legend = if has_legend { longest.unwrap_or(0) + 40 } else { 90 };
         let height = ROW + APART * self.series.len().max(1) as i32;
         let names = if self.lines.is_empty() { MARGIN } else { 26 };
         let bottom = names + height * rows.len() as i32;
@@ -67,10 +63,7 @@ impl Intervals<'_> {
                 let style = text_style(HPos::Center, GREY);
                 root.draw(&Text::new(name.clone(), (x(*value), 12), style))?;
             }
-            root.draw(&PathElement::new(
-                [(left, bottom), (left + WIDTH, bottom)],
-                BLACK,
-            ))?;
+            root.draw(&PathElement::new([(left, bottom), (left + WIDTH, bottom)], BLACK))?;
             let count = ((high - low) / self.step).round().clamp(1.0, 50.0) as u32;
             for i in 0..=count {
                 let value = low + f64::from(i) * self.step;
@@ -78,25 +71,14 @@ impl Intervals<'_> {
                 root.draw(&PathElement::new([(at, bottom), (at, bottom + 5)], BLACK))?;
                 let decimals = (-self.step.log10().floor()).clamp(0.0, 6.0) as usize;
                 let label = format!("{value:.decimals$}");
-                root.draw(&Text::new(
-                    label,
-                    (at, bottom + 15),
-                    text_style(HPos::Center, BLACK),
-                ))?;
+                root.draw(&Text::new(label, (at, bottom + 15), text_style(HPos::Center, BLACK)))?;
             }
             let middle = (left + WIDTH / 2, bottom + 38);
-            root.draw(&Text::new(
-                self.axis,
-                middle,
-                text_style(HPos::Center, BLACK),
-            ))?;
+            root.draw(&Text::new(self.axis, middle, text_style(HPos::Center, BLACK)))?;
             for (i, row) in rows.iter().enumerate() {
                 let y = names + height * i as i32 + height / 2;
-                let name = Text::new(
-                    (*row).to_owned(),
-                    (left - 10, y),
-                    text_style(HPos::Right, BLACK),
-                );
+                let name =
+                    Text::new((*row).to_owned(), (left - 10, y), text_style(HPos::Right, BLACK));
                 root.draw(&name)?;
                 for mark in marks.iter().filter(|mark| mark.row == *row) {
                     let middle = self.series.len().saturating_sub(1) as i32 * APART / 2;

@@ -19,12 +19,8 @@ pub fn lines(
     curves: &[Curve],
 ) -> anyhow::Result<String> {
     let longest = curves.iter().map(|curve| super::width(&curve.name)).max();
-    let panel = Panel {
-        x,
-        x_name,
-        y_name,
-        legend: Legend::Beside(longest.unwrap_or(0) as u32 + 60),
-    };
+    let panel =
+        Panel { x, x_name, y_name, legend: Legend::Beside(longest.unwrap_or(0) as u32 + 60) };
     let height = HEIGHT.max(LINE * curves.len() as i32 + 40);
     svg((WIDTH, height), |root| panel.draw(root, curves))
 }

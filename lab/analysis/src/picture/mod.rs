@@ -33,9 +33,7 @@ pub fn color(series: usize) -> RGBColor {
 }
 
 fn text_style(horizontal: HPos, color: RGBColor) -> TextStyle<'static> {
-    FONT.into_font()
-        .color(&color)
-        .pos(Pos::new(horizontal, VPos::Center))
+    FONT.into_font().color(&color).pos(Pos::new(horizontal, VPos::Center))
 }
 
 /// Estimated width of a text, pixels; the page's font is not known here.

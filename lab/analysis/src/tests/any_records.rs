@@ -41,22 +41,12 @@ fn word() -> impl Strategy<Value = String> {
 }
 
 fn presented() -> impl Strategy<Value = Presented> {
-    let material = || {
-        prop_oneof![
-            Just("copper"),
-            Just("abs"),
-            Just("foam"),
-            Just("no such thing")
-        ]
-    };
+    let material = || prop_oneof![Just("copper"), Just("abs"), Just("foam"), Just("no such thing")];
     prop_oneof![
         Just(Presented::Nothing),
         material().prop_map(sample),
         (0u8..3, material()).prop_map(|(finger, material)| data::display(finger, material)),
-        number().prop_map(|celsius| Presented::Hold {
-            device_finger: 0,
-            celsius
-        }),
+        number().prop_map(|celsius| Presented::Hold { device_finger: 0, celsius }),
         (number(), number()).prop_map(|(one, other)| Presented::Pulses {
             device_finger: 0,
             base_c: 33.0,
@@ -67,21 +57,12 @@ fn presented() -> impl Strategy<Value = Presented> {
 }
 
 fn trial() -> impl Strategy<Value = Trial> {
-    let words = (
-        prop::option::of(word()),
-        prop::option::of(word()),
-        word(),
-        any::<Option<bool>>(),
-    );
+    let words = (prop::option::of(word()), prop::option::of(word()), word(), any::<Option<bool>>());
     let presented = prop::collection::vec(presented(), 0..4);
     let numbers = prop::collection::vec(maybe(), 8);
     let station = prop::collection::vec(maybe(), 12);
-    let rest = (
-        0usize..3,
-        0u32..4,
-        prop::option::of(0usize..3),
-        prop::collection::vec(word(), 0..3),
-    );
+    let rest =
+        (0usize..3, 0u32..4, prop::option::of(0usize..3), prop::collection::vec(word(), 0..3));
     (words, presented, numbers, station, rest).prop_map(
         |(words, presented, numbers, station, rest)| {
             let (answer, expected, part, is_correct) = words;
@@ -105,10 +86,7 @@ fn trial() -> impl Strategy<Value = Trial> {
                 (one.force_error_rms_n, one.force_settled_s) = (station[9], station[10]);
                 one.is_limited = station[11].map(|number| number > 0.0);
             }
-            trial.levels = levels
-                .into_iter()
-                .map(|level| ("factor".to_owned(), level))
-                .collect();
+            trial.levels = levels.into_iter().map(|level| ("factor".to_owned(), level)).collect();
             trial.staircase = staircase;
             trial
         },
@@ -122,12 +100,8 @@ fn tasks() -> impl Strategy<Value = Task> {
         |(participants, chance, is_p5, stations)| {
             let names = ["left", "right", "third"];
             let answers = ["left", "right", "copper", "abs"];
-            let mut task = data::task(
-                if is_p5 { "p5" } else { "p4" },
-                &names[..stations],
-                &answers,
-                &WORDS,
-            );
+            let mut task =
+                data::task(if is_p5 { "p5" } else { "p4" }, &names[..stations], &answers, &WORDS);
             task.chance = chance;
             task.staircases = data::thresholds(0, 0.1).staircases;
             task.materials.remove("foam");

@@ -52,16 +52,11 @@ pub fn participant(code: &str, trials: Vec<Trial>) -> Participant {
 }
 
 pub fn sample(material: &str) -> Presented {
-    Presented::Sample {
-        material: material.into(),
-    }
+    Presented::Sample { material: material.into() }
 }
 
 pub fn display(device_finger: u8, material: &str) -> Presented {
-    Presented::Material {
-        device_finger,
-        material: material.into(),
-    }
+    Presented::Material { device_finger, material: material.into() }
 }
 
 /// A trial that presents something and is answered.
@@ -132,9 +127,7 @@ impl Noise {
 
 fn largest(values: &[f64]) -> usize {
     let numbered = values.iter().enumerate();
-    numbered
-        .max_by(|one, other| one.1.total_cmp(other.1))
-        .map_or(0, |(index, _)| index)
+    numbered.max_by(|one, other| one.1.total_cmp(other.1)).map_or(0, |(index, _)| index)
 }
 
 fn effusivity(material: &str) -> f64 {
@@ -146,12 +139,8 @@ pub const FIVE: [&str; 5] = ["copper", "stainless-steel", "granite", "abs", "foa
 
 /// P1 (all pairs of six real materials) with this many participants.
 pub fn discrimination(participants: usize, noise: f64) -> Task {
-    let mut task = task(
-        "p1",
-        &SIDES,
-        &SIDES,
-        &["pairs", "identical-pairs", "anova-within", "tukey"],
-    );
+    let mut task =
+        task("p1", &SIDES, &SIDES, &["pairs", "identical-pairs", "anova-within", "tukey"]);
     task.threshold = Some(0.72);
     let six = ["copper", "bronze", "stainless-steel", "g10", "abs", "foam"];
     for person in 0..participants {
@@ -160,11 +149,7 @@ pub fn discrimination(participants: usize, noise: f64) -> Task {
         for _ in 0..4 {
             for (i, one) in six.iter().enumerate() {
                 for other in &six[i..] {
-                    let pair = if random.index(2) == 0 {
-                        [one, other]
-                    } else {
-                        [other, one]
-                    };
+                    let pair = if random.index(2) == 0 { [one, other] } else { [other, one] };
                     trials.push(colder(
                         &mut random,
                         trials.len(),
@@ -174,8 +159,7 @@ pub fn discrimination(participants: usize, noise: f64) -> Task {
                 }
             }
         }
-        task.participants
-            .push(participant(&format!("P{person:02}"), trials));
+        task.participants.push(participant(&format!("P{person:02}"), trials));
     }
     task
 }
@@ -189,24 +173,13 @@ fn colder(random: &mut Noise, index: usize, presented: [Presented; 2], noise: f6
     let sensed = [0, 1].map(|side| random.coldness(&materials[side], noise));
     let truth = [0, 1].map(|side: usize| effusivity(&materials[side]));
     let expected = (truth[0] != truth[1]).then(|| SIDES[largest(&truth)]);
-    trial(
-        index as u32 + 1,
-        "main",
-        presented.into(),
-        SIDES[largest(&sensed)],
-        expected,
-    )
+    trial(index as u32 + 1, "main", presented.into(), SIDES[largest(&sensed)], expected)
 }
 
 /// P5 (four real against four simulated materials).
 pub fn real_and_simulated(participants: usize, noise: f64) -> Task {
-    let words = [
-        "pairs-by-mode",
-        "identical-pairs",
-        "anova-within",
-        "tukey",
-        "chi-squared-against",
-    ];
+    let words =
+        ["pairs-by-mode", "identical-pairs", "anova-within", "tukey", "chi-squared-against"];
     let mut task = task("p5", &SIDES, &SIDES, &words);
     task.threshold = Some(0.72);
     for person in 0..participants {
@@ -243,12 +216,7 @@ pub fn real_and_simulated(participants: usize, noise: f64) -> Task {
 /// P3 (the different one of three).
 pub fn localisation(participants: usize, noise: f64) -> Task {
     let fingers = ["index", "middle", "ring"];
-    let mut task = task(
-        "p3",
-        &fingers,
-        &fingers,
-        &["pairs", "oddity", "anova-within", "tukey"],
-    );
+    let mut task = task("p3", &fingers, &fingers, &["pairs", "oddity", "anova-within", "tukey"]);
     for person in 0..participants {
         let mut random = Noise::new(200 + person as u64);
         let mut trials = Vec::new();
@@ -260,9 +228,8 @@ pub fn localisation(participants: usize, noise: f64) -> Task {
                     let sensed = [0, 1, 2].map(|finger| random.coldness(at(finger), noise));
                     let mean = sensed.iter().sum::<f64>() / 3.0;
                     let odd = largest(&sensed.map(|one| (one - mean).abs()));
-                    let presented = (0..3)
-                        .map(|finger| display(finger as u8, at(finger)))
-                        .collect();
+                    let presented =
+                        (0..3).map(|finger| display(finger as u8, at(finger))).collect();
                     let number = trials.len() as u32 + 1;
                     trials.push(trial(
                         number,
@@ -274,8 +241,7 @@ pub fn localisation(participants: usize, noise: f64) -> Task {
                 }
             }
         }
-        task.participants
-            .push(participant(&format!("P{person:02}"), trials));
+        task.participants.push(participant(&format!("P{person:02}"), trials));
     }
     task
 }
@@ -299,11 +265,8 @@ pub fn identification(participants: usize, noise: f64) -> Task {
                 for material in FIVE {
                     let sensed = random.coldness(material, noise);
                     let distances = FIVE.map(|other| -(effusivity(other).log10() - sensed).abs());
-                    let presented = if part == "real" {
-                        sample(material)
-                    } else {
-                        display(0, material)
-                    };
+                    let presented =
+                        if part == "real" { sample(material) } else { display(0, material) };
                     let answer = FIVE[largest(&distances)];
                     let mut trial = trial(
                         trials.len() as u32 + 1,
@@ -312,17 +275,12 @@ pub fn identification(participants: usize, noise: f64) -> Task {
                         answer,
                         Some(material),
                     );
-                    trial.record.block = if part == "real" {
-                        1
-                    } else {
-                        2 + repetition / 3
-                    };
+                    trial.record.block = if part == "real" { 1 } else { 2 + repetition / 3 };
                     trials.push(trial);
                 }
             }
         }
-        task.participants
-            .push(participant(&format!("P{person:02}"), trials));
+        task.participants.push(participant(&format!("P{person:02}"), trials));
     }
     task
 }
@@ -351,11 +309,8 @@ pub fn falls(participants: usize, folder: &Path) -> Task {
                 for (material, fall_k) in FIVE.into_iter().zip([2.6, 2.4, 2.1, 1.2, 0.4]) {
                     let fall_k = fall_k * own * (1.0 + 0.15 * random.normal());
                     let number = trials.len() as u32 + 1;
-                    let presented = if part == "real" {
-                        sample(material)
-                    } else {
-                        display(0, material)
-                    };
+                    let presented =
+                        if part == "real" { sample(material) } else { display(0, material) };
                     let mut trial = trial(number, part, vec![presented], "", None);
                     trial.skin_sensors = vec![Some(0)];
                     trial.record.answer = None;
@@ -387,13 +342,7 @@ pub fn falls(participants: usize, folder: &Path) -> Task {
 
 /// P8 (force matching), with telemetry in a folder.
 pub fn forces(participants: usize, folder: &Path) -> Task {
-    let words = [
-        "force-matching",
-        "falls",
-        "anova-within",
-        "tukey",
-        "pearson-with-model",
-    ];
+    let words = ["force-matching", "falls", "anova-within", "tukey", "pearson-with-model"];
     let mut task = task("p8", &["index"], &[], &words);
     task.question = None;
     for person in 0..participants {
@@ -457,12 +406,7 @@ pub fn rule() -> StaircaseRule {
 /// P9 (threshold of change).
 pub fn thresholds(participants: usize, threshold_k: f64) -> Task {
     let intervals = ["first", "second"];
-    let mut task = task(
-        "p9",
-        &["index"],
-        &intervals,
-        &["staircase", "psychometric-fit"],
-    );
+    let mut task = task("p9", &["index"], &intervals, &["staircase", "psychometric-fit"]);
     task.staircases = vec![("cooling".into(), Staircase::new(rule()).expect("a rule"))];
     for person in 0..participants {
         let mut random = Noise::new(600 + person as u64);
@@ -477,28 +421,19 @@ pub fn thresholds(participants: usize, threshold_k: f64) -> Task {
                 base_c: 33.0,
                 departures_k: [
                     Departure::Fixed(0.0),
-                    Departure::Staircase {
-                        standard_k: 0.0,
-                        sign: -1.0,
-                    },
+                    Departure::Staircase { standard_k: 0.0, sign: -1.0 },
                 ],
                 rate_k_s: 1.5,
             }];
             let answer = intervals[usize::from(is_correct)];
-            let mut trial = trial(
-                trials.len() as u32 + 1,
-                "main",
-                presented,
-                answer,
-                Some("second"),
-            );
+            let mut trial =
+                trial(trials.len() as u32 + 1, "main", presented, answer, Some("second"));
             trial.staircase = Some(0);
             trial.record.staircase_level_k = Some(level_k);
             trials.push(trial);
             staircase.answered(is_correct);
         }
-        task.participants
-            .push(participant(&format!("P{person:02}"), trials));
+        task.participants.push(participant(&format!("P{person:02}"), trials));
     }
     task
 }
@@ -506,12 +441,7 @@ pub fn thresholds(participants: usize, threshold_k: f64) -> Task {
 /// P12 (referral).
 pub fn referral(participants: usize) -> Task {
     let fingers = ["index", "middle", "ring"];
-    let mut task = task(
-        "p12",
-        &fingers,
-        &[],
-        &["magnitudes", "anova-within", "tukey"],
-    );
+    let mut task = task("p12", &fingers, &[], &["magnitudes", "anova-within", "tukey"]);
     task.factors = vec!["cooled".into(), "cold_c".into()];
     for person in 0..participants {
         let mut random = Noise::new(700 + person as u64);
@@ -521,11 +451,7 @@ pub fn referral(participants: usize) -> Task {
                 for cold_c in [31, 29, 27, 25] {
                     let felt = |finger: usize| {
                         f64::from(33 - cold_c)
-                            * if (finger == 1) == (cooled == "middle") {
-                                9.0
-                            } else {
-                                5.0
-                            }
+                            * if (finger == 1) == (cooled == "middle") { 9.0 } else { 5.0 }
                     };
                     let words: Vec<_> = (0..3)
                         .map(|finger| {
@@ -536,18 +462,10 @@ pub fn referral(participants: usize) -> Task {
                         })
                         .collect();
                     let presented = (0..3)
-                        .map(|device_finger| Presented::Hold {
-                            device_finger,
-                            celsius: 33.0,
-                        })
+                        .map(|device_finger| Presented::Hold { device_finger, celsius: 33.0 })
                         .collect();
-                    let mut trial = trial(
-                        trials.len() as u32 + 1,
-                        "main",
-                        presented,
-                        &words.join(";"),
-                        None,
-                    );
+                    let mut trial =
+                        trial(trials.len() as u32 + 1, "main", presented, &words.join(";"), None);
                     trial.levels = vec![
                         ("cooled".into(), cooled.into()),
                         ("cold_c".into(), cold_c.to_string()),
@@ -556,8 +474,7 @@ pub fn referral(participants: usize) -> Task {
                 }
             }
         }
-        task.participants
-            .push(participant(&format!("P{person:02}"), trials));
+        task.participants.push(participant(&format!("P{person:02}"), trials));
     }
     task
 }
@@ -590,8 +507,7 @@ pub fn same_or_different(participants: usize) -> Task {
                 }
             }
         }
-        task.participants
-            .push(participant(&format!("P{person:02}"), trials));
+        task.participants.push(participant(&format!("P{person:02}"), trials));
     }
     task
 }

@@ -18,18 +18,10 @@ pub fn elements(page: &str) -> Vec<String> {
         assert!(!tag.contains('<'), "{tag}");
         rest = &rest[end + 1..];
         if let Some(name) = tag.strip_prefix('/') {
-            assert_eq!(
-                open.pop().as_deref(),
-                Some(name),
-                "ends where another element is open"
-            );
+            assert_eq!(open.pop().as_deref(), Some(name), "ends where another element is open");
             continue;
         }
-        let name = tag
-            .split([' ', '\n', '/'])
-            .next()
-            .unwrap_or_default()
-            .to_owned();
+        let name = tag.split([' ', '\n', '/']).next().unwrap_or_default().to_owned();
         if !tag.ends_with('/') && !VOID.contains(&&*name) {
             open.push(name.clone());
         }
@@ -40,14 +32,9 @@ pub fn elements(page: &str) -> Vec<String> {
 }
 
 fn analysis() -> Analysis {
-    let tasks = [
-        data::discrimination(2, 0.4),
-        data::identification(2, 0.5),
-        data::thresholds(2, 0.14),
-    ];
-    Analysis {
-        tasks: tasks.iter().map(of_task).collect(),
-    }
+    let tasks =
+        [data::discrimination(2, 0.4), data::identification(2, 0.5), data::thresholds(2, 0.14)];
+    Analysis { tasks: tasks.iter().map(of_task).collect() }
 }
 
 #[test]
@@ -57,25 +44,11 @@ fn the_page_has_every_table_and_picture_and_needs_no_other_file() {
     let elements = elements(&page);
     let count = |name: &str| elements.iter().filter(|one| *one == name).count();
     let sections = || analysis.tasks.iter().flat_map(|task| &task.sections);
-    assert_eq!(
-        count("table"),
-        sections()
-            .map(|section| section.tables.len())
-            .sum::<usize>()
-    );
-    assert_eq!(
-        count("svg"),
-        sections()
-            .map(|section| section.pictures.len())
-            .sum::<usize>()
-    );
+    assert_eq!(count("table"), sections().map(|section| section.tables.len()).sum::<usize>());
+    assert_eq!(count("svg"), sections().map(|section| section.pictures.len()).sum::<usize>());
     assert!(count("svg") >= 6);
     for section in sections() {
-        assert!(
-            page.contains(&format!(">{}</h3>", section.title)),
-            "{}",
-            section.title
-        );
+        assert!(page.contains(&format!(">{}</h3>", section.title)), "{}", section.title);
     }
     for word in ["src=", "<script", "<link", "@import", "url("] {
         assert!(!page.contains(word), "{word}");
@@ -90,16 +63,9 @@ fn words_of_a_session_cannot_become_elements_of_the_page() {
     task.question = Some("a < b & \"c\"".into());
     task.participants[0].code = "<b>".into();
     task.analyses.push("no such \"word\"><i>".into());
-    let page = Analysis {
-        tasks: vec![of_task(&task)],
-    }
-    .page();
+    let page = Analysis { tasks: vec![of_task(&task)] }.page();
     let names = elements(&page);
-    assert!(
-        !names
-            .iter()
-            .any(|name| ["script", "b", "i"].contains(&&**name))
-    );
+    assert!(!names.iter().any(|name| ["script", "b", "i"].contains(&&**name)));
     assert!(page.contains("this version knows no such analysis"));
 }
 
@@ -129,20 +95,14 @@ fn json_has_the_numbers_of_the_tables() {
     let row = &value["tasks"][0]["sections"][2]["tables"][0]["rows"][0];
     assert_eq!(row[0], "copper / bronze");
     let table = analysis.tasks[0].table("pairs");
-    assert_eq!(
-        Cell::from(row[4].as_f64().expect("a number")),
-        table.rows[0][4]
-    );
+    assert_eq!(Cell::from(row[4].as_f64().expect("a number")), table.rows[0][4]);
 }
 
 #[test]
 fn a_data_set_without_sessions_has_a_page() {
     let empty = crate::analyse(&[]);
     elements(&empty.page());
-    assert_eq!(
-        empty.json().replace(char::is_whitespace, ""),
-        "{\"tasks\":[]}"
-    );
+    assert_eq!(empty.json().replace(char::is_whitespace, ""), "{\"tasks\":[]}");
 }
 
 #[test]
@@ -157,10 +117,7 @@ fn files_have_seven_significant_digits() {
             let digits = word.trim_start_matches(['-', '0', '.']);
             let digits = digits.split('e').next().unwrap_or_default();
             let digits = digits.bytes().filter(u8::is_ascii_digit).count();
-            assert!(
-                word.parse::<f64>().is_err() || digits <= 7,
-                "{name}: {word}"
-            );
+            assert!(word.parse::<f64>().is_err() || digits <= 7, "{name}: {word}");
         }
     }
 }

@@ -14,13 +14,7 @@ const SIDES: [&str; 2] = ["left", "right"];
 fn one_pair(first: &str, second: &str, total: usize, correct: usize) -> Vec<Trial> {
     let of = |index: usize| {
         let answer = if index < correct { "left" } else { "right" };
-        trial(
-            index as u32 + 1,
-            "main",
-            vec![sample(first), sample(second)],
-            answer,
-            Some("left"),
-        )
+        trial(index as u32 + 1, "main", vec![sample(first), sample(second)], answer, Some("left"))
     };
     (0..total).map(of).collect()
 }
@@ -30,8 +24,7 @@ fn seventy_per_cent_of_forty_answers_are_above_chance_at_one_per_cent() {
     let mut task = task("pair", &SIDES, &SIDES, &["pairs"]);
     task.threshold = Some(0.72);
     for code in ["P1", "P2"] {
-        task.participants
-            .push(participant(code, one_pair("copper", "bronze", 20, 14)));
+        task.participants.push(participant(code, one_pair("copper", "bronze", 20, 14)));
     }
     let analysis = of_task(&task);
     let pairs = analysis.table("pairs");
@@ -46,44 +39,21 @@ fn seventy_per_cent_of_forty_answers_are_above_chance_at_one_per_cent() {
     assert_near(number("SEM"), 0.0, 1e-9);
     // sqrt(2) z(28.5 / 41).
     assert_near(number("d' (2AFC)"), 0.7218452, 1e-6);
-    assert_eq!(
-        pairs.cell(&["copper / bronze"], "told apart"),
-        &Cell::from("no")
-    );
+    assert_eq!(pairs.cell(&["copper / bronze"], "told apart"), &Cell::from("no"));
 }
 
 #[test]
 fn the_mode_is_whether_the_real_material_has_the_larger_contact_coefficient() {
     let mut task = task("modes", &SIDES, &SIDES, &["pairs-by-mode"]);
     let trials = vec![
-        trial(
-            1,
-            "main",
-            vec![sample("copper"), display(0, "abs")],
-            "left",
-            Some("left"),
-        ),
-        trial(
-            2,
-            "main",
-            vec![display(0, "copper"), sample("abs")],
-            "right",
-            Some("left"),
-        ),
+        trial(1, "main", vec![sample("copper"), display(0, "abs")], "left", Some("left")),
+        trial(2, "main", vec![display(0, "copper"), sample("abs")], "right", Some("left")),
     ];
     task.participants.push(participant("P1", trials));
     let analysis = of_task(&task);
     let table = analysis.table("pairs-by-mode");
-    assert_near(
-        table.number(&["copper / abs", "R/S > 1"], "share correct"),
-        100.0,
-        0.0,
-    );
-    assert_near(
-        table.number(&["copper / abs", "R/S < 1"], "share correct"),
-        0.0,
-        0.0,
-    );
+    assert_near(table.number(&["copper / abs", "R/S > 1"], "share correct"), 100.0, 0.0);
+    assert_near(table.number(&["copper / abs", "R/S < 1"], "share correct"), 0.0, 0.0);
 }
 
 #[test]
@@ -92,16 +62,9 @@ fn answers_to_equal_materials_are_counted_by_side_and_by_kind() {
     for (code, rights) in [("P1", 3), ("P2", 2), ("P3", 4)] {
         let of = |index: u32| {
             let answer = if index < rights { "right" } else { "left" };
-            trial(
-                index + 1,
-                "main",
-                vec![sample("abs"), display(0, "abs")],
-                answer,
-                None,
-            )
+            trial(index + 1, "main", vec![sample("abs"), display(0, "abs")], answer, None)
         };
-        task.participants
-            .push(participant(code, (0..4).map(of).collect()));
+        task.participants.push(participant(code, (0..4).map(of).collect()));
     }
     let analysis = of_task(&task);
     let table = analysis.table("identical-pairs");
@@ -110,11 +73,7 @@ fn answers_to_equal_materials_are_counted_by_side_and_by_kind() {
     // Shares .75, .5, 1: mean .75, SD .25, t = .25 / (.25 / sqrt 3).
     assert_near(table.number(&["abs", "right"], "t"), 3f64.sqrt(), 1e-9);
     // 2 P(X >= 9 | 12, 1/2) = 2 * 299 / 4096.
-    assert_near(
-        table.number(&["abs", "right"], "p (binomial)"),
-        598.0 / 4096.0,
-        1e-12,
-    );
+    assert_near(table.number(&["abs", "right"], "p (binomial)"), 598.0 / 4096.0, 1e-12);
 }
 
 #[test]
@@ -126,53 +85,31 @@ fn oddity_gives_a_larger_sensitivity_than_a_choice_of_three() {
         let presented = vec![display(0, "foam"), display(1, "copper"), display(2, "foam")];
         trial(index + 1, "main", presented, answer, Some("middle"))
     };
-    task.participants
-        .push(participant("P1", (0..900).map(of).collect()));
+    task.participants.push(participant("P1", (0..900).map(of).collect()));
     let analysis = of_task(&task);
     let row = ["copper", "foam", "high/low"];
     let number = |column| analysis.table("oddity").number(&row, column);
     // The thesis prints 0.16 for 38 %; by oddity it is 0.74.
     assert_near(number("d' (3AFC)"), 0.16, 0.01);
     assert_near(number("d' (oddity)"), 0.74, 0.02);
-    assert_near(
-        analysis
-            .table("oddity-modes")
-            .number(&["target at middle"], "n"),
-        900.0,
-        0.0,
-    );
+    assert_near(analysis.table("oddity-modes").number(&["target at middle"], "n"), 900.0, 0.0);
 }
 
 #[test]
 fn hits_and_false_alarms_of_same_and_different() {
     let mut task = task("same", &SIDES, &["same", "different"], &["same-different"]);
     let of = |index: u32| {
-        let (other, differs) = if index < 10 {
-            ("abs", index < 8)
-        } else {
-            ("copper", index < 12)
-        };
+        let (other, differs) = if index < 10 { ("abs", index < 8) } else { ("copper", index < 12) };
         let answer = if differs { "different" } else { "same" };
-        trial(
-            index + 1,
-            "main",
-            vec![sample("copper"), display(0, other)],
-            answer,
-            None,
-        )
+        trial(index + 1, "main", vec![sample("copper"), display(0, other)], answer, None)
     };
-    task.participants
-        .push(participant("P1", (0..20).map(of).collect()));
+    task.participants.push(participant("P1", (0..20).map(of).collect()));
     let analysis = of_task(&task);
     let table = analysis.table("same-different");
     assert_near(table.number(&["copper / abs"], "share"), 80.0, 1e-9);
     assert_near(table.number(&["copper / copper"], "share"), 20.0, 1e-9);
     // z(8.5 / 11) - z(2.5 / 11).
-    assert_near(
-        table.number(&["copper / abs"], "z(H) - z(F)"),
-        1.495717,
-        1e-5,
-    );
+    assert_near(table.number(&["copper / abs"], "z(H) - z(F)"), 1.495717, 1e-5);
     // 2 x 2 table 8, 2, 2, 8.
     assert_near(table.number(&["copper / abs"], "chi-squared"), 7.2, 1e-9);
 }
@@ -187,13 +124,7 @@ fn perfect_identification_transmits_log2_of_five_bits() {
     let confusion = analysis.table("confusion-real");
     assert_near(confusion.number(&["copper"], "copper"), 9.0, 0.0);
     assert_near(confusion.number(&["copper"], "foam"), 0.0, 0.0);
-    assert_near(
-        analysis
-            .table("pearson-between-parts")
-            .number(&["confusions"], "r"),
-        1.0,
-        1e-12,
-    );
+    assert_near(analysis.table("pearson-between-parts").number(&["confusions"], "r"), 1.0, 1e-12);
 }
 
 /// Contacts of one material each, with these falls for each participant.
@@ -201,13 +132,7 @@ fn with_falls(participants: &[&[(&str, f64)]], words: &[&str]) -> crate::input::
     let mut task = task("falls", &["index"], &[], words);
     for (person, falls) in participants.iter().enumerate() {
         let of = |(index, (material, fall_k)): (usize, &(&str, f64))| {
-            let mut trial = trial(
-                index as u32 + 1,
-                "main",
-                vec![display(0, material)],
-                "",
-                None,
-            );
+            let mut trial = trial(index as u32 + 1, "main", vec![display(0, material)], "", None);
             trial.record.stations[0] = StationRecord {
                 skin_before_c: Some(34.0),
                 skin_fall_k: Some(*fall_k),
@@ -216,8 +141,7 @@ fn with_falls(participants: &[&[(&str, f64)]], words: &[&str]) -> crate::input::
             trial
         };
         let trials = falls.iter().enumerate().map(of).collect();
-        task.participants
-            .push(participant(&format!("P{person}"), trials));
+        task.participants.push(participant(&format!("P{person}"), trials));
     }
     task
 }
@@ -248,9 +172,8 @@ fn two_levels_give_the_square_of_the_paired_t() {
 fn unequal_variances_lead_to_the_square_root() {
     let spread = |mean: f64| [0.3, 0.6, 0.9, 1.1, 1.4, 1.7].map(|factor| factor * mean);
     let (cold, warm) = (spread(3.0), spread(0.3));
-    let rows: Vec<Vec<(&str, f64)>> = (0..6)
-        .map(|i| vec![("copper", cold[i]), ("foam", warm[5 - i])])
-        .collect();
+    let rows: Vec<Vec<(&str, f64)>> =
+        (0..6).map(|i| vec![("copper", cold[i]), ("foam", warm[5 - i])]).collect();
     let rows: Vec<&[(&str, f64)]> = rows.iter().map(Vec::as_slice).collect();
     let analysis = of_task(&with_falls(&rows, &["falls", "levene", "anova-within"]));
     assert!(analysis.table("levene").number(&["falls"], "p") < 0.05);
@@ -270,15 +193,9 @@ fn falls_of_the_model_correlate_with_it() {
     };
     let falls: Vec<_> = data::FIVE.iter().map(|name| (*name, fall(name))).collect();
     let analysis = of_task(&with_falls(&[&falls], &["falls", "pearson-with-model"]));
+    assert_near(analysis.table("pearson-with-model").number(&["main"], "r"), 1.0, 1e-9);
     assert_near(
-        analysis.table("pearson-with-model").number(&["main"], "r"),
-        1.0,
-        1e-9,
-    );
-    assert_near(
-        analysis
-            .table("falls-model")
-            .number(&["main", "abs"], "measured over model"),
+        analysis.table("falls-model").number(&["main", "abs"], "measured over model"),
         0.3,
         1e-9,
     );
@@ -296,23 +213,14 @@ fn participants_of_different_parts_are_a_factor_between_participants() {
     let row = ["correct / %", "part (between participants)"];
     assert_near(table.number(&row, "df"), 1.0, 0.0);
     assert_near(table.number(&row, "df error"), 2.0, 0.0);
-    assert_near(
-        table.number(&["correct / %", "presented"], "df error"),
-        8.0,
-        0.0,
-    );
+    assert_near(table.number(&["correct / %", "presented"], "df error"), 8.0, 0.0);
 }
 
 #[test]
 fn a_staircase_has_the_mean_of_its_reversals() {
     let analysis = of_task(&data::thresholds(1, 1e-9));
     // Always correct: it falls to its least level and never turns.
-    assert!(
-        analysis
-            .not_possible()
-            .iter()
-            .any(|sentence| sentence.contains("enough reversals"))
-    );
+    assert!(analysis.not_possible().iter().any(|sentence| sentence.contains("enough reversals")));
 
     let mut task = data::thresholds(1, 0.14);
     // Two correct, one wrong, for ever: it turns at 1 / 1.41 and at 1.
@@ -324,11 +232,7 @@ fn a_staircase_has_the_mean_of_its_reversals() {
     }
     let analysis = of_task(&task);
     let table = analysis.table("staircases");
-    assert_near(
-        table.number(&["cooling"], "threshold"),
-        1.41f64.powf(-0.5),
-        1e-12,
-    );
+    assert_near(table.number(&["cooling"], "threshold"), 1.41f64.powf(-0.5), 1e-12);
     assert_near(table.number(&["cooling"], "reversals"), 8.0, 0.0);
 }
 
@@ -337,11 +241,7 @@ fn magnitudes_are_means_by_condition_and_station() {
     let mut task = data::referral(2);
     for person in &mut task.participants {
         person.trials.truncate(2);
-        for (trial, answer) in person
-            .trials
-            .iter_mut()
-            .zip(["10; 20;30", "not a number;1;2"])
-        {
+        for (trial, answer) in person.trials.iter_mut().zip(["10; 20;30", "not a number;1;2"]) {
             trial.record.answer = Some(answer.into());
         }
     }
@@ -363,10 +263,7 @@ fn answers_as_in_table_3_3_do_not_differ_from_it() {
     task.participants.push(participant("P1", trials));
     let analysis = of_task(&task);
     let row = &analysis.table("chi-squared-against").rows[0];
-    assert_eq!(
-        row[..3],
-        [Cell::from(3u32), Cell::from(0.0), Cell::from(2.0)]
-    );
+    assert_eq!(row[..3], [Cell::from(3u32), Cell::from(0.0), Cell::from(2.0)]);
 }
 
 #[test]
@@ -391,16 +288,8 @@ fn courses_and_forces_come_from_the_telemetry() {
     assert_near(force.number(&["zns"], "n"), 12.0, 0.0);
     assert_near(force.number(&["zns"], "force, last 2 s"), 0.1, 0.005);
     // Without the telemetry the tables of the records are there, and a sentence says what is not.
-    let without = of_task(&with_falls(
-        &[&[("copper", 1.0)]],
-        &["falls", "exponential-fit"],
-    ));
-    assert!(
-        without
-            .not_possible()
-            .iter()
-            .any(|sentence| sentence.contains("no telemetry"))
-    );
+    let without = of_task(&with_falls(&[&[("copper", 1.0)]], &["falls", "exponential-fit"]));
+    assert!(without.not_possible().iter().any(|sentence| sentence.contains("no telemetry")));
     assert_eq!(without.table("falls").rows.len(), 1);
 }
 
@@ -420,21 +309,14 @@ fn ancova_is_that_of_packages() {
         let trials = ANSWERS_OF_FOUR
             .iter()
             .flat_map(|([one, other], correct)| one_pair(one, other, 4, correct[person]));
-        task.participants
-            .push(participant(&format!("P{person}"), trials.collect()));
+        task.participants.push(participant(&format!("P{person}"), trials.collect()));
     }
     let analysis = of_task(&task);
     let table = analysis.table("ancova");
     // Covariate, then slope, F, p of the covariate, F and p of the participants.
     let packages = [
-        (
-            "roughness Rq",
-            [5.493_247, 3.474_583, 0.089_208, 0.241_243, 0.789_700],
-        ),
-        (
-            "Young's modulus",
-            [2.480_912, 8.831_487, 0.012_705, 0.330_525, 0.725_442],
-        ),
+        ("roughness Rq", [5.493_247, 3.474_583, 0.089_208, 0.241_243, 0.789_700]),
+        ("Young's modulus", [2.480_912, 8.831_487, 0.012_705, 0.330_525, 0.725_442]),
     ];
     let columns = ["slope", "F", "p", "F of participants", "p of participants"];
     for (covariate, values) in packages {
@@ -451,10 +333,7 @@ fn ancova_is_that_of_packages() {
 #[test]
 fn a_covariate_that_is_not_known_of_each_material_is_said() {
     let mut task = task("pairs", &SIDES, &SIDES, &["pairs", "ancova"]);
-    let trials = [
-        one_pair("copper", "zns", 4, 3),
-        one_pair("copper", "abs", 4, 4),
-    ];
+    let trials = [one_pair("copper", "zns", 4, 3), one_pair("copper", "abs", 4, 4)];
     task.participants.push(participant("P1", trials.concat()));
     let analysis = of_task(&task);
     let sentences = analysis.not_possible();
@@ -481,11 +360,7 @@ fn a_recorded_time_to_settle_counts_whatever_the_time_to_the_lift() {
         };
         trial
     };
-    let trials = vec![
-        contact(1, None),
-        contact(2, Some(8.0)),
-        contact(3, Some(1.0)),
-    ];
+    let trials = vec![contact(1, None), contact(2, Some(8.0)), contact(3, Some(1.0))];
     task.participants.push(participant("P1", trials));
     let analysis = of_task(&task);
     let table = analysis.table("force-matching");

@@ -22,10 +22,7 @@ impl TaskAnalysis {
 
     /// All sentences on what is not possible.
     fn not_possible(&self) -> Vec<&str> {
-        let sentences = self
-            .sections
-            .iter()
-            .flat_map(|section| &section.not_possible);
+        let sentences = self.sections.iter().flat_map(|section| &section.not_possible);
         sentences.map(String::as_str).collect()
     }
 }
@@ -34,10 +31,7 @@ impl Table {
     /// The cell of a column in the first row that begins with these words.
     fn cell(&self, begin: &[&str], column: &str) -> &Cell {
         let begins = |row: &&Vec<Cell>| {
-            begin
-                .iter()
-                .zip(row.iter())
-                .all(|(word, cell)| *cell == Cell::from(*word))
+            begin.iter().zip(row.iter()).all(|(word, cell)| *cell == Cell::from(*word))
         };
         let row = self.rows.iter().find(begins);
         let row = row.unwrap_or_else(|| panic!("no row {begin:?} in {}", self.name));
@@ -55,8 +49,5 @@ impl Table {
 }
 
 fn assert_near(value: f64, expected: f64, tolerance: f64) {
-    assert!(
-        (value - expected).abs() <= tolerance,
-        "{value} is not {expected} ± {tolerance}"
-    );
+    assert!((value - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
 }

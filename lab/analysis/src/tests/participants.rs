@@ -11,23 +11,14 @@ fn without_noise_all_answers_are_correct_and_what_does_not_vary_is_said() {
     for row in &analysis.table("pairs-by-mode").rows {
         assert_eq!(row[5], Cell::from(100.0), "{row:?}");
     }
-    assert!(
-        analysis
-            .not_possible()
-            .iter()
-            .any(|sentence| sentence.contains("does not vary"))
-    );
+    assert!(analysis.not_possible().iter().any(|sentence| sentence.contains("does not vary")));
 }
 
 #[test]
 fn random_answers_are_at_chance() {
     let mut task = data::identification(10, 0.0);
     let mut random = Noise::new(7);
-    for trial in task
-        .participants
-        .iter_mut()
-        .flat_map(|person| &mut person.trials)
-    {
+    for trial in task.participants.iter_mut().flat_map(|person| &mut person.trials) {
         let answer = data::FIVE[random.index(5)].to_owned();
         trial.record.is_correct = Some(Some(&answer) == trial.record.expected.as_ref());
         trial.record.answer = Some(answer);
@@ -37,9 +28,7 @@ fn random_answers_are_at_chance() {
     // 99.9 % of the binomial distribution of 450 answers with chance 1/5 lie from 63 to 119.
     let correct = table.number(&["simulated", "all"], "correct");
     assert!((63.0..=119.0).contains(&correct), "{correct}");
-    let bits = analysis
-        .table("information")
-        .number(&["simulated"], "corrected (Miller-Madow)");
+    let bits = analysis.table("information").number(&["simulated"], "corrected (Miller-Madow)");
     assert!(bits.abs() < 0.05, "{bits}");
 }
 
@@ -50,9 +39,7 @@ fn a_single_participant_gives_tables_and_sentences() {
     assert!(analysis.section("anova-within").tables.is_empty());
     let sentences = &analysis.section("anova-within").not_possible;
     assert!(
-        sentences
-            .iter()
-            .all(|sentence| sentence.contains("two or more are needed")),
+        sentences.iter().all(|sentence| sentence.contains("two or more are needed")),
         "{sentences:?}"
     );
 }
@@ -71,11 +58,7 @@ fn an_interrupted_session_gives_what_there_is() {
             .iter()
             .any(|note| note.contains("P01 has 7 of 60 trials"))
     );
-    assert_near(
-        analysis.table("information").number(&["real"], "n"),
-        22.0,
-        0.0,
-    );
+    assert_near(analysis.table("information").number(&["real"], "n"), 22.0, 0.0);
 }
 
 #[test]
@@ -86,11 +69,7 @@ fn void_trials_do_not_count_and_are_listed_by_reason() {
     task.participants[0].records.push(other);
     let analysis = of_task(&task);
     let voids = analysis.table("voids");
-    assert_eq!(
-        voids.rows.len(),
-        1,
-        "reasons that differ in numbers only are one"
-    );
+    assert_eq!(voids.rows.len(), 1, "reasons that differ in numbers only are one");
     assert_eq!(voids.rows[0][1..3], [Cell::from(3u32), Cell::from(2u32)]);
     let participants = analysis.table("participants");
     assert_near(participants.number(&["P00"], "attempts"), 66.0, 0.0);
@@ -108,10 +87,7 @@ fn the_order_of_the_trials_does_not_matter() {
     }
     let (one, other) = (of_task(&task), of_task(&turned));
     assert_eq!(one.table("oddity").rows, other.table("oddity").rows);
-    assert_eq!(
-        one.table("anova-within").rows,
-        other.table("anova-within").rows
-    );
+    assert_eq!(one.table("anova-within").rows, other.table("anova-within").rows);
 }
 
 #[test]
@@ -123,35 +99,18 @@ fn published_results_stand_beside_those_of_shipped_sessions() {
     let identification = of_task(&data::identification(2, 0.0));
     assert_eq!(rows(&identification), 9);
     let published = identification.table("published");
-    assert_eq!(
-        published.cell(&["real, foam"], "published"),
-        &Cell::from("100")
-    );
+    assert_eq!(published.cell(&["real, foam"], "published"), &Cell::from("100"));
     assert_near(published.number(&["real, foam"], "here"), 100.0, 0.0);
     let other = of_task(&data::referral(1));
-    assert!(
-        other
-            .sections
-            .iter()
-            .all(|section| section.name != "published")
-    );
+    assert!(other.sections.iter().all(|section| section.name != "published"));
 }
 
 #[test]
 fn same_or_different_has_no_sensitivity_of_a_choice_of_two() {
     let analysis = of_task(&data::same_or_different(2));
     let row = ["copper / abs", "R/S > 1"];
-    assert_eq!(
-        analysis.table("pairs-by-mode").cell(&row, "d' (2AFC)"),
-        &Cell::Nothing
-    );
-    assert_near(
-        analysis
-            .table("same-different")
-            .number(&["copper / abs"], "n"),
-        20.0,
-        0.0,
-    );
+    assert_eq!(analysis.table("pairs-by-mode").cell(&row, "d' (2AFC)"), &Cell::Nothing);
+    assert_near(analysis.table("same-different").number(&["copper / abs"], "n"), 20.0, 0.0);
     let anova = analysis.table("anova-within");
     assert_near(anova.number(&["correct / %", "pair"], "n"), 2.0, 0.0);
 }

@@ -97,10 +97,7 @@ impl DeviceClock {
 
     /// Forgets the estimate: the device has restarted.
     pub fn restart(&mut self) {
-        *self = Self {
-            restarts: self.restarts + 1,
-            ..Self::default()
-        };
+        *self = Self { restarts: self.restarts + 1, ..Self::default() };
     }
 
     /// Takes note of a line that names a tick and arrived at a time of the link's clock.
@@ -113,10 +110,7 @@ impl DeviceClock {
             };
             // Ticks that jump ahead are of no restart: those before were wrong.
             let restarts = self.restarts + u32::from(line.ticks_since(latest) < 0);
-            *self = Self {
-                restarts,
-                ..Self::default()
-            };
+            *self = Self { restarts, ..Self::default() };
             self.add(first);
         }
         self.doubted = None;
@@ -188,9 +182,7 @@ impl DeviceClock {
             later.map(move |b| (b.1 - a.1) / (b.0 - a.0))
         });
         let drift = median(slopes.collect()).unwrap_or(0.0);
-        let offsets = complete
-            .iter()
-            .map(|(t_s, late_s)| late_s - drift * (t_s - last_s));
+        let offsets = complete.iter().map(|(t_s, late_s)| late_s - drift * (t_s - last_s));
         let offset_s = median(offsets.clone().collect())?;
         let errors_s = offsets.map(|one_s| (one_s - offset_s).abs());
         let tick_s = self.tick_s(tick);

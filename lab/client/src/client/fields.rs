@@ -76,10 +76,7 @@ pub fn finite(word: &str) -> Option<f64> {
 
 /// The fault with this word.
 pub fn fault(word: &str) -> Option<Fault> {
-    Fault::ALL
-        .iter()
-        .copied()
-        .find(|fault| fault.name() == word)
+    Fault::ALL.iter().copied().find(|fault| fault.name() == word)
 }
 
 /// The state with this word; a tripped one needs the word of its fault.

@@ -173,15 +173,9 @@ impl<L: Link> Client<L> {
         };
         let (answered, reply) = self.accepted(&line)?;
         let understood = finger.is_none() || finger == answered;
-        match command
-            .read_reply(&Fields::new(&reply))
-            .filter(|_| understood)
-        {
+        match command.read_reply(&Fields::new(&reply)).filter(|_| understood) {
             Some(reply) => Ok(reply),
-            None => Err(ClientError::NotUnderstood {
-                line,
-                answer: format!("ok {reply}"),
-            }),
+            None => Err(ClientError::NotUnderstood { line, answer: format!("ok {reply}") }),
         }
     }
 
@@ -199,10 +193,7 @@ impl<L: Link> Client<L> {
         let (finger, content) = split_finger(&answer);
         match content.strip_prefix("ok") {
             Some(reply) => Ok((finger, reply.trim().into())),
-            None => Err(ClientError::Refused {
-                line: line.into(),
-                answer,
-            }),
+            None => Err(ClientError::Refused { line: line.into(), answer }),
         }
     }
 
@@ -369,18 +360,13 @@ impl<L: Link> Client<L> {
         let end = self.link.now() + ANSWER_TIMEOUT;
         let mut damaged = None;
         loop {
-            let received = self
-                .receive_until(end)
-                .inspect_err(|_| self.out_of_step = true)?;
+            let received = self.receive_until(end).inspect_err(|_| self.out_of_step = true)?;
             let Some(received) = received else {
                 self.out_of_step = true;
                 let line = line.into();
                 return Err(match damaged {
                     Some(answer) => ClientError::NotUnderstood { line, answer },
-                    None => ClientError::TimedOut {
-                        line,
-                        timeout: ANSWER_TIMEOUT,
-                    },
+                    None => ClientError::TimedOut { line, timeout: ANSWER_TIMEOUT },
                 });
             };
             match self.sort_line(received) {
@@ -404,11 +390,7 @@ impl<L: Link> Client<L> {
                 if silence >= SILENCE_MAX {
                     self.transmit("")?;
                 }
-                wait = wait.min(
-                    SILENCE_MAX
-                        .saturating_sub(silence)
-                        .max(Duration::from_millis(1)),
-                );
+                wait = wait.min(SILENCE_MAX.saturating_sub(silence).max(Duration::from_millis(1)));
             }
             if let Some(line) = self.link.receive(wait)? {
                 return Ok(Some(line));
@@ -459,12 +441,7 @@ impl<L: Link> Client<L> {
             self.telemetry.pop_front();
             self.counts.dropped += 1;
         }
-        self.telemetry.push_back(ReceivedTelemetry {
-            finger,
-            telemetry,
-            at: line.at,
-            lost_before,
-        });
+        self.telemetry.push_back(ReceivedTelemetry { finger, telemetry, at: line.at, lost_before });
         None
     }
 
@@ -499,10 +476,7 @@ impl<L: Link> Client<L> {
                 if fields == TelemetryFields::NONE {
                     fields = TelemetryFields::DEFAULT;
                 }
-                let stream = Stream {
-                    interval_ms: interval_ms as u32,
-                    fields,
-                };
+                let stream = Stream { interval_ms: interval_ms as u32, fields };
                 self.streams.set(finger, stream, self.link.now());
             }
             (Some("checksum"), Some(switch)) => self.checksums = switch == "on",

@@ -24,10 +24,7 @@ impl PersonReport {
                 finger: Person::read_finger(reply.word("data")?)?,
             }),
         };
-        Some(Self {
-            person,
-            contacts: reply.number("contacts")?,
-        })
+        Some(Self { person, contacts: reply.number("contacts")? })
     }
 }
 

@@ -150,10 +150,7 @@ impl PlainCommand {
         let known = TelemetryFields::NAMES.iter().enumerate();
         let chosen = known.filter(|(_, name)| names.contains(name));
         let none = TelemetryFields::NONE;
-        Self::Stream(
-            interval_ms,
-            chosen.fold(none, |set, (index, _)| set.with(index)),
-        )
+        Self::Stream(interval_ms, chosen.fold(none, |set, (index, _)| set.with(index)))
     }
 }
 
@@ -188,11 +185,9 @@ impl fmt::Display for PlainCommand {
             Self::ContactLaw(ContactLaw::NOMINAL) => {
                 write!(f, "contact {NOMINAL_CONTACT_LAW_WORD}")
             }
-            Self::ContactLaw(law) => write!(
-                f,
-                "contact {:.4} {:.0} {:.1}",
-                law.exponent, law.hardness_pa, law.gap_w_m2k
-            ),
+            Self::ContactLaw(law) => {
+                write!(f, "contact {:.4} {:.0} {:.1}", law.exponent, law.hardness_pa, law.gap_w_m2k)
+            }
             Self::Mode(mode) => {
                 write!(f, "mode {}", word_in(&CONTACT_MODEL_WORDS, mode))
             }
@@ -208,18 +203,8 @@ impl fmt::Display for PlainCommand {
                 f.write_str("play ")?;
                 write_order(f, order)
             }
-            Self::Pulse {
-                base_c,
-                target_c,
-                rise_k_s,
-                hold_s,
-                return_k_s,
-                order,
-            } => {
-                write!(
-                    f,
-                    "pulse {base_c} {target_c} {rise_k_s} {hold_s} {return_k_s} "
-                )?;
+            Self::Pulse { base_c, target_c, rise_k_s, hold_s, return_k_s, order } => {
+                write!(f, "pulse {base_c} {target_c} {rise_k_s} {hold_s} {return_k_s} ")?;
                 write_order(f, order)
             }
             Self::Skin(Some(celsius)) => write!(f, "skin {celsius}"),
@@ -272,11 +257,7 @@ impl fmt::Display for PlainCommand {
             Self::ForgetPerson(code) => write!(f, "forget person {code}"),
             Self::Store(order) => f.write_str(order.name()),
             Self::UploadBegin(rows, direct_m2k_w) => {
-                write!(
-                    f,
-                    "upload begin object {rows} {:.9}",
-                    MM2_PER_M2 * direct_m2k_w
-                )
+                write!(f, "upload begin object {rows} {:.9}", MM2_PER_M2 * direct_m2k_w)
             }
             Self::UploadRow(index, row) => {
                 let gain_mm2k_j = MM2_PER_M2 * row.gain_m2k_j;
@@ -298,10 +279,7 @@ impl Command for PlainCommand {
 /// The commands that upload an object: begin, one row for each relaxation, and commit.
 pub fn upload(object: &Impedance<'_>) -> Vec<PlainCommand> {
     let relaxations = object.relaxations;
-    let mut commands = vec![PlainCommand::UploadBegin(
-        relaxations.len(),
-        object.direct_m2k_w,
-    )];
+    let mut commands = vec![PlainCommand::UploadBegin(relaxations.len(), object.direct_m2k_w)];
     let rows = relaxations.iter().enumerate();
     commands.extend(rows.map(|(index, row)| PlainCommand::UploadRow(index, *row)));
     with_commit(commands)
@@ -331,10 +309,7 @@ fn write_order(f: &mut fmt::Formatter<'_>, order: &PlayOrder) -> fmt::Result {
 
 /// The lines of an upload with their commit.
 fn with_commit(mut commands: Vec<PlainCommand>) -> Vec<PlainCommand> {
-    let sent: String = commands
-        .iter()
-        .map(|command| format!("{command}\n"))
-        .collect();
+    let sent: String = commands.iter().map(|command| format!("{command}\n")).collect();
     commands.push(PlainCommand::UploadCommit(CRC_32.checksum(sent.as_bytes())));
     commands
 }

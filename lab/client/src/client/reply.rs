@@ -219,10 +219,9 @@ impl FromStr for SettingsLine {
     /// Reads a line as the device would.
     fn from_str(line: &str) -> Result<Self, String> {
         match Request::parse(line, &Settings::default()) {
-            Ok(Request::Commissioning(SessionRequest::Set(setting))) => Ok(Self {
-                text: line.into(),
-                setting,
-            }),
+            Ok(Request::Commissioning(SessionRequest::Set(setting))) => {
+                Ok(Self { text: line.into(), setting })
+            }
             Ok(_) => Err(format!("'{line}'; lines of settings begin with 'set'")),
             Err(error) => Err(format!("'{line}': {error}")),
         }
@@ -272,11 +271,7 @@ pub struct SelfTestReport {
 }
 
 fn self_test_result(word: &str) -> Option<SelfTestResult> {
-    let known = [
-        SelfTestResult::None,
-        SelfTestResult::Running,
-        SelfTestResult::Passed,
-    ];
+    let known = [SelfTestResult::None, SelfTestResult::Running, SelfTestResult::Passed];
     let known = known.into_iter().find(|known| known.name() == word);
     known.or_else(|| fault(word).map(SelfTestResult::Failed))
 }

@@ -30,10 +30,7 @@ pub struct TelemetryStreams {
 impl Default for TelemetryStreams {
     fn default() -> Self {
         Self {
-            all: Stream {
-                interval_ms: 0,
-                fields: TelemetryFields::DEFAULT,
-            },
+            all: Stream { interval_ms: 0, fields: TelemetryFields::DEFAULT },
             own: BTreeMap::new(),
             changed_at: BTreeMap::new(),
             last: BTreeMap::new(),

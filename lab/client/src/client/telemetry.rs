@@ -42,10 +42,7 @@ pub struct Telemetry {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface_c: Option<f64>,
     /// What is known of the finger by its flux.
-    #[serde(
-        serialize_with = "knowledge_word_if_known",
-        skip_serializing_if = "Option::is_none"
-    )]
+    #[serde(serialize_with = "knowledge_word_if_known", skip_serializing_if = "Option::is_none")]
     pub finger: Option<FingerKnowledge>,
     /// Whether the set-point was limited to its safe range.
     pub limited: bool,

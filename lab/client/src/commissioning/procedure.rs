@@ -58,12 +58,7 @@ pub fn commission<L: Link>(
     finger: Option<u8>,
     surroundings: &mut dyn Surroundings<L>,
 ) -> Result<CommissioningRecord, CommissionError> {
-    let mut procedure = Procedure {
-        client,
-        finger,
-        surroundings,
-        points: Vec::new(),
-    };
+    let mut procedure = Procedure { client, finger, surroundings, points: Vec::new() };
     let done = procedure.run();
     if done.is_err() {
         // The reason why it failed is reported; a link that is gone fails here, too.
@@ -82,12 +77,7 @@ pub fn commission_flux_sensor<L: Link>(
     finger: Option<u8>,
     surroundings: &mut dyn Surroundings<L>,
 ) -> Result<(FluxCalibration, Vec<String>), CommissionError> {
-    let mut procedure = Procedure {
-        client,
-        finger,
-        surroundings,
-        points: Vec::new(),
-    };
+    let mut procedure = Procedure { client, finger, surroundings, points: Vec::new() };
     let found = procedure.calibrate_flux()?;
     Ok((found, procedure.save()?))
 }
@@ -169,10 +159,7 @@ pub fn arm<L: Link>(client: &mut Client<L>, finger: Option<u8>) -> Result<(), Co
             StateName::SelfTest => client.wait(Duration::from_millis(POLL_MS))?,
             other => {
                 let fault = other.fault().map_or("-", |fault| fault.name());
-                return Err(CommissionError::NotArmed {
-                    state: other.name(),
-                    fault,
-                });
+                return Err(CommissionError::NotArmed { state: other.name(), fault });
             }
         }
     }
@@ -193,10 +180,7 @@ fn hold_temperatures_c() -> Vec<f64> {
     (0..4096 / CODES_PER_ADC_SEGMENT)
         .flat_map(|segment| {
             let border = segment * CODES_PER_ADC_SEGMENT;
-            [
-                border + FROM_BORDER_CODES,
-                border + CODES_PER_ADC_SEGMENT - FROM_BORDER_CODES,
-            ]
+            [border + FROM_BORDER_CODES, border + CODES_PER_ADC_SEGMENT - FROM_BORDER_CODES]
         })
         .map(|code| thermistor.temperature_c(f64::from(code) * 16.0))
         .filter(|t_c| (coldest_c..=warmest_c).contains(t_c))
@@ -232,19 +216,13 @@ impl<L: Link> Procedure<'_, L> {
             flux = Some(self.calibrate_flux()?);
             settings = self.save()?;
         }
-        Ok(CommissioningRecord {
-            settings,
-            flux,
-            points: std::mem::take(&mut self.points),
-            tile,
-        })
+        Ok(CommissioningRecord { settings, flux, points: std::mem::take(&mut self.points), tile })
     }
 
     fn calibrate_flux(&mut self) -> Result<FluxCalibration, CommissionError> {
         self.start_step("calibrate the heat-flux sensor with a phantom");
         let found = calibrate_flux(self.client, self.finger, self.surroundings)?;
-        self.surroundings
-            .notice(&CommissioningEvent::FluxCalibrated(found));
+        self.surroundings.notice(&CommissioningEvent::FluxCalibrated(found));
         Ok(found)
     }
 
@@ -258,8 +236,7 @@ impl<L: Link> Procedure<'_, L> {
     }
 
     fn start_step(&mut self, what: &'static str) {
-        self.surroundings
-            .notice(&CommissioningEvent::StepStarted(what));
+        self.surroundings.notice(&CommissioningEvent::StepStarted(what));
     }
 
     fn wait_ms(&mut self, ms: u64) -> Result<(), CommissionError> {
@@ -273,14 +250,11 @@ impl<L: Link> Procedure<'_, L> {
             self.wait_ms(1000)?;
             match self.client.ask_finger(self.finger, &TuneResult) {
                 Ok(tile) => {
-                    self.surroundings
-                        .notice(&CommissioningEvent::TileIdentified(tile));
+                    self.surroundings.notice(&CommissioningEvent::TileIdentified(tile));
                     return Ok(tile);
                 }
                 Err(error)
-                    if error
-                        .refusal()
-                        .is_some_and(|why| why.starts_with("tuning goes on")) => {}
+                    if error.refusal().is_some_and(|why| why.starts_with("tuning goes on")) => {}
                 Err(error) => return Err(error.into()),
             }
         }
@@ -294,10 +268,8 @@ impl<L: Link> Procedure<'_, L> {
             let distance_k = (hold_c - self.reference_c(ThermistorId::Display)?).abs();
             // The decimals that a person at the bench is told.
             let sent_c = (hold_c * 100.0).round() / 100.0;
-            self.client
-                .ask_finger(self.finger, &PlainCommand::Hold(sent_c, None))?;
-            self.surroundings
-                .notice(&CommissioningEvent::HoldStarted(hold_c));
+            self.client.ask_finger(self.finger, &PlainCommand::Hold(sent_c, None))?;
+            self.surroundings.notice(&CommissioningEvent::HoldStarted(hold_c));
             self.wait_ms((distance_k * MS_PER_DEGREE) as u64 + SETTLE_MS)?;
             let mut before_c = f64::NAN;
             for _ in 0..RETRIES {
@@ -334,8 +306,7 @@ impl<L: Link> Procedure<'_, L> {
     ) -> Result<(), CommissionError> {
         let (mut points, mut why) = (0, String::new());
         for bath_c in baths_c {
-            self.surroundings
-                .put_into_bath(self.client, thermistor, bath_c)?;
+            self.surroundings.put_into_bath(self.client, thermistor, bath_c)?;
             self.wait_ms(BATH_MS)?;
             loop {
                 match self.calibrate_point(thermistor)? {
@@ -365,10 +336,7 @@ impl<L: Link> Procedure<'_, L> {
     ) -> Result<Option<String>, CommissionError> {
         let reference_c = self.reference_c(thermistor)?;
         let sensor = thermistor_word(thermistor);
-        let command = Calibrate {
-            thermistor,
-            reference_c,
-        };
+        let command = Calibrate { thermistor, reference_c };
         match self.client.ask_finger(self.finger, &command) {
             Ok(fit) => {
                 let point = CalibrationPoint {
@@ -377,8 +345,7 @@ impl<L: Link> Procedure<'_, L> {
                     points: fit.points,
                     worst_mk: fit.worst_mk,
                 };
-                self.surroundings
-                    .notice(&CommissioningEvent::PointAccepted(point.clone()));
+                self.surroundings.notice(&CommissioningEvent::PointAccepted(point.clone()));
                 self.points.push(point);
                 Ok(None)
             }
@@ -392,10 +359,8 @@ impl<L: Link> Procedure<'_, L> {
                     return Err(error.into());
                 }
                 let why = why.to_owned();
-                self.surroundings.notice(&CommissioningEvent::PointRefused {
-                    sensor,
-                    why: why.clone(),
-                });
+                self.surroundings
+                    .notice(&CommissioningEvent::PointRefused { sensor, why: why.clone() });
                 Ok(Some(why))
             }
         }
@@ -411,12 +376,7 @@ fn require_points(
 ) -> Result<(), CommissionError> {
     if points < needed {
         let sensor = thermistor_word(thermistor);
-        return Err(CommissionError::FewPoints {
-            sensor,
-            points,
-            needed,
-            why,
-        });
+        return Err(CommissionError::FewPoints { sensor, points, needed, why });
     }
     Ok(())
 }

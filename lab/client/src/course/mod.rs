@@ -158,21 +158,12 @@ impl Course {
             let reached_s = behind_k / (approach_k_s - slope_k_s);
             if behind_k != 0.0 && reached_s > 0.0 && reached_s < span_s {
                 let t_s = from.t_s + reached_s;
-                at = CoursePoint {
-                    t_s,
-                    celsius: from.celsius + slope_k_s * reached_s,
-                };
+                at = CoursePoint { t_s, celsius: from.celsius + slope_k_s * reached_s };
                 points.push(at);
                 let rest_k_s = slope_k_s.clamp(-limit_k_s, limit_k_s);
-                at = CoursePoint {
-                    t_s: to.t_s,
-                    celsius: at.celsius + rest_k_s * (to.t_s - t_s),
-                };
+                at = CoursePoint { t_s: to.t_s, celsius: at.celsius + rest_k_s * (to.t_s - t_s) };
             } else {
-                at = CoursePoint {
-                    t_s: to.t_s,
-                    celsius: at.celsius + approach_k_s * span_s,
-                };
+                at = CoursePoint { t_s: to.t_s, celsius: at.celsius + approach_k_s * span_s };
             }
             if (at.celsius - to.celsius).abs() < 1e-9 {
                 at.celsius = to.celsius;
@@ -206,9 +197,7 @@ impl Course {
 
     /// The commands that upload the course to a device, with absolute temperatures.
     pub fn upload_commands(&self) -> Vec<PlainCommand> {
-        let points: Vec<_> = (self.0.iter())
-            .map(|point| (point.t_s, point.celsius))
-            .collect();
+        let points: Vec<_> = (self.0.iter()).map(|point| (point.t_s, point.celsius)).collect();
         upload_course(TemperatureKind::Absolute, &points)
     }
 }

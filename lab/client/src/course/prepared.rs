@@ -29,11 +29,7 @@ impl Prepared {
     /// Reduces and rounds a course.
     pub fn new(whole: Course) -> Self {
         let points = reduce(&whole, COURSE_POINTS_MAX).course.rounded();
-        Self {
-            error_k: points.largest_difference_k(&whole),
-            points,
-            whole,
-        }
+        Self { error_k: points.largest_difference_k(&whole), points, whole }
     }
 
     /// This course if its error is at most [`REDUCTION_ERROR_MAX_K`], or if a coarse one is asked for.
@@ -44,8 +40,6 @@ impl Prepared {
         if coarse || self.error_k <= REDUCTION_ERROR_MAX_K {
             return Ok(self);
         }
-        Err(TooCoarse {
-            error_k: self.error_k,
-        })
+        Err(TooCoarse { error_k: self.error_k })
     }
 }

@@ -66,11 +66,8 @@ fn parse_course(
     path: &Path,
     selection: Selection<'_>,
 ) -> Result<Course, CourseFileError> {
-    let wrong = |line: u64, problem: String| CourseFileError::Line {
-        file: path.into(),
-        line,
-        problem,
-    };
+    let wrong =
+        |line: u64, problem: String| CourseFileError::Line { file: path.into(), line, problem };
     // A byte order mark is that of a spreadsheet.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut reader = csv::ReaderBuilder::new()
@@ -104,10 +101,7 @@ fn parse_course(
         let number = |column: usize, what: &str| -> Result<f64, CourseFileError> {
             let cell = record.get(column).unwrap_or("");
             (cell.parse().ok().filter(|value: &f64| value.is_finite())).ok_or_else(|| {
-                wrong(
-                    line,
-                    format!("{what} `{cell}` is no number; a number is allowed"),
-                )
+                wrong(line, format!("{what} `{cell}` is no number; a number is allowed"))
             })
         };
         let mut t_s = number(of.time, TIME)?;
@@ -125,10 +119,7 @@ fn parse_course(
             let (least, most) = ALLOWED_C.into_inner();
             return Err(wrong(
                 line,
-                format!(
-                    "{} {celsius} is out of range; {least} to {most} °C are allowed",
-                    of.name
-                ),
+                format!("{} {celsius} is out of range; {least} to {most} °C are allowed", of.name),
             ));
         }
         match points.last() {
@@ -153,10 +144,7 @@ fn parse_course(
             Some(Columns { force: Some(_), .. }) => "no row with a positive force_n",
             _ => "no row of a time in seconds and a temperature in °C",
         };
-        return Err(wrong(
-            last_line,
-            format!("{problem}; at least two are needed"),
-        ));
+        return Err(wrong(last_line, format!("{problem}; at least two are needed")));
     };
     if first.t_s > 0.0 {
         points.insert(0, CoursePoint { t_s: 0.0, ..first });
@@ -183,15 +171,7 @@ impl Columns {
         let names: Vec<&str> = first.iter().collect();
         if names.iter().all(|cell| cell.parse::<f64>().is_ok()) {
             return match (names.len(), selection.column) {
-                (2, None) => Ok((
-                    Self {
-                        time: 0,
-                        celsius: 1,
-                        name: CELSIUS,
-                        force: None,
-                    },
-                    false,
-                )),
+                (2, None) => Ok((Self { time: 0, celsius: 1, name: CELSIUS, force: None }, false)),
                 (2, Some(column)) => Err(format!(
                     "there is no column `{column}`: the file has no header; two columns of seconds and °C are allowed \
                      without one"
@@ -205,38 +185,22 @@ impl Columns {
         let missing =
             |name: &str| format!("there is no column `{name}` among {}", names.join(", "));
         let time = position(TIME).ok_or_else(|| {
-            format!(
-                "{}; a header with {TIME} and a temperature is allowed",
-                missing(TIME)
-            )
+            format!("{}; a header with {TIME} and a temperature is allowed", missing(TIME))
         })?;
         let (celsius, name) = match selection.column {
-            Some(column) => (
-                position(column).ok_or_else(|| missing(column))?,
-                "temperature",
-            ),
+            Some(column) => (position(column).ok_or_else(|| missing(column))?, "temperature"),
             None => (position(CELSIUS).map(|i| (i, CELSIUS)))
                 .or_else(|| position(DISPLAY).map(|i| (i, DISPLAY)))
                 .ok_or_else(|| format!("{}, nor `{DISPLAY}`", missing(CELSIUS)))?,
         };
-        Ok((
-            Self {
-                time,
-                celsius,
-                name,
-                force: position(FORCE),
-            },
-            true,
-        ))
+        Ok((Self { time, celsius, name, force: position(FORCE) }, true))
     }
 }
 
 /// What the CSV reader objects to.
 fn csv_problem(error: &csv::Error) -> String {
     match error.kind() {
-        csv::ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } => format!(
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => format!(
             "{len} columns, and {expected_len} in the first row; the same number in all rows is allowed"
         ),
         _ => error.to_string(),
@@ -263,28 +227,19 @@ mod tests {
         let points = Ok(vec![(0.0, 30.0), (0.5, 28.0), (2.0, 29.5)]);
         assert_eq!(parse("t_s,celsius\n0,30\n0.5,28\n2,29.5\n"), points);
         assert_eq!(parse("0,30\n0.5, 28\n# a remark\n2,29.5"), points);
-        assert_eq!(
-            parse("\u{feff}celsius,t_s\r\n30,0\r\n28,0.5\r\n29.5,2\r\n"),
-            points
-        );
+        assert_eq!(parse("\u{feff}celsius,t_s\r\n30,0\r\n28,0.5\r\n29.5,2\r\n"), points);
     }
 
     #[test]
     fn a_file_that_begins_late_holds_its_first_temperature_from_the_landing_on() {
-        assert_eq!(
-            parse("1,30\n2,28"),
-            Ok(vec![(0.0, 30.0), (1.0, 30.0), (2.0, 28.0)])
-        );
+        assert_eq!(parse("1,30\n2,28"), Ok(vec![(0.0, 30.0), (1.0, 30.0), (2.0, 28.0)]));
     }
 
     #[test]
     fn a_trace_is_played_from_landing_to_lift() {
         let trace = "t_s,force_n,display_c,skin_c\n0,0,33,34\n1,2,26,34\n1.5,2,25,28\n2,0,24,27\n3,2,23,26\n";
         assert_eq!(parse(trace), Ok(vec![(0.0, 26.0), (0.5, 25.0)]));
-        assert_eq!(
-            select(trace, Some("skin_c")),
-            Ok(vec![(0.0, 34.0), (0.5, 28.0)])
-        );
+        assert_eq!(select(trace, Some("skin_c")), Ok(vec![(0.0, 34.0), (0.5, 28.0)]));
     }
 
     #[test]
@@ -294,42 +249,21 @@ mod tests {
                 "",
                 "c.csv:1: no row of a time in seconds and a temperature in °C; at least two are needed",
             ),
-            (
-                "0,30\n",
-                "c.csv:1: one row is no course; at least two are needed",
-            ),
+            ("0,30\n", "c.csv:1: one row is no course; at least two are needed"),
             (
                 "t_s,celsius\n",
                 "c.csv:1: no row of a time in seconds and a temperature in °C; at least two are needed",
             ),
-            (
-                "0,30\n1,x\n",
-                "c.csv:2: celsius `x` is no number; a number is allowed",
-            ),
-            (
-                "0,30\n1,NaN\n",
-                "c.csv:2: celsius `NaN` is no number; a number is allowed",
-            ),
-            (
-                "0,30\nsoon,29\n",
-                "c.csv:2: t_s `soon` is no number; a number is allowed",
-            ),
-            (
-                "0,30\n1,50\n",
-                "c.csv:2: celsius 50 is out of range; 15 to 42 °C are allowed",
-            ),
-            (
-                "0,30\n1,14.9\n",
-                "c.csv:2: celsius 14.9 is out of range; 15 to 42 °C are allowed",
-            ),
+            ("0,30\n1,x\n", "c.csv:2: celsius `x` is no number; a number is allowed"),
+            ("0,30\n1,NaN\n", "c.csv:2: celsius `NaN` is no number; a number is allowed"),
+            ("0,30\nsoon,29\n", "c.csv:2: t_s `soon` is no number; a number is allowed"),
+            ("0,30\n1,50\n", "c.csv:2: celsius 50 is out of range; 15 to 42 °C are allowed"),
+            ("0,30\n1,14.9\n", "c.csv:2: celsius 14.9 is out of range; 15 to 42 °C are allowed"),
             (
                 "0,30\n1,29\n1,28\n",
                 "c.csv:3: t_s 1 is not after 1, that of the row before; times that rise are allowed",
             ),
-            (
-                "-1,30\n",
-                "c.csv:1: t_s -1 is before the landing; 0 s and later is allowed",
-            ),
+            ("-1,30\n", "c.csv:1: t_s -1 is before the landing; 0 s and later is allowed"),
             (
                 "0,30\n1\n",
                 "c.csv:2: 1 columns, and 2 in the first row; the same number in all rows is allowed",
@@ -358,9 +292,6 @@ mod tests {
             Err("c.csv:1: there is no column `skin_c` among t_s, celsius".into())
         );
         let none = read_course(Path::new("no-such-file.csv"), Selection::default());
-        assert!(
-            matches!(none, Err(CourseFileError::Unreadable { .. })),
-            "{none:?}"
-        );
+        assert!(matches!(none, Err(CourseFileError::Unreadable { .. })), "{none:?}");
     }
 }

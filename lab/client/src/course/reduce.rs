@@ -27,10 +27,7 @@ pub fn reduce(course: &Course, points_max: usize) -> Reduced {
     let points = course.points();
     let points_max = points_max.max(2);
     if points.len() <= points_max {
-        return Reduced {
-            course: course.clone(),
-            error_k: 0.0,
-        };
+        return Reduced { course: course.clone(), error_k: 0.0 };
     }
     let candidates = thinned(points);
     let chosen = |indices: &[usize]| {
@@ -55,10 +52,7 @@ pub fn reduce(course: &Course, points_max: usize) -> Reduced {
             None => too_little_k = tolerance_k,
         }
     }
-    Reduced {
-        error_k: best.largest_difference_k(course),
-        course: best,
-    }
+    Reduced { error_k: best.largest_difference_k(course), course: best }
 }
 
 /// The points that may be chosen.

@@ -24,10 +24,7 @@ fn a_refusal_has_the_devices_text() {
     let mut client = knows(&[("start", "err start needs arm first")]);
     let error = client.ask(&PlainCommand::Start).unwrap_err();
     assert_eq!(error.refusal(), Some("start needs arm first"));
-    assert_eq!(
-        error.to_string(),
-        "the device answers 'start' with 'err start needs arm first'"
-    );
+    assert_eq!(error.to_string(), "the device answers 'start' with 'err start needs arm first'");
 }
 
 #[test]
@@ -35,10 +32,7 @@ fn a_device_that_does_not_answer_is_given_up_after_two_seconds() {
     let mut client = FakeDevice::client(|_| Vec::new());
     let error = client.ask(&PlainCommand::Arm).unwrap_err();
     assert!(matches!(error, ClientError::TimedOut { .. }), "{error}");
-    assert_eq!(
-        error.to_string(),
-        "the device does not answer 'arm' within 2 s"
-    );
+    assert_eq!(error.to_string(), "the device does not answer 'arm' within 2 s");
 }
 
 /// Without this, every answer after a lost second would be taken for that of the line after it.
@@ -92,9 +86,7 @@ fn the_word_that_synchronizes_has_20_characters_and_is_another_each_time() {
 #[test]
 fn what_is_no_answer_is_shown() {
     let garbage = |_: &str| answers("\u{fffd}\u{fffd}ok?\u{1}");
-    let error = FakeDevice::client(garbage)
-        .ask(&PlainCommand::Arm)
-        .unwrap_err();
+    let error = FakeDevice::client(garbage).ask(&PlainCommand::Arm).unwrap_err();
     assert!(matches!(error, ClientError::NotUnderstood { .. }));
     assert!(error.to_string().contains("ok?"), "{error}");
     // An answer of another form.
@@ -113,9 +105,7 @@ fn what_is_no_answer_is_shown() {
 #[test]
 fn garbage_before_an_answer_is_counted_and_skipped() {
     let mut client = FakeDevice::client(|_| {
-        ["", "rtfm", "T 12 armed 3", "k", "ok"]
-            .map(|line| (1, line.to_owned()))
-            .into()
+        ["", "rtfm", "T 12 armed 3", "k", "ok"].map(|line| (1, line.to_owned())).into()
     });
     client.ask(&PlainCommand::Arm).unwrap();
     assert_eq!(client.counts().damaged, 3);
@@ -131,10 +121,7 @@ fn the_answer_of_another_finger_is_not_taken() {
     ]);
     client.ask_finger(Some(2), &PlainCommand::Arm).unwrap();
     assert!(client.ask_finger(Some(3), &PlainCommand::Arm).is_err());
-    assert_eq!(
-        client.ask(&PlainCommand::Abort).unwrap_err().refusal(),
-        Some("busy")
-    );
+    assert_eq!(client.ask(&PlainCommand::Abort).unwrap_err().refusal(), Some("busy"));
 }
 
 #[test]
@@ -176,10 +163,7 @@ fn a_client_that_attaches_ends_the_line_of_its_predecessor_and_skips_its_answers
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
     // An interruption ends one wait, and the device can be told to stop.
     requested.store(true, Ordering::Relaxed);
-    assert_eq!(
-        client.wait(Duration::from_secs(5)),
-        Err(LinkError::Interrupted)
-    );
+    assert_eq!(client.wait(Duration::from_secs(5)), Err(LinkError::Interrupted));
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
 }
 
@@ -202,20 +186,13 @@ fn lines_arrive_in_parts_and_endless_ones_do_not_fill_the_memory() {
 #[test]
 fn with_checksums_damaged_answers_are_not_taken() {
     // Checksums by hand: the exclusive or of all bytes, as in NMEA 0183.
-    let sum = |text: &str| {
-        format!(
-            "{text}*{:02X}",
-            text.bytes().fold(0, |sum, byte| sum ^ byte)
-        )
-    };
+    let sum = |text: &str| format!("{text}*{:02X}", text.bytes().fold(0, |sum, byte| sum ^ byte));
     assert_eq!(sum("ok"), "ok*04");
     let mut client = FakeDevice::client(move |line| match line {
         "checksum on" => answers("ok*04"),
-        "law*7A" => vec![
-            (1, "ok law=pi*00".into()),
-            (2, "ok law=pi".into()),
-            (3, sum("ok law=model")),
-        ],
+        "law*7A" => {
+            vec![(1, "ok law=pi*00".into()), (2, "ok law=pi".into()), (3, sum("ok law=model"))]
+        }
         "checksum off*42" => answers("ok"),
         "law" => answers("ok law=pi"),
         other => answers(&format!("err unknown command '{other}'")),
@@ -232,9 +209,7 @@ fn abort_is_sent_to_a_device_whose_answers_do_not_come_through() {
     let mut client = FakeDevice::client(|_| Vec::new());
     client.ask(&PlainCommand::Hold(41.0, None)).unwrap_err();
     client.ask(&PlainCommand::Abort).unwrap_err();
-    client
-        .ask_finger(Some(2), &PlainCommand::Abort)
-        .unwrap_err();
+    client.ask_finger(Some(2), &PlainCommand::Abort).unwrap_err();
     let sent = &client.link().sent;
     for abort in ["abort", "@2 abort"] {
         assert!(sent.iter().any(|(_, line)| line == abort), "{sent:?}");
@@ -255,11 +230,7 @@ fn a_device_that_restarts_while_checksums_are_on_is_reached_again() {
             other => format!("err unknown command '{other}'; known: id"),
         };
         let sum = answer.bytes().fold(0, |sum, byte| sum ^ byte);
-        answers(&if on {
-            format!("{answer}*{sum:02X}")
-        } else {
-            answer
-        })
+        answers(&if on { format!("{answer}*{sum:02X}") } else { answer })
     });
     client.ask(&PlainCommand::Checksum(true)).unwrap();
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
@@ -289,10 +260,7 @@ fn only_questions_and_numbered_lines_are_sent_again_after_a_damaged_line() {
         client.ask(&PlainCommand::Checksum(true)).unwrap();
         let accepted = client.query(line).unwrap() == "ok";
         let sent = &client.link().sent;
-        let times = sent
-            .iter()
-            .filter(|(_, sent)| sent.starts_with(line))
-            .count();
+        let times = sent.iter().filter(|(_, sent)| sent.starts_with(line)).count();
         (times, accepted)
     };
     for line in [
@@ -332,33 +300,16 @@ fn events_and_telemetry_of_chosen_fields_are_read() {
     client.ask(&PlainCommand::Stream(5, fields)).unwrap();
     client.ask(&PlainCommand::Events(true)).unwrap();
     client.link().sends(1, "E 1000 437 trigger");
-    client
-        .link()
-        .sends(2, "T 1005 stimulus 30.50000 -1.250 limited");
-    let received = client
-        .next_telemetry(Duration::from_millis(10))
-        .unwrap()
-        .unwrap();
+    client.link().sends(2, "T 1005 stimulus 30.50000 -1.250 limited");
+    let received = client.next_telemetry(Duration::from_millis(10)).unwrap().unwrap();
     let telemetry = received.telemetry;
-    assert_eq!(
-        (telemetry.setpoint_c, telemetry.display_c),
-        (Some(30.5), None)
-    );
+    assert_eq!((telemetry.setpoint_c, telemetry.display_c), (Some(30.5), None));
     assert!(telemetry.limited && telemetry.state == StateName::Stimulus);
-    assert_eq!(
-        (telemetry.demand_a, telemetry.current_a),
-        (Some(-1.25), None)
-    );
+    assert_eq!((telemetry.demand_a, telemetry.current_a), (Some(-1.25), None));
     assert_eq!(telemetry.evaluations, None);
-    assert_eq!(
-        (telemetry.flux_w_m2, telemetry.surface_c, telemetry.finger),
-        (None, None, None)
-    );
+    assert_eq!((telemetry.flux_w_m2, telemetry.surface_c, telemetry.finger), (None, None, None));
     let event = client.take_event().unwrap().event;
-    assert_eq!(
-        (event.tick, event.microseconds, event.kind),
-        (1000, 437, DeviceEventKind::Trigger)
-    );
+    assert_eq!((event.tick, event.microseconds, event.kind), (1000, 437, DeviceEventKind::Trigger));
     assert_eq!(client.take_event(), None);
     assert_eq!(client.counts().damaged, 0);
 }
@@ -366,10 +317,8 @@ fn events_and_telemetry_of_chosen_fields_are_read() {
 #[test]
 fn a_course_is_uploaded_as_the_device_reads_it() {
     let points = [(0.0, 33.0), (2.0, 25.0), (12.0, 25.0)];
-    let lines: Vec<_> = upload_course(TemperatureKind::Absolute, &points)
-        .iter()
-        .map(ToString::to_string)
-        .collect();
+    let lines: Vec<_> =
+        upload_course(TemperatureKind::Absolute, &points).iter().map(ToString::to_string).collect();
     // The checksum is that of Python's `zlib.crc32`.
     assert_eq!(
         lines,
@@ -408,10 +357,7 @@ fn the_answers_for_diagnosis_are_read() {
         ),
     ]);
     let identity = client.ask(&QueryIdentity).unwrap();
-    assert_eq!(
-        (identity.fingers, identity.protocol, identity.scan_hz),
-        (1, Some(1), 16_000)
-    );
+    assert_eq!((identity.fingers, identity.protocol, identity.scan_hz), (1, Some(1), 16_000));
     assert!(identity.can("raw") && !identity.can("ra") && !identity.can("board"));
     let test = client.ask(&QuerySelfTest).unwrap();
     assert_eq!(test.result, SelfTestResult::Failed(Fault::Comparator));
@@ -456,10 +402,7 @@ fn the_answers_for_diagnosis_are_read() {
     for finger in FingerKnowledge::ALL {
         let word = finger.name();
         let report = FluxReport {
-            sensor: FluxSensor {
-                zero_counts: 2051.25,
-                ..FluxSensor::DESIGNED
-            },
+            sensor: FluxSensor { zero_counts: 2051.25, ..FluxSensor::DESIGNED },
             w_m2: Some(-3.2),
             finger,
         };
@@ -502,10 +445,7 @@ fn every_fault_of_the_device_is_known_in_its_state() {
 fn persons_are_read_and_written() {
     const DATA: &str = "00080000000400012020202040C0000000000200";
     let code = PersonCode::new("P07").unwrap();
-    let person = Person {
-        code,
-        finger: Person::read_finger(DATA).unwrap(),
-    };
+    let person = Person { code, finger: Person::read_finger(DATA).unwrap() };
     assert_eq!(person.finger[..4], [0, 8, 0, 0]);
     assert_eq!(person_data(&person), DATA);
     for wrong in [&DATA[1..], &DATA[2..], "", &DATA.replace('4', "g")] {
@@ -522,15 +462,9 @@ fn persons_are_read_and_written() {
         ("person none", "ok"),
         ("forget person P07", "ok"),
     ]);
-    let enrolled = PersonReport {
-        person: Some(person),
-        contacts: 2,
-    };
+    let enrolled = PersonReport { person: Some(person), contacts: 2 };
     assert_eq!(client.ask(&EnrolPerson(code)).unwrap(), enrolled);
-    let unknown = PersonReport {
-        person: None,
-        contacts: 1,
-    };
+    let unknown = PersonReport { person: None, contacts: 1 };
     assert_eq!(client.ask(&QueryPerson).unwrap(), unknown);
     let codes = client.ask(&QueryPersons).unwrap();
     assert_eq!(codes, [code, PersonCode::new("X").unwrap()]);
@@ -552,9 +486,7 @@ fn fields_of_the_flux_sensor_are_read() {
     let fields = [5, 9, 10, 11].into_iter();
     let fields = fields.fold(TelemetryFields::NONE, TelemetryFields::with);
     client.ask(&PlainCommand::Stream(10, fields)).unwrap();
-    client
-        .link()
-        .sends(1, "T 10 stimulus 0.512 -1234.5 24.0125 wet -");
+    client.link().sends(1, "T 10 stimulus 0.512 -1234.5 24.0125 wet -");
     client.link().sends(2, "T 20 stimulus 0.512 - - - -");
     client.link().sends(3, "T 30 stimulus 0.512 1 24 damp -");
     client.wait(Duration::from_millis(10)).unwrap();
@@ -562,10 +494,7 @@ fn fields_of_the_flux_sensor_are_read() {
     let values = |line: Telemetry| (line.force_n, line.flux_w_m2, line.surface_c, line.finger);
     let mut all = FingerKnowledge::ALL.into_iter();
     let known = all.find(|known| known.name() == "wet").unwrap();
-    assert_eq!(
-        next().map(values),
-        Some((Some(0.512), Some(-1234.5), Some(24.0125), Some(known)))
-    );
+    assert_eq!(next().map(values), Some((Some(0.512), Some(-1234.5), Some(24.0125), Some(known))));
     assert_eq!(next().map(values), Some((Some(0.512), None, None, None)));
     assert_eq!(next(), None);
 }

@@ -64,12 +64,7 @@ fn a_restart_begins_a_new_estimate() {
 /// Without checksums a damaged digit passes for a tick.
 #[test]
 fn damaged_ticks_neither_restart_the_estimate_nor_move_it() {
-    for damaged in [
-        &[200_017][..],
-        &[17],
-        &[30_517],
-        &[17, 90_517, 4_000_000_000],
-    ] {
+    for damaged in [&[200_017][..], &[17], &[30_517], &[17, 90_517, 4_000_000_000]] {
         let mut clock = DeviceClock::default();
         observed(&mut clock, 1.0, 10.0, 0, 30);
         let before = clock.time_of(30_000);
@@ -79,10 +74,7 @@ fn damaged_ticks_neither_restart_the_estimate_nor_move_it() {
         assert_eq!(clock.time_of(30_000), before, "{damaged:?}");
         for i in 0..100 {
             let tick = 30_100 + 10 * i;
-            clock.observe(
-                tick,
-                Duration::from_secs_f64(1.0 + 1.000_01e-3 * f64::from(tick)),
-            );
+            clock.observe(tick, Duration::from_secs_f64(1.0 + 1.000_01e-3 * f64::from(tick)));
         }
         assert_eq!(clock.restarts(), 0, "{damaged:?}");
         let error_s = clock.time_of(31_000).unwrap().at_s - 32.000_31;

@@ -28,12 +28,7 @@ fn streaming(interval_ms: u32) -> Client<FakeDevice> {
 #[test]
 fn telemetry_between_lines_and_answers_is_kept_apart_and_in_order() {
     let mut client = FakeDevice::client(|_| {
-        vec![
-            (1, line(10)),
-            (1, line(11)),
-            (1, "ok law=pi".into()),
-            (1, line(12)),
-        ]
+        vec![(1, line(10)), (1, line(11)), (1, "ok law=pi".into()), (1, line(12))]
     });
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
     client.wait(Duration::from_millis(1)).unwrap();
@@ -53,12 +48,9 @@ fn telemetry_between_lines_and_answers_is_kept_apart_and_in_order() {
 
 #[test]
 fn a_finger_is_lifted_below_10_mn_and_nothing_is_said_of_an_unknown_force() {
-    for (force, is_lifted) in [
-        ("0.009", Some(true)),
-        ("0.010", Some(false)),
-        ("2.000", Some(false)),
-        ("-", None),
-    ] {
+    for (force, is_lifted) in
+        [("0.009", Some(true)), ("0.010", Some(false)), ("2.000", Some(false)), ("-", None)]
+    {
         let line = line(1).replace(" 0.001 ", &format!(" {force} "));
         let telemetry = Telemetry::parse(&line).unwrap();
         assert_eq!(telemetry.is_lifted(), is_lifted, "{force}");
@@ -68,51 +60,28 @@ fn a_finger_is_lifted_below_10_mn_and_nothing_is_said_of_an_unknown_force() {
 #[test]
 fn what_the_device_does_not_know_and_why_it_tripped_is_read() {
     let mut client = streaming(1);
-    client.link().sends(
-        1,
-        "@3 T 5 tripped - - 24.10 33.20 24.00 - 0.000 0.000 0 display-open",
-    );
-    client.link().sends(
-        2,
-        "T 6 preset 15.00000 15.2000 24.10 33.20 24.00 0.000 6.000 5.900 9 limited",
-    );
+    client.link().sends(1, "@3 T 5 tripped - - 24.10 33.20 24.00 - 0.000 0.000 0 display-open");
+    client
+        .link()
+        .sends(2, "T 6 preset 15.00000 15.2000 24.10 33.20 24.00 0.000 6.000 5.900 9 limited");
     let wait = Duration::from_millis(5);
     let tripped = client.next_telemetry(wait).unwrap().unwrap();
     assert_eq!(tripped.finger, Some(3));
     assert_eq!(tripped.telemetry.fault(), Some(Fault::DisplayOpen));
-    assert_eq!(
-        (tripped.telemetry.display_c, tripped.telemetry.force_n),
-        (None, None)
-    );
-    assert!(
-        client
-            .next_telemetry(wait)
-            .unwrap()
-            .unwrap()
-            .telemetry
-            .limited
-    );
+    assert_eq!((tripped.telemetry.display_c, tripped.telemetry.force_n), (None, None));
+    assert!(client.next_telemetry(wait).unwrap().unwrap().telemetry.limited);
 }
 
 #[test]
 fn a_client_that_waits_gives_a_sign_of_life_while_the_device_streams_and_only_then() {
-    let mut client = knows(&[
-        ("stream 50", "ok"),
-        ("stream 0", "ok"),
-        ("law", "ok law=pi"),
-    ]);
+    let mut client = knows(&[("stream 50", "ok"), ("stream 0", "ok"), ("law", "ok law=pi")]);
     client.wait(Duration::from_secs(10)).unwrap();
     assert!(client.link().blank_ms().is_empty());
     client.ask(&PlainCommand::stream(50)).unwrap();
     let from_ms = client.link().sent[0].0.as_millis();
     client.wait(Duration::from_secs(7)).unwrap();
     client.query("law").unwrap();
-    assert!(
-        client
-            .next_telemetry(Duration::from_secs(8))
-            .unwrap()
-            .is_none()
-    );
+    assert!(client.next_telemetry(Duration::from_secs(8)).unwrap().is_none());
     let mut last_ms = from_ms;
     for (at, _) in &client.link().sent {
         assert!(at.as_millis() - last_ms.min(at.as_millis()) < HOST_SILENT_MS * 3 / 4);
@@ -212,12 +181,7 @@ fn a_line_that_waited_while_its_fields_were_changed_is_dropped() {
     client.wait(Duration::from_millis(60)).unwrap();
     let mut taken = Vec::new();
     while let Some(line) = client.next_telemetry(Duration::ZERO).unwrap() {
-        let Telemetry {
-            tick,
-            setpoint_c,
-            display_c,
-            ..
-        } = line.telemetry;
+        let Telemetry { tick, setpoint_c, display_c, .. } = line.telemetry;
         taken.push((tick, setpoint_c, display_c));
     }
     assert_eq!(taken, [(230, None, Some(32.9)), (235, None, Some(32.9))]);

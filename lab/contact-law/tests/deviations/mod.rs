@@ -77,10 +77,7 @@ impl Deviations {
             println!("  R at {force_n} N {:.2?} %", three(percent));
         }
         let (exponent, gap) = (three(&self.exponent), three(&self.gap_w_m2k));
-        println!(
-            "  exponent {exponent:.5?}, gap {gap:.1?} W/(m2 K), taken in {}",
-            self.gaps
-        );
+        println!("  exponent {exponent:.5?}, gap {gap:.1?} W/(m2 K), taken in {}", self.gaps);
         println!("  inside of the intervals: {:?}", self.inside);
         let beyond = |percent: &&f64| **percent > 10.0;
         let beyond: Vec<_> = (self.resistance_percent.iter())

@@ -85,12 +85,7 @@ impl RunningTrial {
         ms: u64,
         setting: &Setting,
     ) -> Result<Self, BenchError> {
-        let Setting {
-            session,
-            options,
-            participant,
-            ..
-        } = setting;
+        let Setting { session, options, participant, .. } = setting;
         let happenings: Vec<Happening> = (options.events.iter())
             .filter(|event| event.is_in(trial.number, attempt))
             .map(|event| event.what.clone())
@@ -155,9 +150,7 @@ impl RunningTrial {
         let mut times = stream("decision");
         let decision_s = times.log_normal(observer.decision_median_s, observer.decision_sigma_ln);
         let rests_on_display = matches!(session.trial.procedure, Procedure::Intervals { .. })
-            || session
-                .rest
-                .is_some_and(|rest| rest.place == RestPlace::Display);
+            || session.rest.is_some_and(|rest| rest.place == RestPlace::Display);
         Ok(Self {
             number: trial.number,
             attempt,
@@ -167,11 +160,7 @@ impl RunningTrial {
             stations: stations?,
             touches,
             reach_ms: milliseconds(reach_s),
-            decision_s: if max_s > 0.0 {
-                decision_s.min(max_s)
-            } else {
-                decision_s
-            },
+            decision_s: if max_s > 0.0 { decision_s.min(max_s) } else { decision_s },
             rests_on_display,
             rest_ms: None,
             land_ms: None,
@@ -255,16 +244,13 @@ impl RunningTrial {
     ) {
         let resting_s = self.rest_ms.filter(|(from_ms, _)| *from_ms <= ms);
         let resting_s = resting_s.map(|(from_ms, until_ms)| {
-            (
-                seconds(ms - from_ms),
-                seconds(until_ms.saturating_sub(from_ms)),
-            )
+            (seconds(ms - from_ms), seconds(until_ms.saturating_sub(from_ms)))
         });
         let touching_s = self.land_ms.filter(|land_ms| *land_ms <= ms);
         let touching_s = touching_s.map(|land_ms| {
-            let lift_s = self.lift_ms.map_or(f64::INFINITY, |lift_ms| {
-                seconds(lift_ms.saturating_sub(land_ms))
-            });
+            let lift_s = self
+                .lift_ms
+                .map_or(f64::INFINITY, |lift_ms| seconds(lift_ms.saturating_sub(land_ms)));
             (seconds(ms - land_ms), lift_s)
         });
         let is_over = self.judged.is_some();
@@ -298,10 +284,7 @@ impl RunningTrial {
                     Some(touch.skin_c())
                 }
             };
-            if let Some(input) = station
-                .skin_sensor
-                .and_then(|finger| inputs.get_mut(finger))
-            {
+            if let Some(input) = station.skin_sensor.and_then(|finger| inputs.get_mut(finger)) {
                 input.skin_elsewhere_c = skin_c;
             }
         }
@@ -316,16 +299,16 @@ impl RunningTrial {
         };
         for what in &self.happenings {
             match what {
-                Happening::Fault {
-                    fault,
-                    from_s,
-                    for_s,
-                } if is_within(Some(self.begin_ms), *from_s, *for_s) => faults.push(*fault),
-                Happening::FaultAfterLanding {
-                    fault,
-                    from_s,
-                    for_s,
-                } if is_within(self.land_ms, *from_s, *for_s) => faults.push(*fault),
+                Happening::Fault { fault, from_s, for_s }
+                    if is_within(Some(self.begin_ms), *from_s, *for_s) =>
+                {
+                    faults.push(*fault)
+                }
+                Happening::FaultAfterLanding { fault, from_s, for_s }
+                    if is_within(self.land_ms, *from_s, *for_s) =>
+                {
+                    faults.push(*fault)
+                }
                 _ => {}
             }
         }
@@ -369,10 +352,7 @@ impl RunningTrial {
             return;
         };
         if ms >= begin_ms + length_ms && self.intervals_k.len() <= usize::from(number) {
-            let felt = self
-                .stations
-                .iter()
-                .find_map(|station| station.meter.fall_k());
+            let felt = self.stations.iter().find_map(|station| station.meter.fall_k());
             self.intervals_k.push(felt);
         }
     }
@@ -386,11 +366,7 @@ impl RunningTrial {
         }
         let is_lifted = self.lift_ms.is_some_and(|lift_ms| ms >= lift_ms);
         let waits = setting.task.is_some();
-        is_lifted
-            || (waits
-                && self
-                    .land_ms
-                    .is_some_and(|land_ms| ms >= land_ms + decision_ms))
+        is_lifted || (waits && self.land_ms.is_some_and(|land_ms| ms >= land_ms + decision_ms))
     }
 
     fn judge(&mut self, ms: u64, setting: &Setting) {
@@ -403,19 +379,11 @@ impl RunningTrial {
         };
         let stream = |purpose: &str| {
             let (key, number, attempt) = (&setting.key, self.number, self.attempt);
-            Stream::new(
-                setting.seed,
-                &format!("{key} trial {number} attempt {attempt} {purpose}"),
-            )
+            Stream::new(setting.seed, &format!("{key} trial {number} attempt {attempt} {purpose}"))
         };
         let observer = &setting.participant.observer;
         let judgement = setting.task.as_ref().and_then(|task| {
-            task.judge(
-                &falls_k,
-                observer,
-                &mut stream("noise"),
-                &mut stream("lapse"),
-            )
+            task.judge(&falls_k, observer, &mut stream("noise"), &mut stream("lapse"))
         });
         let since_ms = match self.interval {
             Some((_, begin_ms, length_ms)) => Some(begin_ms + length_ms),
@@ -442,10 +410,7 @@ impl RunningTrial {
             Judgement::Numbers(numbers) => Response::Numbers(numbers.clone()),
         };
         self.is_answered = true;
-        if let Procedure::Touch {
-            contact: ContactRule::Free,
-            ..
-        } = setting.session.trial.procedure
+        if let Procedure::Touch { contact: ContactRule::Free, .. } = setting.session.trial.procedure
         {
             self.lift(ms + reaction_ms);
         }
@@ -471,9 +436,7 @@ impl RunningTrial {
                 .collect(),
             falls_k,
             decision_s,
-            touches: self
-                .land_ms
-                .map_or(0, |_| self.touches.count_until(decision_s)),
+            touches: self.land_ms.map_or(0, |_| self.touches.count_until(decision_s)),
             skin_c: self.skin_c,
             choice: match judgement {
                 Some(Judgement::Choice(index)) => Some(*index),

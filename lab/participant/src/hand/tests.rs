@@ -73,11 +73,7 @@ fn a_followed_force_settles_within_a_few_per_cent() {
 fn forces_are_drawn_around_their_median() {
     let params = HandParams::TYPICAL;
     let mut ln: Vec<f64> = (0..400)
-        .map(|seed| {
-            course(&params, ContactRule::Hold, None, seed).1.presses[0]
-                .target_n
-                .ln()
-        })
+        .map(|seed| course(&params, ContactRule::Hold, None, seed).1.presses[0].target_n.ln())
         .collect();
     ln.sort_by(f64::total_cmp);
     assert!((ln[200] - params.force_median_n.ln()).abs() < 0.06);

@@ -47,15 +47,9 @@ fn what_was_not_felt_is_not_judged() {
     let (mut noise, mut lapses) = streams();
     let params = &ObserverParams::NOISE_FREE;
     let task = Task::Colder(vec![0, 1]);
-    assert_eq!(
-        task.judge(&[None, Some(1.0)], params, &mut noise, &mut lapses),
-        None
-    );
+    assert_eq!(task.judge(&[None, Some(1.0)], params, &mut noise, &mut lapses), None);
     let random = &ObserverParams::RANDOM;
-    assert_eq!(
-        task.judge(&[None, None], random, &mut noise, &mut lapses),
-        None
-    );
+    assert_eq!(task.judge(&[None, None], random, &mut noise, &mut lapses), None);
 }
 
 #[test]
@@ -77,20 +71,14 @@ fn draws_agree_with_the_closed_form() {
         f64::from((0..DRAWS).filter(is_first).count() as u32) / f64::from(DRAWS)
     };
     let colder = share(&Task::Colder(vec![0, 1]), &[Some(4.0), Some(3.0)]);
-    let different = share(
-        &Task::Different(vec![0, 1, 2]),
-        &[Some(4.0), Some(1.0), Some(1.0)],
-    );
+    let different = share(&Task::Different(vec![0, 1, 2]), &[Some(4.0), Some(1.0), Some(1.0)]);
     let expected_k = vec![4.0, 1.0, 0.2];
     let identified = share(&Task::Identify(expected_k.clone()), &[Some(4.0)]);
     use crate::predictions::closed_form;
     for (drawn, exact) in [
         (colder, closed_form::colder(params, [4.0, 3.0])),
         (different, closed_form::different(params, 4.0, 1.0)),
-        (
-            identified,
-            closed_form::identified(params, 4.0, &expected_k)[0],
-        ),
+        (identified, closed_form::identified(params, 4.0, &expected_k)[0]),
     ] {
         // Three and a half standard deviations of this many draws.
         assert!((drawn - exact).abs() < 0.0125, "{drawn}, {exact}");
@@ -151,10 +139,7 @@ const FALLS_OF_P9: [[f64; 2]; 2] = [[0.556, -0.118], [-0.321, 0.112]];
 fn larger(changed_k: f64, other_k: f64, sigma_k: f64) -> f64 {
     let phi = |z: f64| 0.5 * libm::erfc(-z / std::f64::consts::SQRT_2);
     let scaled = |k: f64| k / (std::f64::consts::SQRT_2 * sigma_k);
-    let (sum, difference) = (
-        phi(scaled(changed_k + other_k)),
-        phi(scaled(changed_k - other_k)),
-    );
+    let (sum, difference) = (phi(scaled(changed_k + other_k)), phi(scaled(changed_k - other_k)));
     sum * difference + (1.0 - sum) * (1.0 - difference)
 }
 
@@ -220,9 +205,8 @@ fn staircase_and_fitted_function_find_the_threshold_that_the_noise_implies() {
                     Task::Interval(None).judge(&felt_k.map(Some), params, &mut noise, &mut lapses);
                 let is_correct = judged == Some(Judgement::Choice(usize::from(is_second)));
                 staircase.answered(is_correct);
-                let known = counts
-                    .iter()
-                    .position(|(known, ..)| (known / level_k - 1.0).abs() < 1e-6);
+                let known =
+                    counts.iter().position(|(known, ..)| (known / level_k - 1.0).abs() < 1e-6);
                 let at = known.unwrap_or_else(|| {
                     counts.push((level_k, 0, 0));
                     counts.len() - 1
@@ -248,11 +232,7 @@ fn staircase_and_fitted_function_find_the_threshold_that_the_noise_implies() {
                 answers: Proportion::new(*correct, *total).expect("a proportion"),
             })
             .collect();
-        let model = Model {
-            shape: Shape::Weibull,
-            guess: 0.5,
-            lapse: 0.0,
-        };
+        let model = Model { shape: Shape::Weibull, guess: 0.5, lapse: 0.0 };
         let fit = model.fit_with_lapse(&levels, 0.06).expect("a fit");
         let found_k = fit.threshold(0.75).expect("a threshold").level;
         let expected_k = level_of_p9(falls, 0.75);

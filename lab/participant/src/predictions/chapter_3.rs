@@ -20,13 +20,9 @@ use crate::falls::mean_fall_k;
 pub fn falls_of_chapter_3() -> Result<Falls, PredictionError> {
     let setup = Condition::of_thesis(SECTION_3).setup();
     let names = TABLE_3_3_MATERIALS.iter().chain(&["granite"]);
-    let falls_k: Result<Vec<_>, BenchError> = names
-        .map(|name| Ok(((*name).to_owned(), mean_fall_k(&setup, material(name)?)?)))
-        .collect();
-    Ok(Falls {
-        skin_room_c: SECTION_3,
-        falls_k: falls_k?,
-    })
+    let falls_k: Result<Vec<_>, BenchError> =
+        names.map(|name| Ok(((*name).to_owned(), mean_fall_k(&setup, material(name)?)?))).collect();
+    Ok(Falls { skin_room_c: SECTION_3, falls_k: falls_k? })
 }
 
 /// Cells of Table 3-3 with their labels.
@@ -70,14 +66,10 @@ pub(super) fn table(
         published: 100.0 * cell.published,
         predicted: 100.0 * cell.predicted(&observer),
     };
-    let parts: Vec<Vec<CellResult>> = cells
-        .iter()
-        .map(|part| part.iter().map(result).collect())
-        .collect();
-    let part_means: Vec<f64> = parts
-        .iter()
-        .map(|part| mean(part.iter().map(|cell| cell.predicted)))
-        .collect();
+    let parts: Vec<Vec<CellResult>> =
+        cells.iter().map(|part| part.iter().map(result).collect()).collect();
+    let part_means: Vec<f64> =
+        parts.iter().map(|part| mean(part.iter().map(|cell| cell.predicted))).collect();
     let cells: Vec<CellResult> = parts.into_iter().flatten().collect();
     let mut table = TableResult {
         name: name.into(),
@@ -86,12 +78,7 @@ pub(super) fn table(
             "s0 {:.2} K, w {:.3}, three fingers {:.2}, lapses {:.3}",
             fitted.s0_k, fitted.w, fitted.three_finger_factor, fitted.lapse
         ),
-        rms: mean(
-            cells
-                .iter()
-                .map(|cell| (cell.predicted - cell.published).powi(2)),
-        )
-        .sqrt(),
+        rms: mean(cells.iter().map(|cell| (cell.predicted - cell.published).powi(2))).sqrt(),
         mean_published: mean(cells.iter().map(|cell| cell.published)),
         mean_predicted: mean(cells.iter().map(|cell| cell.predicted)),
         cells,
@@ -102,12 +89,8 @@ pub(super) fn table(
 }
 
 pub(super) fn check_table_3_3(table: &TableResult, _parts: &[f64]) -> Vec<Check> {
-    let allowed = [
-        "copper - bronze",
-        "copper - stainless-steel",
-        "bronze - stainless-steel",
-        "g10 - abs",
-    ];
+    let allowed =
+        ["copper - bronze", "copper - stainless-steel", "bronze - stainless-steel", "g10 - abs"];
     let below: Vec<&str> = (table.cells.iter())
         .filter(|cell| cell.predicted < THRESHOLD_PERCENT)
         .map(|cell| cell.label.as_str())

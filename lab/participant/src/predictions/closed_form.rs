@@ -50,11 +50,7 @@ pub fn different(observer: &ObserverParams, target_k: f64, distractor_k: f64) ->
             let least_k = 1.5 * d_sd_k * z;
             let beyond =
                 normal_cdf((off_k - least_k) / u_sd_k) + normal_cdf((-off_k - least_k) / u_sd_k);
-            let weight = if index == 0 || index == STEPS {
-                0.5
-            } else {
-                1.0
-            };
+            let weight = if index == 0 || index == STEPS { 0.5 } else { 1.0 };
             weight * normal_density(z) * beyond
         })
         .sum();
@@ -90,10 +86,7 @@ pub fn identified(observer: &ObserverParams, fall_k: f64, expected_k: &[f64]) ->
         }
     }
     let answers = expected_k.len() as f64;
-    proportions
-        .into_iter()
-        .map(|proportion| with_lapses(observer, answers, proportion))
-        .collect()
+    proportions.into_iter().map(|proportion| with_lapses(observer, answers, proportion)).collect()
 }
 
 #[cfg(test)]
@@ -114,10 +107,7 @@ mod tests {
         for d in [0.0, 0.5, 1.0, 1.83, 3.0] {
             let predicted = different(&observer, d, 0.0);
             let exact = proportion_correct_oddity(d).expect("a sensitivity");
-            assert!(
-                (predicted - exact).abs() < 1e-4,
-                "{d}: {predicted}, {exact}"
-            );
+            assert!((predicted - exact).abs() < 1e-4, "{d}: {predicted}, {exact}");
         }
     }
 

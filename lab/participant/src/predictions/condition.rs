@@ -64,11 +64,7 @@ pub struct Condition {
 impl Condition {
     /// The thesis's finger, which is lifted and replaced.
     pub(super) const fn of_thesis(skin_room_c: (f64, f64)) -> Self {
-        Self {
-            skin_room_c,
-            lifts: true,
-            is_layered: false,
-        }
+        Self { skin_room_c, lifts: true, is_layered: false }
     }
 
     pub(super) fn setup(&self) -> TouchSetup {
@@ -85,11 +81,7 @@ impl Condition {
             skin_c,
             room_c,
             hand: HandParams::TYPICAL,
-            contact: if self.lifts {
-                ContactRule::Free
-            } else {
-                ContactRule::Hold
-            },
+            contact: if self.lifts { ContactRule::Free } else { ContactRule::Hold },
             assumed_finger,
             decision_median_s: ObserverParams::TOUCH.decision_median_s,
             decision_sigma_ln: ObserverParams::TOUCH.decision_sigma_ln,
@@ -109,9 +101,8 @@ pub(super) fn falls_on_samples_and_displays(
 ) -> Result<Vec<Vec<f64>>, PredictionError> {
     let setup = condition.setup();
     let device = PreparedDevice::new(&setup.params, setup.room_c, DEVICE_SEED, 1)?;
-    let explorations: Vec<Exploration> = (0..EXPLORATIONS)
-        .map(|number| Exploration::new(&setup, number))
-        .collect();
+    let explorations: Vec<Exploration> =
+        (0..EXPLORATIONS).map(|number| Exploration::new(&setup, number)).collect();
     let of_material = |name: &&str| {
         let material = material(name)?;
         let mut means_k = vec![0.0; 1 + modes.len()];
@@ -121,10 +112,7 @@ pub(super) fn falls_on_samples_and_displays(
                 *sum_k += exploration.on_display(&setup, &device, mode.setting(), name)?;
             }
         }
-        Ok(means_k
-            .iter()
-            .map(|sum_k| sum_k / f64::from(EXPLORATIONS))
-            .collect())
+        Ok(means_k.iter().map(|sum_k| sum_k / f64::from(EXPLORATIONS)).collect())
     };
     materials.iter().map(of_material).collect()
 }

@@ -42,11 +42,7 @@ impl Cell {
     pub fn deviance(&self, observer: &ObserverParams) -> f64 {
         let predicted = self.predicted(observer).clamp(1e-9, 1.0 - 1e-9);
         let term = |observed: f64, expected: f64| {
-            if observed > 0.0 {
-                observed * libm::log(observed / expected)
-            } else {
-                0.0
-            }
+            if observed > 0.0 { observed * libm::log(observed / expected) } else { 0.0 }
         };
         let n = f64::from(self.trials);
         let p = self.published;
@@ -138,9 +134,8 @@ pub fn fit(cells: &[Cell], fits_factor: bool) -> Result<Fitted, argmin::core::Er
     }
     let problem = Problem { cells, fits_factor };
     let solver = NelderMead::new(simplex).with_sd_tolerance(1e-9)?;
-    let result = Executor::new(problem, solver)
-        .configure(|state| state.max_iters(ITERATIONS_MAX))
-        .run()?;
+    let result =
+        Executor::new(problem, solver).configure(|state| state.max_iters(ITERATIONS_MAX)).run()?;
     let point = result.state().get_best_param().cloned().unwrap_or_default();
     let observer = Problem { cells, fits_factor }.observer(&point);
     Ok(Fitted {

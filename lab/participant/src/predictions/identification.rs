@@ -21,15 +21,9 @@ pub(super) fn identification(observer: &ObserverParams) -> Result<Identification
     let of = |column: usize| -> Vec<f64> { falls_k.iter().map(|row| row[column]).collect() };
     let (real_k, simulated_k) = (of(0), of(1));
     let confusions = |factor: f64| {
-        let observer = ObserverParams {
-            identification_factor: factor,
-            ..*observer
-        };
+        let observer = ObserverParams { identification_factor: factor, ..*observer };
         [&real_k, &simulated_k].map(|presented_k| -> Vec<Vec<f64>> {
-            presented_k
-                .iter()
-                .map(|fall_k| identified(&observer, *fall_k, &real_k))
-                .collect()
+            presented_k.iter().map(|fall_k| identified(&observer, *fall_k, &real_k)).collect()
         })
     };
     let overall = |rows: &[Vec<f64>]| mean(rows.iter().enumerate().map(|(index, row)| row[index]));
@@ -47,23 +41,16 @@ pub(super) fn identification(observer: &ObserverParams) -> Result<Identification
     // One parameter in a known range: every value to two decimals is tried.
     let factors = (50..=400).map(|hundredths| f64::from(hundredths) / 100.0);
     let likely = factors.map(|factor| (factor, log_likelihood(factor)));
-    let (factor, _) = likely.fold((1.0, f64::NEG_INFINITY), |best, next| {
-        if next.1 > best.1 { next } else { best }
-    });
+    let (factor, _) = likely
+        .fold((1.0, f64::NEG_INFINITY), |best, next| if next.1 > best.1 { next } else { best });
     let confusions = confusions(factor);
     let correct = confusions.each_ref().map(|rows| -> Vec<f64> {
-        let diagonal = rows
-            .iter()
-            .enumerate()
-            .map(|(index, row)| 100.0 * row[index]);
+        let diagonal = rows.iter().enumerate().map(|(index, row)| 100.0 * row[index]);
         diagonal.collect()
     });
     let [real, simulated] = &confusions;
     let correlation = pearson(&real.concat(), &simulated.concat())?.r;
-    let overall: Vec<f64> = confusions
-        .iter()
-        .map(|rows| 100.0 * overall(rows))
-        .collect();
+    let overall: Vec<f64> = confusions.iter().map(|rows| 100.0 * overall(rows)).collect();
     let cell = |label: &str, index: usize| CellResult {
         label: label.into(),
         published: SECTION_4_2[index].0,

@@ -71,10 +71,7 @@ pub fn report() -> Result<Report, PredictionError> {
     let two_hands = table_3_3(&falls);
     let [high_low, low_high] = table_3_5(&falls);
     let cells = |parts: &[&[(String, Cell)]]| -> Vec<Cell> {
-        parts
-            .iter()
-            .flat_map(|part| part.iter().map(|(_, cell)| *cell))
-            .collect()
+        parts.iter().flat_map(|part| part.iter().map(|(_, cell)| *cell)).collect()
     };
     let find = |cells: &[Cell], fits_factor: bool| {
         fit(cells, fits_factor).map_err(|error| PredictionError::Fit(error.to_string()))
@@ -85,48 +82,18 @@ pub fn report() -> Result<Report, PredictionError> {
     let three_fingers: [&[(String, Cell)]; 2] = [&high_low, &low_high];
     let (name_3_3, name_3_5) = ("Table 3-3", "Table 3-5");
     let tables = vec![
-        table(
-            name_3_3,
-            Basis::Fitted,
-            &fitted,
-            &[&two_hands],
-            check_table_3_3,
-        ),
-        table(
-            name_3_5,
-            Basis::Fitted,
-            &fitted,
-            &three_fingers,
-            check_table_3_5,
-        ),
-        table(
-            name_3_3,
-            Basis::Predicted,
-            &without_table_3_3,
-            &[&two_hands],
-            check_table_3_3,
-        ),
-        table(
-            name_3_5,
-            Basis::Predicted,
-            &without_table_3_5,
-            &three_fingers,
-            check_table_3_5,
-        ),
+        table(name_3_3, Basis::Fitted, &fitted, &[&two_hands], check_table_3_3),
+        table(name_3_5, Basis::Fitted, &fitted, &three_fingers, check_table_3_5),
+        table(name_3_3, Basis::Predicted, &without_table_3_3, &[&two_hands], check_table_3_3),
+        table(name_3_5, Basis::Predicted, &without_table_3_5, &three_fingers, check_table_3_5),
     ];
     let observer = fitted.observer();
     let at_gate = Condition::of_thesis(SECTION_4_3_C);
     let conditions = [
         at_gate,
         Condition::of_thesis(SECTION_4_3_REPORTED_C),
-        Condition {
-            lifts: false,
-            ..at_gate
-        },
-        Condition {
-            is_layered: true,
-            ..at_gate
-        },
+        Condition { lifts: false, ..at_gate },
+        Condition { is_layered: true, ..at_gate },
     ];
     let conditions = conditions.map(|condition| real_against_simulated(&observer, condition));
     let conditions = conditions.into_iter();

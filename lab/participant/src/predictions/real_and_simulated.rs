@@ -38,20 +38,16 @@ pub fn real_against_simulated(
                 real: (*real).into(),
                 simulated: (*simulated).into(),
                 published_below: SECTION_4_3_BELOW.contains(&(*real, *simulated)),
-                correct: real_colder.map(|percent| {
-                    if is_real_colder {
-                        percent
-                    } else {
-                        100.0 - percent
-                    }
-                }),
+                correct: real_colder.map(
+                    |percent| {
+                        if is_real_colder { percent } else { 100.0 - percent }
+                    },
+                ),
             });
         }
     }
     let means = [0, 1].map(|display| mean(pairs.iter().map(|pair| pair.correct[display])));
-    let differences = pairs
-        .iter()
-        .map(|pair| (pair.correct[1] - pair.correct[0]).abs());
+    let differences = pairs.iter().map(|pair| (pair.correct[1] - pair.correct[0]).abs());
     Ok(RealAgainstSimulated {
         condition,
         means,
@@ -63,11 +59,7 @@ pub fn real_against_simulated(
 }
 
 fn check_section_4_3(pairs: &[PairResult], identical: &[IdenticalResult]) -> Vec<Check> {
-    let rank = |name: &str| {
-        SECTION_4_3_MATERIALS
-            .iter()
-            .position(|known| *known == name)
-    };
+    let rank = |name: &str| SECTION_4_3_MATERIALS.iter().position(|known| *known == name);
     let correct = |of: &dyn Fn(&PairResult) -> bool| -> Vec<f64> {
         let wanted = pairs.iter().filter(|pair| of(pair));
         wanted.map(|pair| pair.correct[0]).collect()
@@ -77,10 +69,7 @@ fn check_section_4_3(pairs: &[PairResult], identical: &[IdenticalResult]) -> Vec
     };
     let real_colder = correct(&|pair| rank(&pair.real) < rank(&pair.simulated));
     let simulated_colder = correct(&|pair| rank(&pair.real) > rank(&pair.simulated));
-    let (above, below) = (
-        mean(real_colder.into_iter()),
-        mean(simulated_colder.into_iter()),
-    );
+    let (above, below) = (mean(real_colder.into_iter()), mean(simulated_colder.into_iter()));
     let copper_steel = correct(&|pair| is(pair, "copper", "stainless-steel"));
     let with_abs = correct(&|pair| is(pair, "copper", "abs") || is(pair, "stainless-steel", "abs"));
     let of_identical = |name: &str| {
@@ -102,9 +91,7 @@ fn check_section_4_3(pairs: &[PairResult], identical: &[IdenticalResult]) -> Vec
             what: "copper with stainless steel".into(),
             value: percentages(&copper_steel),
             allowed: "below 72 %".into(),
-            met: copper_steel
-                .iter()
-                .all(|percent| *percent < THRESHOLD_PERCENT),
+            met: copper_steel.iter().all(|percent| *percent < THRESHOLD_PERCENT),
         },
         Check {
             what: "ABS with copper and stainless steel".into(),
@@ -118,12 +105,7 @@ fn check_section_4_3(pairs: &[PairResult], identical: &[IdenticalResult]) -> Vec
             40.0,
             60.0,
         ),
-        Check::within(
-            "identical stainless steel",
-            of_identical("stainless-steel"),
-            40.0,
-            60.0,
-        ),
+        Check::within("identical stainless steel", of_identical("stainless-steel"), 40.0, 60.0),
         Check {
             what: "identical granite".into(),
             value: format!("{:.1} %", of_identical("granite")),

@@ -77,11 +77,7 @@ type Observer = (&'static str, ObserverParams, bool);
 
 const OBSERVERS: [Observer; 3] = [
     ("touch", ObserverParams::TOUCH, true),
-    (
-        "thermode, fingertip",
-        ObserverParams::THERMODE_FINGERTIP,
-        false,
-    ),
+    ("thermode, fingertip", ObserverParams::THERMODE_FINGERTIP, false),
     ("thermode, thenar", ObserverParams::THERMODE_THENAR, false),
 ];
 
@@ -111,12 +107,10 @@ fn row(group: &str, observer: &Observer, touches: &[(&RenderedTouch, f64)]) -> T
 fn fall_k(falls: &Falls, object: &str) -> Result<f64, PredictionError> {
     let material = object.split([' ', ',']).next().unwrap_or_default();
     let found = falls.falls_k.iter().find(|(known, _)| known == material);
-    found
-        .map(|(_, fall_k)| *fall_k)
-        .ok_or_else(|| PredictionError::UnknownMaterial {
-            object: object.into(),
-            known: falls.falls_k.iter().map(|(name, _)| name.clone()).collect(),
-        })
+    found.map(|(_, fall_k)| *fall_k).ok_or_else(|| PredictionError::UnknownMaterial {
+        object: object.into(),
+        known: falls.falls_k.iter().map(|(name, _)| name.clone()).collect(),
+    })
 }
 
 impl fmt::Display for ToldApartReport {

@@ -6,15 +6,9 @@ use super::{Basis, Check, DisplayMode, Identification, RealAgainstSimulated, Rep
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "Predictions of the simulated participant; per cent unless said otherwise."
-        )?;
+        writeln!(f, "Predictions of the simulated participant; per cent unless said otherwise.")?;
         let (skin_c, room_c) = self.falls.skin_room_c;
-        writeln!(
-            f,
-            "\nFalls at 0.16 mm on samples in free exploration, {skin_c}/{room_c} C:"
-        )?;
+        writeln!(f, "\nFalls at 0.16 mm on samples in free exploration, {skin_c}/{room_c} C:")?;
         for (material, fall_k) in &self.falls.falls_k {
             writeln!(f, "  {material:16} {fall_k:6.3} K")?;
         }
@@ -48,16 +42,8 @@ impl fmt::Display for Report {
 fn write_checks(f: &mut fmt::Formatter<'_>, checks: &[Check]) -> fmt::Result {
     for check in checks {
         let met = if check.met { "met" } else { "NOT MET" };
-        let value = if check.value.is_empty() {
-            "none"
-        } else {
-            &check.value
-        };
-        writeln!(
-            f,
-            "  {met}: {} {value} (allowed: {})",
-            check.what, check.allowed
-        )?;
+        let value = if check.value.is_empty() { "none" } else { &check.value };
+        writeln!(f, "  {met}: {} {value} (allowed: {})", check.what, check.allowed)?;
     }
     Ok(())
 }
@@ -116,27 +102,16 @@ impl fmt::Display for RealAgainstSimulated {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (skin_c, room_c) = self.condition.skin_room_c;
         let [first, second] = DisplayMode::ALL.map(DisplayMode::words);
-        let finger = if self.condition.is_layered {
-            "layered finger"
-        } else {
-            "the thesis's finger"
-        };
-        let touches = if self.condition.lifts {
-            "lifting and replacing"
-        } else {
-            "one touch"
-        };
+        let finger =
+            if self.condition.is_layered { "layered finger" } else { "the thesis's finger" };
+        let touches = if self.condition.lifts { "lifting and replacing" } else { "one touch" };
         writeln!(
             f,
             "\nSection 4.3 (P5), predicted, {skin_c}/{room_c} C, {touches}, {finger}: {first} and {second}"
         )?;
         for pair in &self.pairs {
             let [a, b] = pair.correct;
-            let published = if pair.published_below {
-                "published below 72"
-            } else {
-                ""
-            };
+            let published = if pair.published_below { "published below 72" } else { "" };
             writeln!(
                 f,
                 "  real {:16} simulated {:16} {a:5.1} {b:5.1} ({:+.1}) {published}",

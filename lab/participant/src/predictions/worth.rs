@@ -26,15 +26,7 @@ pub(super) fn worth(touch: &ObserverParams, falls: &Falls) -> Vec<Worth> {
         .iter()
         .map(|name| of(&format!("touch of {name}"), touch, falls.of(name)))
         .collect();
-    rows.push(of(
-        "thermode, fingertip",
-        &ObserverParams::THERMODE_FINGERTIP,
-        0.0,
-    ));
-    rows.push(of(
-        "thermode, thenar",
-        &ObserverParams::THERMODE_THENAR,
-        0.0,
-    ));
+    rows.push(of("thermode, fingertip", &ObserverParams::THERMODE_FINGERTIP, 0.0));
+    rows.push(of("thermode, thenar", &ObserverParams::THERMODE_THENAR, 0.0));
     rows
 }

@@ -19,32 +19,20 @@ fn noise_free() -> BenchOptions {
 
 #[test]
 fn without_noise_real_and_simulated_materials_are_told_apart() {
-    let ran = run(
-        "p5",
-        &session("p5-real-and-simulated.toml", &[]),
-        noise_free(),
-        16,
-    );
+    let ran = run("p5", &session("p5-real-and-simulated.toml", &[]), noise_free(), 16);
     let (correct, all) = ran.correct();
     assert_eq!(
         (correct, all),
         (12, 12),
         "{:?}",
-        ran.records
-            .iter()
-            .filter_map(|r| r.void.clone())
-            .collect::<Vec<_>>()
+        ran.records.iter().filter_map(|r| r.void.clone()).collect::<Vec<_>>()
     );
     assert!(ran.records.iter().all(|record| record.void.is_none()));
 }
 
 #[test]
 fn trips_and_operators_void_trials_which_are_repeated() {
-    let event = |trial, what| SimulatedEvent {
-        trial,
-        attempt: Some(1),
-        what,
-    };
+    let event = |trial, what| SimulatedEvent { trial, attempt: Some(1), what };
     let options = BenchOptions {
         events: vec![
             event(
@@ -61,12 +49,7 @@ fn trips_and_operators_void_trials_which_are_repeated() {
         ],
         ..noise_free()
     };
-    let ran = run(
-        "p5-voids",
-        &session("p5-real-and-simulated.toml", &[]),
-        options,
-        6,
-    );
+    let ran = run("p5-voids", &session("p5-real-and-simulated.toml", &[]), options, 6);
     let voids: Vec<_> = (ran.records.iter())
         .filter_map(|record| Some((record.trial, record.void.clone()?)))
         .collect();
@@ -81,11 +64,7 @@ fn trips_and_operators_void_trials_which_are_repeated() {
 
 /// A device that stays as it is from trial to trial, with a skin that is the same in all of them.
 fn kept_device(events: Vec<SimulatedEvent>) -> BenchOptions {
-    BenchOptions {
-        keeps_device: true,
-        events,
-        ..noise_free()
-    }
+    BenchOptions { keeps_device: true, events, ..noise_free() }
 }
 
 #[test]
@@ -105,10 +84,7 @@ fn a_device_that_trips_stays_tripped_until_the_operator_clears_it_and_the_sessio
         .filter_map(|record| Some((record.trial, record.void.clone()?)))
         .collect();
     assert_eq!(voids.len(), 1, "{voids:?}");
-    assert!(
-        voids[0].0 == 2 && voids[0].1.contains("tripped"),
-        "{voids:?}"
-    );
+    assert!(voids[0].0 == 2 && voids[0].1.contains("tripped"), "{voids:?}");
     assert_eq!(ran.records.len(), 21);
 }
 
@@ -116,36 +92,19 @@ fn a_device_that_trips_stays_tripped_until_the_operator_clears_it_and_the_sessio
 fn a_finger_that_stays_on_the_display_is_not_disturbed_between_two_trials() {
     let session = session("p9-change-threshold.toml", &[]);
     let ran = run("p9-kept", &session, kept_device(Vec::new()), 12);
-    let voids: Vec<_> = ran
-        .records
-        .iter()
-        .filter_map(|record| record.void.clone())
-        .collect();
+    let voids: Vec<_> = ran.records.iter().filter_map(|record| record.void.clone()).collect();
     assert!(voids.is_empty(), "{voids:?}");
     // Without a new self-test, way to the base and rest, which take 20 s.
     let length_s = |index: usize| ran.records[index].end_s - ran.records[index].begin_s;
     let longest_s = (1..12).map(length_s).fold(0.0, f64::max);
-    assert!(
-        longest_s < length_s(0) - 8.0,
-        "{longest_s} s after {} s",
-        length_s(0)
-    );
+    assert!(longest_s < length_s(0) - 8.0, "{longest_s} s after {} s", length_s(0));
 }
 
 #[test]
 fn thresholds_come_down_to_the_noise_of_the_observer() {
-    let ran = run(
-        "p9",
-        &session("p9-change-threshold.toml", &[]),
-        BenchOptions::default(),
-        60,
-    );
+    let ran = run("p9", &session("p9-change-threshold.toml", &[]), BenchOptions::default(), 60);
     let (correct, all) = ran.correct();
-    assert!(
-        ran.records.iter().all(|record| record.void.is_none()),
-        "{:?}",
-        ran.records[0].void
-    );
+    assert!(ran.records.iter().all(|record| record.void.is_none()), "{:?}", ran.records[0].void);
     assert!(correct * 2 > all, "{correct} of {all}");
 }
 
@@ -170,12 +129,7 @@ fn a_display_that_assumes_the_finger_feels_like_the_sample() {
 
 #[test]
 fn three_displays_at_one_hand() {
-    let ran = run(
-        "p3",
-        &session("p3-localisation-displays.toml", &[]),
-        noise_free(),
-        6,
-    );
+    let ran = run("p3", &session("p3-localisation-displays.toml", &[]), noise_free(), 6);
     let (correct, all) = ran.correct();
     assert_eq!((correct, all), (6, 6), "{:?}", ran.observations);
 }

@@ -11,9 +11,7 @@ use thermal_session::{Executor, Plan, Schedule, Session};
 
 /// A session of the laboratory with lines replaced.
 pub fn session(file: &str, replaced: &[(&str, &str)]) -> Session {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../sessions")
-        .join(file);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sessions").join(file);
     let mut text = fs::read_to_string(&path).expect("the session file");
     for (from, to) in replaced {
         assert!(text.contains(from), "{file} has no {from}");
@@ -61,17 +59,7 @@ pub fn run(name: &str, session: &Session, options: BenchOptions, trials: usize) 
     let mut recorder =
         Recorder::create(&folder(name), session, &plan, (code, seed), true).expect("a recorder");
     let mut people = bench.people();
-    let executor = Executor::new(
-        session,
-        Client::new(bench.link()),
-        &mut people,
-        &mut recorder,
-    );
-    executor
-        .run(&plan, Schedule::new(session, &plan))
-        .expect("the session ends by itself");
-    Ran {
-        records: recorder.records().to_vec(),
-        observations: bench.observations(),
-    }
+    let executor = Executor::new(session, Client::new(bench.link()), &mut people, &mut recorder);
+    executor.run(&plan, Schedule::new(session, &plan)).expect("the session ends by itself");
+    Ran { records: recorder.records().to_vec(), observations: bench.observations() }
 }

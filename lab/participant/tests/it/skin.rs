@@ -30,14 +30,8 @@ const SENSOR_K: f64 = 0.008;
 /// A hand that does the same in all trials, and a skin that is at the temperature of the rest.
 fn steady(session: &Session) -> BenchOptions {
     BenchOptions {
-        hand: HandParams {
-            reach_s: (REACH_S, 0.0),
-            ..HandParams::STEADY
-        },
-        skin: SkinParams {
-            drift_k: 0.0,
-            ..SkinParams::EQUAL
-        },
+        hand: HandParams { reach_s: (REACH_S, 0.0), ..HandParams::STEADY },
+        skin: SkinParams { drift_k: 0.0, ..SkinParams::EQUAL },
         room_c: ROOM_C,
         ..BenchOptions::of_session(session)
     }
@@ -82,11 +76,7 @@ fn the_recorded_fall_on_a_sample_is_the_plants_times_the_share_of_the_edge() {
         let [first, second, side] = &record.levels[..] else {
             panic!("{:?}", record.levels);
         };
-        let places = if side == "first-left" {
-            [first, second]
-        } else {
-            [second, first]
-        };
+        let places = if side == "first-left" { [first, second] } else { [second, first] };
         let cue_s = record.touch_cue_s.expect("a tone");
         let hold_s = record.lift_s.expect("an end") - cue_s - REACH_S;
         for (station, material) in record.stations.iter().zip(places) {
@@ -116,19 +106,12 @@ fn the_recorded_fall_on_a_sample_is_the_plants_times_the_share_of_the_edge() {
 
 #[test]
 fn another_thermistor_on_the_finger_at_a_display_sees_what_its_own_sees() {
-    let on_display = (
-        "index = { sample = \"material\" }",
-        "index = { display = \"material\" }",
-    );
+    let on_display = ("index = { sample = \"material\" }", "index = { display = \"material\" }");
     let falls = ["skin_sensor = 0", "skin_sensor = 1"].map(|sensor| {
-        let session = session(
-            "p6-skin-temperature.toml",
-            &[on_display, ("skin_sensor = 0", sensor)],
-        );
+        let session =
+            session("p6-skin-temperature.toml", &[on_display, ("skin_sensor = 0", sensor)]);
         let records = run(&format!("p6-{sensor}"), &session, steady(&session), 3).records;
-        let falls = records
-            .iter()
-            .map(|record| record.stations[0].skin_fall_k.expect("a fall"));
+        let falls = records.iter().map(|record| record.stations[0].skin_fall_k.expect("a fall"));
         falls.collect::<Vec<_>>()
     });
     for (own_k, other_k) in falls[0].iter().zip(&falls[1]) {
@@ -151,10 +134,7 @@ struct HeardLink<L> {
 
 impl<L: Link> Link for HeardLink<L> {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
-        self.heard
-            .sent
-            .borrow_mut()
-            .push_str(&String::from_utf8_lossy(bytes));
+        self.heard.sent.borrow_mut().push_str(&String::from_utf8_lossy(bytes));
         self.link.send(bytes)
     }
 
@@ -199,14 +179,8 @@ fn listen(name: &str, session: &Session, trials: usize) -> (Vec<TrialRecord>, He
     let mut recorder =
         Recorder::create(&folder(name), session, &plan, (code, seed), true).expect("a recorder");
     let heard = Heard::default();
-    let mut people = HeardPeople {
-        people: bench.people(),
-        heard: heard.clone(),
-    };
-    let link = HeardLink {
-        link: bench.link(),
-        heard: heard.clone(),
-    };
+    let mut people = HeardPeople { people: bench.people(), heard: heard.clone() };
+    let link = HeardLink { link: bench.link(), heard: heard.clone() };
     Executor::new(session, Client::new(link), &mut people, &mut recorder)
         .run(&plan, Schedule::new(session, &plan))
         .expect("the session ends by itself");
@@ -215,10 +189,7 @@ fn listen(name: &str, session: &Session, trials: usize) -> (Vec<TrialRecord>, He
 
 #[test]
 fn a_device_that_only_measures_the_skin_is_never_armed() {
-    for (file, trials) in [
-        ("p2-skin-temperature-fall.toml", 4),
-        ("p6-skin-temperature.toml", 4),
-    ] {
+    for (file, trials) in [("p2-skin-temperature-fall.toml", 4), ("p6-skin-temperature.toml", 4)] {
         let (records, heard) = listen(&format!("unarmed-{file}"), &session(file, &[]), trials);
         assert!(records.iter().all(|record| record.void.is_none()), "{file}");
         let sent = heard.sent.borrow();
@@ -238,10 +209,7 @@ fn a_device_that_only_measures_the_skin_is_never_armed() {
 fn a_finger_that_only_measures_stays_off_while_another_one_is_driven() {
     let session = session(
         "p5-real-and-simulated.toml",
-        &[(
-            "finger = \"left index\"",
-            "finger = \"left index\"\nskin_sensor = 1",
-        )],
+        &[("finger = \"left index\"", "finger = \"left index\"\nskin_sensor = 1")],
     );
     let (records, heard) = listen("mixed", &session, 4);
     assert!(records.iter().all(|record| record.void.is_none()));
@@ -260,19 +228,10 @@ fn a_finger_that_only_measures_stays_off_while_another_one_is_driven() {
 
 #[test]
 fn the_gate_waits_for_the_skin_at_a_sample() {
-    let session = session(
-        "p2-skin-temperature-fall.toml",
-        &[("timeout_s = 180.0", "timeout_s = 10.0")],
-    );
-    let event = SimulatedEvent {
-        trial: 2,
-        attempt: Some(1),
-        what: Happening::SkinOff(2.0),
-    };
-    let options = BenchOptions {
-        events: vec![event],
-        ..steady(&session)
-    };
+    let session =
+        session("p2-skin-temperature-fall.toml", &[("timeout_s = 180.0", "timeout_s = 10.0")]);
+    let event = SimulatedEvent { trial: 2, attempt: Some(1), what: Happening::SkinOff(2.0) };
+    let options = BenchOptions { events: vec![event], ..steady(&session) };
     let records = run("p2-gate", &session, options, 3).records;
     let rested_s: Vec<f64> = (records.iter())
         .map(|record| record.touch_cue_s.expect("a tone") - record.begin_s)
@@ -299,18 +258,11 @@ fn a_finger_that_trips_while_it_only_measures_makes_the_trial_void() {
             for_s: 0.5,
         },
     };
-    let options = BenchOptions {
-        events: vec![event],
-        ..steady(&session)
-    };
+    let options = BenchOptions { events: vec![event], ..steady(&session) };
     let records = run("p2-trip", &session, options, 3).records;
-    let voids: Vec<_> = (records.iter())
-        .filter_map(|record| Some((record.trial, record.void.clone()?)))
-        .collect();
+    let voids: Vec<_> =
+        (records.iter()).filter_map(|record| Some((record.trial, record.void.clone()?))).collect();
     assert_eq!(voids.len(), 1, "{voids:?}");
-    assert!(
-        voids[0].0 == 2 && voids[0].1.contains("tripped: skin-open"),
-        "{voids:?}"
-    );
+    assert!(voids[0].0 == 2 && voids[0].1.contains("tripped: skin-open"), "{voids:?}");
     assert_eq!(records.len(), 4);
 }

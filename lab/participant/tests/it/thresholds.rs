@@ -8,12 +8,8 @@ use crate::run::{run, session};
 /// intervals are too short for the skin to return, so that the second one begins with a rebound.
 #[test]
 fn the_skin_follows_a_part_of_the_change_and_has_not_returned_after_two_seconds() {
-    let ran = run(
-        "p9-falls",
-        &session("p9-change-threshold.toml", &[]),
-        BenchOptions::default(),
-        12,
-    );
+    let ran =
+        run("p9-falls", &session("p9-change-threshold.toml", &[]), BenchOptions::default(), 12);
     for (direction, changed, after) in [("cooling", 0.556, -0.118), ("warming", -0.321, 0.112)] {
         let (mut of_change, mut of_rebound) = (Vec::new(), Vec::new());
         for (record, felt) in ran.records.iter().zip(&ran.observations) {

@@ -21,11 +21,7 @@ impl AppendFile {
     /// # Errors
     /// The file cannot be opened, is shorter, or another program has it.
     pub fn open(path: &Path, bytes: u64, alone: bool) -> Result<Self, RecordingError> {
-        let options = OpenOptions::new()
-            .create(true)
-            .truncate(false)
-            .write(true)
-            .clone();
+        let options = OpenOptions::new().create(true).truncate(false).write(true).clone();
         let mut file = options.open(path).map_err(error_at(path))?;
         if alone {
             match file.try_lock() {
@@ -44,11 +40,7 @@ impl AppendFile {
         }
         file.set_len(bytes).map_err(error_at(path))?;
         file.seek(SeekFrom::End(0)).map_err(error_at(path))?;
-        Ok(Self {
-            path: path.into(),
-            file,
-            bytes,
-        })
+        Ok(Self { path: path.into(), file, bytes })
     }
 
     /// Appends, and waits until it is on the disk.
@@ -56,10 +48,7 @@ impl AppendFile {
     /// # Errors
     /// There is no room, or the disk does not work.
     pub fn append(&mut self, contents: &[u8]) -> Result<(), RecordingError> {
-        let written = self
-            .file
-            .write_all(contents)
-            .and_then(|()| self.file.sync_data());
+        let written = self.file.write_all(contents).and_then(|()| self.file.sync_data());
         written.map_err(error_at(&self.path))?;
         self.bytes += contents.len() as u64;
         Ok(())

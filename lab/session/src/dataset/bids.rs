@@ -68,9 +68,8 @@ pub(super) fn write(
     write_whole(&folder.behaviour("events.json"), &sidecar)?;
     if let Some(device) = &session.device {
         let trials = plan.trials.iter();
-        let fingers: BTreeSet<u8> = trials
-            .flat_map(|trial| session.reporting_fingers(trial))
-            .collect();
+        let fingers: BTreeSet<u8> =
+            trials.flat_map(|trial| session.reporting_fingers(trial)).collect();
         for finger in fingers {
             let name =
                 |end: &str| folder.behaviour(&format!("recording-finger{finger}_physio.{end}"));
@@ -87,17 +86,11 @@ fn add_participant(folder: &Folder) -> Result<(), RecordingError> {
     let path = folder.root().join("participants.tsv");
     let mut list = fs::read_to_string(&path).map_err(error_at(&path))?;
     let code = format!("sub-{}", folder.participant());
-    if list
-        .lines()
-        .any(|line| line.split('\t').next() == Some(&code))
-    {
+    if list.lines().any(|line| line.split('\t').next() == Some(&code)) {
         return Ok(());
     }
     // A list with more columns, which a person has added, has no values of this participant in them.
-    let others = list
-        .lines()
-        .next()
-        .map_or(0, |header| header.split('\t').count() - 1);
+    let others = list.lines().next().map_or(0, |header| header.split('\t').count() - 1);
     if !list.ends_with('\n') {
         list.push('\n');
     }

@@ -17,11 +17,7 @@ pub struct Folder {
 impl Folder {
     /// The files of a participant, a code of letters and digits, and a task in a data set.
     pub fn new(root: &Path, participant: &str, task: &str) -> Self {
-        Self {
-            root: root.into(),
-            participant: participant.into(),
-            task: task.into(),
-        }
+        Self { root: root.into(), participant: participant.into(), task: task.into() }
     }
 
     /// The data set.
@@ -41,22 +37,14 @@ impl Folder {
 
     /// A file in which the session was recorded.
     pub fn source(&self, name: &str) -> PathBuf {
-        let Self {
-            root,
-            participant,
-            task,
-        } = self;
+        let Self { root, participant, task } = self;
         let folder = root.join("sourcedata").join(format!("sub-{participant}"));
         folder.join(format!("task-{task}")).join(name)
     }
 
     /// A file of behavioural data, by the end of its name, such as `events.tsv`.
     pub fn behaviour(&self, end: &str) -> PathBuf {
-        let Self {
-            root,
-            participant,
-            task,
-        } = self;
+        let Self { root, participant, task } = self;
         let folder = root.join(format!("sub-{participant}")).join("beh");
         folder.join(format!("sub-{participant}_task-{task}_{end}"))
     }
@@ -74,11 +62,9 @@ pub(super) fn write_whole(path: &Path, contents: &[u8]) -> Result<(), RecordingE
         file.write_all(contents)?;
         file.sync_all()
     });
-    written
-        .and_then(|()| fs::rename(&part, path))
-        .map_err(|error| {
-            // The error that counts is the first one.
-            let _ignored = fs::remove_file(&part);
-            error_at(path)(error)
-        })
+    written.and_then(|()| fs::rename(&part, path)).map_err(|error| {
+        // The error that counts is the first one.
+        let _ignored = fs::remove_file(&part);
+        error_at(path)(error)
+    })
 }

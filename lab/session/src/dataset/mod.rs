@@ -90,16 +90,10 @@ pub enum RecordingError {
 
 /// Names the file of an error of the operating system.
 fn error_at(path: &std::path::Path) -> impl Fn(io::Error) -> RecordingError + '_ {
-    move |error| RecordingError::File {
-        path: path.into(),
-        error,
-    }
+    move |error| RecordingError::File { path: path.into(), error }
 }
 
 /// The same of a file that is read.
 fn unreadable(path: &std::path::Path) -> impl Fn(io::Error) -> RecordingError + '_ {
-    move |error| RecordingError::Unreadable {
-        path: path.into(),
-        error,
-    }
+    move |error| RecordingError::Unreadable { path: path.into(), error }
 }

@@ -12,61 +12,24 @@ use super::events::UNKNOWN;
 use super::{RecordingError, error_at, telemetry};
 
 /// A column: name, unit, description, and the value of a line.
-type Column = (
-    &'static str,
-    &'static str,
-    &'static str,
-    fn(&Telemetry) -> Option<f64>,
-);
+type Column = (&'static str, &'static str, &'static str, fn(&Telemetry) -> Option<f64>);
 
 const COLUMNS: [Column; 10] = [
-    (
-        "setpoint",
-        "degC",
-        "Set-point of the display's surface",
-        |line| line.setpoint_c,
-    ),
-    ("display", "degC", "Thermistor of the display", |line| {
-        line.display_c
-    }),
-    ("sink", "degC", "Thermistor of the heat sink", |line| {
-        line.sink_c
-    }),
-    (
-        "skin",
-        "degC",
-        "Thermistor on the skin at the edge of the contact",
-        |line| line.skin_c,
-    ),
+    ("setpoint", "degC", "Set-point of the display's surface", |line| line.setpoint_c),
+    ("display", "degC", "Thermistor of the display", |line| line.display_c),
+    ("sink", "degC", "Thermistor of the heat sink", |line| line.sink_c),
+    ("skin", "degC", "Thermistor on the skin at the edge of the contact", |line| line.skin_c),
     ("room", "degC", "Thermistor of the room", |line| line.room_c),
     ("force", "N", "Force of the finger", |line| line.force_n),
-    (
-        "demand",
-        "A",
-        "Demanded current of the Peltier module; positive cools",
-        |line| line.demand_a,
-    ),
-    (
-        "current",
-        "A",
-        "Magnitude of the measured current",
-        |line| line.current_a,
-    ),
-    (
-        "limited",
-        "",
-        "1 if the set-point is limited or not followed",
-        |line| Some(f64::from(u8::from(line.limited))),
-    ),
-    (
-        "state",
-        "",
-        "State of the device; a trip has a fault, which the log names",
-        |line| {
-            let known = STATES.iter().position(|state| *state == line.state);
-            Some(known.unwrap_or(TRIPPED) as f64)
-        },
-    ),
+    ("demand", "A", "Demanded current of the Peltier module; positive cools", |line| line.demand_a),
+    ("current", "A", "Magnitude of the measured current", |line| line.current_a),
+    ("limited", "", "1 if the set-point is limited or not followed", |line| {
+        Some(f64::from(u8::from(line.limited)))
+    }),
+    ("state", "", "State of the device; a trip has a fault, which the log names", |line| {
+        let known = STATES.iter().position(|state| *state == line.state);
+        Some(known.unwrap_or(TRIPPED) as f64)
+    }),
 ];
 
 /// The states, whose places are their numbers.
@@ -89,9 +52,7 @@ pub(super) fn compressed(
     finger: u8,
     interval_ms: u32,
 ) -> Result<Vec<u8>, RecordingError> {
-    let mut gzip = GzBuilder::new()
-        .mtime(0)
-        .write(Vec::new(), Compression::default());
+    let mut gzip = GzBuilder::new().mtime(0).write(Vec::new(), Compression::default());
     let nothing = [UNKNOWN; COLUMNS.len()].join("\t") + "\n";
     let mut next_row: i64 = 0;
     for (t_s, received) in telemetry::read(telemetry)? {
@@ -101,14 +62,12 @@ pub(super) fn compressed(
             continue;
         }
         for _ in next_row..row {
-            gzip.write_all(nothing.as_bytes())
-                .map_err(error_at(telemetry))?;
+            gzip.write_all(nothing.as_bytes()).map_err(error_at(telemetry))?;
         }
         let cells = COLUMNS.map(|(.., value)| {
             value(&received.telemetry).map_or(UNKNOWN.into(), |value| value.to_string())
         });
-        gzip.write_all((cells.join("\t") + "\n").as_bytes())
-            .map_err(error_at(telemetry))?;
+        gzip.write_all((cells.join("\t") + "\n").as_bytes()).map_err(error_at(telemetry))?;
         next_row = row + 1;
     }
     gzip.finish().map_err(error_at(telemetry))
@@ -131,8 +90,7 @@ pub(super) fn sidecar(interval_ms: u32) -> Value {
     }
     let words = STATES.iter().map(|state| state.name()).chain(["tripped"]);
     let numbered = words.enumerate();
-    about["state"]["Levels"] = numbered
-        .map(|(number, name)| (number.to_string(), Value::from(name)))
-        .collect();
+    about["state"]["Levels"] =
+        numbered.map(|(number, name)| (number.to_string(), Value::from(name))).collect();
     about
 }

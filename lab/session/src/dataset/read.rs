@@ -44,14 +44,7 @@ impl RecordedSession {
             .map_err(|error| content(&session_path, 1, &error))?;
         let (log, _) = read_log(&folder.source(LOG))?;
         let (records, _) = records_of(&log);
-        Ok(Self {
-            folder,
-            info,
-            session,
-            plan,
-            records,
-            log,
-        })
+        Ok(Self { folder, info, session, plan, records, log })
     }
 
     /// The file with its telemetry.
@@ -70,11 +63,7 @@ impl RecordedSession {
         });
         let mut all: Vec<_> = told.collect();
         let telemetry = telemetry::read(&self.telemetry_path())?;
-        all.extend(
-            telemetry
-                .into_iter()
-                .map(|(t_s, line)| (t_s, Update::Telemetry(line))),
-        );
+        all.extend(telemetry.into_iter().map(|(t_s, line)| (t_s, Update::Telemetry(line))));
         all.sort_by(|(one, _), (other, _)| one.total_cmp(other));
         Ok(all)
     }
@@ -132,11 +121,7 @@ pub(super) fn read_log(path: &Path) -> Result<(Vec<LogLine>, u64), RecordingErro
                 continue;
             }
         }
-        if let Some(LogLine {
-            entry: Entry::Record { .. },
-            ..
-        }) = lines.last()
-        {
+        if let Some(LogLine { entry: Entry::Record { .. }, .. }) = lines.last() {
             if let Some((number, error)) = &damaged {
                 return Err(content(path, *number, error));
             }
@@ -151,10 +136,7 @@ pub(super) fn read_log(path: &Path) -> Result<(Vec<LogLine>, u64), RecordingErro
 pub(super) fn records_of(lines: &[LogLine]) -> (Vec<TrialRecord>, Option<u64>) {
     let mut telemetry = None;
     let records = lines.iter().filter_map(|line| match &line.entry {
-        Entry::Record {
-            record,
-            telemetry_bytes,
-        } => {
+        Entry::Record { record, telemetry_bytes } => {
             telemetry = Some(*telemetry_bytes);
             Some((**record).clone())
         }
@@ -164,9 +146,5 @@ pub(super) fn records_of(lines: &[LogLine]) -> (Vec<TrialRecord>, Option<u64>) {
 }
 
 fn content(path: &Path, line: usize, error: &dyn std::error::Error) -> RecordingError {
-    RecordingError::Content {
-        path: path.into(),
-        line,
-        problem: error.to_string(),
-    }
+    RecordingError::Content { path: path.into(), line, problem: error.to_string() }
 }

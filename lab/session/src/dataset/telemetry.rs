@@ -39,9 +39,7 @@ pub(super) fn row((t_s, finger, line): (f64, u8, &Telemetry)) -> String {
         line.demand_a,
         line.current_a,
     ];
-    let count = line
-        .evaluations
-        .map_or(String::new(), |count| count.to_string());
+    let count = line.evaluations.map_or(String::new(), |count| count.to_string());
     let cells: Vec<_> = values.map(number).into_iter().chain([count]).collect();
     format!(
         "{t_s:.4},{finger},{},{},{},{}\n",
@@ -72,10 +70,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<(f64, ReceivedTelemetry)>, Recordi
 /// A row as the line that was received.
 fn line_of(row: &csv::StringRecord) -> Option<(f64, ReceivedTelemetry)> {
     let t_s: f64 = row.get(0)?.parse().ok()?;
-    let words = row
-        .iter()
-        .skip(2)
-        .map(|cell| if cell.is_empty() { "-" } else { cell });
+    let words = row.iter().skip(2).map(|cell| if cell.is_empty() { "-" } else { cell });
     let words: Vec<_> = ["T"].into_iter().chain(words).collect();
     let line = ReceivedTelemetry {
         finger: Some(row.get(1)?.parse().ok()?),

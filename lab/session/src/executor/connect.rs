@@ -24,10 +24,7 @@ impl<L: Link> Executor<'_, L> {
         }
         let stations = plan.trials.iter().flat_map(|trial| &trial.presented);
         let displays = stations.filter_map(Presented::device_finger).max();
-        let sensors = plan
-            .trials
-            .iter()
-            .map(|trial| self.session.skin_sensors(trial));
+        let sensors = plan.trials.iter().map(|trial| self.session.skin_sensors(trial));
         let needed = [
             ("it presents something on", displays),
             ("it measures the skin by", sensors.flatten().max()),
@@ -46,10 +43,7 @@ impl<L: Link> Executor<'_, L> {
             let address = self.fingers.address(finger);
             all_settings.push(settings(&mut self.client, address).map_err(ends)?);
         }
-        self.recorder.device(&DeviceReport {
-            identity,
-            settings: all_settings,
-        })?;
+        self.recorder.device(&DeviceReport { identity, settings: all_settings })?;
         // Another program may have left it driven.
         self.switch_off()?;
         self.clear_trips()?;
@@ -91,18 +85,13 @@ impl<L: Link> Executor<'_, L> {
         for finger in 0..self.fingers.count() as u8 {
             while let Some(fault) = self.fault_of(finger)? {
                 let explanation = self.cause_of_trip(finger)?;
-                self.operator(OperatorQuestion::Tripped {
-                    fault: fault.into(),
-                    explanation,
-                })?;
+                self.operator(OperatorQuestion::Tripped { fault: fault.into(), explanation })?;
                 let address = self.fingers.address(finger);
                 match self.client.ask_finger(address, &PlainCommand::Clear) {
                     Ok(()) => {}
                     Err(ClientError::Link(error)) => return Err(error.into()),
                     Err(refused) => {
-                        self.inform(Update::Notice(format!(
-                            "it cannot be cleared yet: {refused}"
-                        )));
+                        self.inform(Update::Notice(format!("it cannot be cleared yet: {refused}")));
                     }
                 }
             }

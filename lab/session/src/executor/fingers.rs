@@ -13,9 +13,7 @@ pub struct Fingers {
 impl Fingers {
     /// A device with this many fingers; 0 for none.
     pub fn new(count: u8) -> Self {
-        Self {
-            states: vec![None; usize::from(count)],
-        }
+        Self { states: vec![None; usize::from(count)] }
     }
 
     /// Their number.

@@ -22,12 +22,7 @@ impl<L: Link> Executor<'_, L> {
         interval_s: f64,
         gap_s: f64,
     ) -> Result<(), TrialEnd> {
-        let Some(&Presented::Pulses {
-            device_finger,
-            base_c,
-            departures_k,
-            rate_k_s,
-        }) = next
+        let Some(&Presented::Pulses { device_finger, base_c, departures_k, rate_k_s }) = next
             .trial
             .presented
             .iter()
@@ -89,25 +84,20 @@ impl<L: Link> Executor<'_, L> {
     /// Whether a finger is on its display.
     fn presses(&self, finger: u8) -> bool {
         let line = self.trial.last_line(finger);
-        line.and_then(|line| line.force_n)
-            .is_some_and(|force_n| force_n > ON_DISPLAY_N)
+        line.and_then(|line| line.force_n).is_some_and(|force_n| force_n > ON_DISPLAY_N)
     }
 
     /// Waits for the finger on the display, where it stays from trial to trial.
     fn wait_for_finger(&mut self, finger: u8) -> Result<(), TrialEnd> {
         if !self.presses(finger) {
-            self.inform(Update::Instruction(
-                "Rest your finger on the display.".into(),
-            ));
+            self.inform(Update::Instruction("Rest your finger on the display.".into()));
         }
         let land_s = self.session.trial.land_s;
         let until_s = self.now_s() + land_s;
         if self.wait_for(until_s, |executor| executor.presses(finger))? {
             Ok(())
         } else {
-            Err(TrialEnd::Void(format!(
-                "no finger on the display within {land_s} s"
-            )))
+            Err(TrialEnd::Void(format!("no finger on the display within {land_s} s")))
         }
     }
 }

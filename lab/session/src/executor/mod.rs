@@ -193,11 +193,7 @@ impl<'a, L: Link> Executor<'a, L> {
     fn run_trial(&mut self, next: &Next<'_>, of: usize) -> Result<TrialRecord, SessionEnd> {
         self.drop_late_lines()?;
         self.trial = RunningTrial::new(next, self.now_s(), self.fingers.count());
-        self.inform(Update::Trial {
-            trial: next.trial.clone(),
-            attempt: next.attempt,
-            of,
-        });
+        self.inform(Update::Trial { trial: next.trial.clone(), attempt: next.attempt, of });
         self.ask_about_voids()?;
         self.meet_device()?;
         let void = match self.conduct(next) {
@@ -218,22 +214,16 @@ impl<'a, L: Link> Executor<'a, L> {
     fn conduct(&mut self, next: &Next<'_>) -> Result<(), TrialEnd> {
         self.set_up_device(next.trial)?;
         match self.session.trial.procedure {
-            Procedure::Touch {
-                reach_s,
-                contact,
-                max_s,
-            } => self.touch(next.trial, reach_s, contact, max_s),
+            Procedure::Touch { reach_s, contact, max_s } => {
+                self.touch(next.trial, reach_s, contact, max_s)
+            }
             Procedure::Intervals { interval_s, gap_s } => self.intervals(next, interval_s, gap_s),
         }
     }
 
     /// Lets the participant read the instruction of a part.
     fn instruct(&mut self, part: &str) -> Result<(), SessionEnd> {
-        let of_part = self
-            .session
-            .design
-            .part(part)
-            .and_then(|part| part.instruction.clone());
+        let of_part = self.session.design.part(part).and_then(|part| part.instruction.clone());
         let text = of_part.unwrap_or_else(|| self.session.instruction.clone());
         if text.trim().is_empty() {
             return Ok(());
@@ -252,11 +242,8 @@ impl<'a, L: Link> Executor<'a, L> {
         if voids.is_empty() || !voids.len().is_multiple_of(VOIDS_IN_SEQUENCE) {
             return Ok(());
         }
-        let text = format!(
-            "{} trials in sequence were void, the last one: {}",
-            voids.len(),
-            voids[0]
-        );
+        let text =
+            format!("{} trials in sequence were void, the last one: {}", voids.len(), voids[0]);
         self.operator(OperatorQuestion::Ready(text))?;
         Ok(())
     }

@@ -70,10 +70,7 @@ impl<L: Link> Executor<'_, L> {
         }
         for finger in displays {
             let address = self.fingers.address(*finger);
-            let status = self
-                .client
-                .ask_finger(address, &QueryState)
-                .map_err(trial_end_of)?;
+            let status = self.client.ask_finger(address, &QueryState).map_err(trial_end_of)?;
             if status.state != StateName::Stimulus {
                 return Ok(false);
             }
@@ -83,11 +80,7 @@ impl<L: Link> Executor<'_, L> {
 
     /// Brings displays on which the fingers rest to the temperature of the rest, before a finger is put on them.
     fn hold_rest_temperature(&mut self, displays: &[u8]) -> Result<(), TrialEnd> {
-        let Some(rest) = self
-            .session
-            .rest
-            .filter(|rest| rest.place == RestPlace::Display)
-        else {
+        let Some(rest) = self.session.rest.filter(|rest| rest.place == RestPlace::Display) else {
             return Ok(());
         };
         self.fingers.forget_states();
@@ -113,11 +106,7 @@ impl<L: Link> Executor<'_, L> {
 
     fn choose_materials(&mut self, trial: &PlannedTrial) -> Result<(), TrialEnd> {
         for presented in &trial.presented {
-            if let Presented::Material {
-                device_finger,
-                material,
-            } = presented
-            {
+            if let Presented::Material { device_finger, material } = presented {
                 let mut own = self.session.materials.iter();
                 let command = match own.find(|(name, _)| name == material) {
                     Some((_, properties)) => PlainCommand::CustomMaterial(*properties),
@@ -143,9 +132,7 @@ impl<L: Link> Executor<'_, L> {
         if self.wait_for(until_s, is_armed)? {
             Ok(())
         } else {
-            Err(TrialEnd::Void(format!(
-                "the device is not armed {ARM_S} s after `arm`"
-            )))
+            Err(TrialEnd::Void(format!("the device is not armed {ARM_S} s after `arm`")))
         }
     }
 
@@ -176,29 +163,23 @@ impl<L: Link> Executor<'_, L> {
                 Presented::Material { device_finger, .. } => {
                     self.command(Some(device_finger), &PlainCommand::Start)?;
                 }
-                Presented::Hold {
-                    device_finger,
-                    celsius,
-                } => self.command(Some(device_finger), &PlainCommand::Hold(celsius, None))?,
-                Presented::Pulses {
-                    device_finger,
-                    base_c,
-                    ..
-                } => self.command(Some(device_finger), &PlainCommand::Hold(base_c, None))?,
+                Presented::Hold { device_finger, celsius } => {
+                    self.command(Some(device_finger), &PlainCommand::Hold(celsius, None))?
+                }
+                Presented::Pulses { device_finger, base_c, .. } => {
+                    self.command(Some(device_finger), &PlainCommand::Hold(base_c, None))?
+                }
             }
         }
         self.wait_for_setpoints(displays, |finger| {
             let mut all = trial.presented.iter();
             all.find_map(|presented| match *presented {
-                Presented::Hold {
-                    device_finger,
-                    celsius,
-                } if device_finger == finger => Some(celsius),
-                Presented::Pulses {
-                    device_finger,
-                    base_c,
-                    ..
-                } if device_finger == finger => Some(base_c),
+                Presented::Hold { device_finger, celsius } if device_finger == finger => {
+                    Some(celsius)
+                }
+                Presented::Pulses { device_finger, base_c, .. } if device_finger == finger => {
+                    Some(base_c)
+                }
                 _ => None,
             })
         })
@@ -233,11 +214,7 @@ impl<L: Link> Executor<'_, L> {
         let lines = self.trial.last_lines(finger, AT_SETPOINT_MS);
         let span_ms = (lines.first().zip(lines.last()))
             .map_or(0, |(first, last)| last.tick.saturating_sub(first.tick));
-        let stream_ms = self
-            .session
-            .device
-            .as_ref()
-            .map_or(0, |device| device.stream_ms);
+        let stream_ms = self.session.device.as_ref().map_or(0, |device| device.stream_ms);
         let near = |line: &Telemetry| {
             let off = line
                 .display_c

@@ -30,10 +30,7 @@ impl<L: Link> Executor<'_, L> {
             self.wait_until(now_s + reach_s)?;
         }
         self.phase(Phase::Contact);
-        if displays
-            .iter()
-            .any(|finger| self.trial.is_touching(*finger))
-        {
+        if displays.iter().any(|finger| self.trial.is_touching(*finger)) {
             let why = "a finger was on the display before the tone to touch";
             return Err(TrialEnd::Void(why.into()));
         }
@@ -43,9 +40,7 @@ impl<L: Link> Executor<'_, L> {
         self.inform(Update::TargetForce(trial.target_force_n));
         self.inform(Update::Cue(Cue::Touch));
         self.wait_for_landings(&displays, cue_s)?;
-        let begin_s = displays
-            .iter()
-            .filter_map(|finger| self.trial.land_s(*finger));
+        let begin_s = displays.iter().filter_map(|finger| self.trial.land_s(*finger));
         let begin_s = begin_s.reduce(f64::min).unwrap_or(cue_s);
         if contact == ContactRule::Free {
             self.ask();
@@ -68,10 +63,7 @@ impl<L: Link> Executor<'_, L> {
     /// Asks the participant, unless the session asks nothing.
     fn ask(&mut self) {
         if let Some(answer) = &self.session.answer {
-            let question = Question {
-                ask: answer.ask.clone(),
-                kind: answer.kind.clone(),
-            };
+            let question = Question { ask: answer.ask.clone(), kind: answer.kind.clone() };
             self.trial.is_asked = true;
             self.inform(Update::Ask(question));
         }
@@ -103,19 +95,14 @@ impl<L: Link> Executor<'_, L> {
         }
         self.trial.is_asked = false;
         self.inform(Update::Answered(None));
-        Err(TrialEnd::Void(format!(
-            "no answer within {} s",
-            self.session.trial.answer_s
-        )))
+        Err(TrialEnd::Void(format!("no answer within {} s", self.session.trial.answer_s)))
     }
 
     fn wait_for_landings(&mut self, displays: &[u8], cue_s: f64) -> Result<(), TrialEnd> {
         let land_s = self.session.trial.land_s;
         let all_landed = |executor: &mut Self| {
             executor.check_force(displays);
-            displays
-                .iter()
-                .all(|finger| executor.trial.land_s(*finger).is_some())
+            displays.iter().all(|finger| executor.trial.land_s(*finger).is_some())
         };
         if self.wait_for(cue_s + land_s, all_landed)? {
             return Ok(());
@@ -139,9 +126,7 @@ impl<L: Link> Executor<'_, L> {
         if self.wait_for(until_s, is_lifted)? {
             Ok(())
         } else {
-            Err(TrialEnd::Void(format!(
-                "the finger has not lifted after {LIFT_S} s"
-            )))
+            Err(TrialEnd::Void(format!("the finger has not lifted after {LIFT_S} s")))
         }
     }
 
@@ -174,11 +159,7 @@ impl<L: Link> Executor<'_, L> {
         let off_preset = on_displays()
             .filter_map(|station| Some((station.display_c? - station.setpoint_c?).abs()))
             .find(|off_k| *off_k > rules.display_off_preset_k);
-        let landings = || {
-            displays
-                .iter()
-                .filter_map(|finger| self.trial.land_s(*finger))
-        };
+        let landings = || displays.iter().filter_map(|finger| self.trial.land_s(*finger));
         let apart_s =
             landings().reduce(f64::max).unwrap_or(0.0) - landings().reduce(f64::min).unwrap_or(0.0);
         let force_off = trial.target_force_n.zip(rules.force_off_target);
@@ -201,9 +182,7 @@ impl<L: Link> Executor<'_, L> {
                 rules.contact_min_s
             ))
         } else if let Some(mean_n) = force_off {
-            Some(format!(
-                "a force of {mean_n:.2} N at the end, too far from its target"
-            ))
+            Some(format!("a force of {mean_n:.2} N at the end, too far from its target"))
         } else {
             (rules.landings_apart_s.filter(|most_s| apart_s > *most_s))
                 .map(|most_s| format!("landings {apart_s:.2} s apart; allowed are {most_s} s"))

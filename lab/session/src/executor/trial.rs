@@ -60,9 +60,7 @@ impl RunningTrial {
         let Some(lines) = self.telemetry.get_mut(finger) else {
             return true;
         };
-        let follows = lines
-            .last()
-            .is_none_or(|last| last.tick < line.telemetry.tick);
+        let follows = lines.last().is_none_or(|last| last.tick < line.telemetry.tick);
         if !follows {
             // The trial is void; ticks of before the restart have no time any more.
             self.tick_offset_ns = None;
@@ -70,9 +68,7 @@ impl RunningTrial {
             self.contacts.iter_mut().for_each(Vec::clear);
         }
         let offset_ns = at_ns - i64::from(line.telemetry.tick) * TICK_NS;
-        let soonest_ns = self
-            .tick_offset_ns
-            .map_or(offset_ns, |soonest| soonest.min(offset_ns));
+        let soonest_ns = self.tick_offset_ns.map_or(offset_ns, |soonest| soonest.min(offset_ns));
         self.tick_offset_ns = Some(soonest_ns);
         lines.push(line.telemetry);
         follows
@@ -145,9 +141,7 @@ impl RunningTrial {
     pub fn telemetry(&self) -> impl Iterator<Item = (f64, u8, &Telemetry)> {
         let fingers = (0u8..).zip(&self.telemetry);
         fingers.flat_map(move |(finger, lines)| {
-            lines
-                .iter()
-                .map(move |line| (self.time_s(line.tick), finger, line))
+            lines.iter().map(move |line| (self.time_s(line.tick), finger, line))
         })
     }
 
@@ -170,36 +164,21 @@ impl RunningTrial {
         void: Option<String>,
         end_s: f64,
     ) -> TrialRecord {
-        let displays = || {
-            planned
-                .presented
-                .iter()
-                .filter_map(crate::Presented::device_finger)
-        };
-        let contacts = |finger: u8| {
-            self.contacts
-                .get(usize::from(finger))
-                .map_or(&[][..], Vec::as_slice)
-        };
-        let first_land_s = displays()
-            .filter_map(|finger| self.land_s(finger))
-            .reduce(f64::min);
+        let displays = || planned.presented.iter().filter_map(crate::Presented::device_finger);
+        let contacts =
+            |finger: u8| self.contacts.get(usize::from(finger)).map_or(&[][..], Vec::as_slice);
+        let first_land_s = displays().filter_map(|finger| self.land_s(finger)).reduce(f64::min);
         let land_s = match displays().next() {
             Some(_) => first_land_s,
             None => self.touch_cue_s,
         };
         let lifts = displays().filter_map(|finger| contacts(finger).last()?.1);
         let lift_s = lifts.map(|tick| self.time_s(tick)).reduce(f64::max);
-        let contact_s = displays()
-            .map(|finger| self.contact_s(finger))
-            .reduce(f64::max);
+        let contact_s = displays().map(|finger| self.contact_s(finger)).reduce(f64::max);
         let room_c = land_s.and_then(|land_s| {
             let mut fingers = self.telemetry.iter();
             let lines = fingers.find(|lines| !lines.is_empty())?;
-            lines
-                .iter()
-                .find(|line| self.time_s(line.tick) >= land_s)?
-                .room_c
+            lines.iter().find(|line| self.time_s(line.tick) >= land_s)?.room_c
         });
         TrialRecord {
             trial: planned.number,
@@ -216,10 +195,7 @@ impl RunningTrial {
             lift_s: lift_s.or(self.contact_end_s),
             answer_s: self.response.as_ref().map(|(_, at_s)| *at_s),
             end_s,
-            touches: displays()
-                .map(|finger| contacts(finger).len() as u32)
-                .max()
-                .unwrap_or(0),
+            touches: displays().map(|finger| contacts(finger).len() as u32).max().unwrap_or(0),
             contact_s,
             target_force_n: planned.target_force_n,
             answer: self.answer(session),
@@ -259,15 +235,10 @@ impl RunningTrial {
             return record;
         };
         let skins = self.lines(sensor).iter();
-        let skins: Vec<(f64, f64)> = skins
-            .filter_map(|line| Some((self.time_s(line.tick), line.skin_c?)))
-            .collect();
+        let skins: Vec<(f64, f64)> =
+            skins.filter_map(|line| Some((self.time_s(line.tick), line.skin_c?))).collect();
         let (skin_before_c, skin_fall_k) = skin_fall(&skins, land_s, lift_s);
-        StationRecord {
-            skin_before_c,
-            skin_fall_k,
-            ..record
-        }
+        StationRecord { skin_before_c, skin_fall_k, ..record }
     }
 
     /// The lines of a finger.
@@ -295,9 +266,7 @@ impl RunningTrial {
             })
             .collect();
         let last = (self.contacts.get(usize::from(finger))).and_then(|contacts| contacts.last());
-        let lift_s = last
-            .and_then(|(_, lift)| *lift)
-            .map_or(end_s, |tick| self.time_s(tick));
+        let lift_s = last.and_then(|(_, lift)| *lift).map_or(end_s, |tick| self.time_s(tick));
         // The tone ends the contact; what the finger does on its way up is no part of it.
         let lift_s = lift_s.min(self.contact_end_s.unwrap_or(lift_s));
         let land_s = self.land_s(finger);

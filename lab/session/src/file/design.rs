@@ -90,11 +90,7 @@ impl<'a> Parts<'a> {
     pub fn common(&self, parts: &[usize]) -> String {
         let mut names = self.design.factor_names();
         names.retain(|name| parts.iter().all(|part| self.factor(*part, name).is_some()));
-        if names.is_empty() {
-            "none".into()
-        } else {
-            listed(&names)
-        }
+        if names.is_empty() { "none".into() } else { listed(&names) }
     }
 
     /// The levels of a factor in all parts that are numbers.
@@ -116,10 +112,7 @@ pub(super) fn design<'a>(
         Some(value) => value.table(&single)?,
         None => file.empty("design"),
     };
-    let mut reader = Reader {
-        stations,
-        factors: Vec::new(),
-    };
+    let mut reader = Reader { stations, factors: Vec::new() };
     let staircase_list = match file.get("staircase") {
         None => Vec::new(),
         Some(value) => value.list("a list of tables: [[staircase]]")?,
@@ -146,9 +139,7 @@ pub(super) fn design<'a>(
                 if parts.iter().any(|other: &Part| other.name == name) {
                     return Err(name_value.wrong("a name that no other part has"));
                 }
-                let instruction = part
-                    .get("instruction")
-                    .map(|text| text.text(super::TEXT_MAX));
+                let instruction = part.get("instruction").map(|text| text.text(super::TEXT_MAX));
                 let read = Part {
                     instruction: instruction.transpose()?,
                     ..reader.part(index, name, &part)?
@@ -167,20 +158,15 @@ pub(super) fn design<'a>(
         let named = |other: &StaircaseRule| other.name == staircase.name;
         if staircases.iter().any(named) {
             let table = value.table(&STAIRCASE_KEYS)?;
-            return Err(table
-                .need("name", NAME)?
-                .wrong("a name that no other staircase has"));
+            return Err(table.need("name", NAME)?.wrong("a name that no other staircase has"));
         }
         staircases.push(staircase);
         staircase_at.push(value);
     }
     let count = |part: &Part| {
-        let stairs = staircases
-            .iter()
-            .filter(|staircase| staircase.part == part.name);
-        let of_stairs: usize = stairs
-            .map(|staircase| staircase.initial.rule().trials_max as usize)
-            .sum();
+        let stairs = staircases.iter().filter(|staircase| staircase.part == part.name);
+        let of_stairs: usize =
+            stairs.map(|staircase| staircase.initial.rule().trials_max as usize).sum();
         if of_stairs > 0 {
             of_stairs
         } else {
@@ -213,10 +199,7 @@ pub(super) fn design<'a>(
 
 /// How many combinations a part has, without making them.
 fn combinations(part: &Part) -> usize {
-    let pairs = part
-        .pairs
-        .as_ref()
-        .map_or(1, |pairs| pairs.combinations().len());
+    let pairs = part.pairs.as_ref().map_or(1, |pairs| pairs.combinations().len());
     let levels = part.factors.iter().map(|factor| factor.levels.len());
     levels.fold(pairs, usize::saturating_mul)
 }
@@ -259,11 +242,7 @@ fn balanced(parts: &Parts<'_>, tables: &[Table<'_>]) -> Result<(), SessionError>
 fn same_factors(parts: &Parts<'_>) -> Result<(), SessionError> {
     for (index, (staircase, at)) in parts.staircases.iter().zip(&parts.staircase_at).enumerate() {
         let names = |staircase: &StaircaseRule| {
-            let mut names: Vec<_> = staircase
-                .levels
-                .iter()
-                .map(|(name, _)| name.clone())
-                .collect();
+            let mut names: Vec<_> = staircase.levels.iter().map(|(name, _)| name.clone()).collect();
             names.sort();
             names
         };
@@ -299,41 +278,21 @@ impl<'a> Reader<'a, '_> {
         levels: Vec<(String, Value<'a>)>,
     ) -> Result<(), SessionError> {
         let error = |allowed: String| {
-            at.error(format!(
-                "{}: {name:?} is a factor; allowed is {allowed}",
-                at.key
-            ))
+            at.error(format!("{}: {name:?} is a factor; allowed is {allowed}", at.key))
         };
         if !is_name(name) || RESERVED.contains(&name) {
-            return Err(error(format!(
-                "as a name {NAME}, and none of {}",
-                listed(&RESERVED)
-            )));
+            return Err(error(format!("as a name {NAME}, and none of {}", listed(&RESERVED))));
         }
         if self.stations.iter().any(|station| station.name == name) {
             return Err(error("a name that no station has".into()));
         }
-        if self
-            .factors
-            .iter()
-            .any(|factor| factor.part == part && factor.name == name)
-        {
+        if self.factors.iter().any(|factor| factor.part == part && factor.name == name) {
             return Err(error("each factor once in a part".into()));
         }
-        if self
-            .factors
-            .iter()
-            .filter(|factor| factor.part == part)
-            .count()
-            == FACTORS
-        {
+        if self.factors.iter().filter(|factor| factor.part == part).count() == FACTORS {
             return Err(error(format!("0 to {FACTORS} factors in a part")));
         }
-        self.factors.push(Levels {
-            part,
-            name: name.into(),
-            levels,
-        });
+        self.factors.push(Levels { part, name: name.into(), levels });
         Ok(())
     }
 
@@ -343,10 +302,7 @@ impl<'a> Reader<'a, '_> {
         let mut factors = Vec::new();
         for (name, list) in &table.values {
             let levels = levels(list)?;
-            factors.push(Factor {
-                name: (*name).into(),
-                levels: texts(&levels),
-            });
+            factors.push(Factor { name: (*name).into(), levels: texts(&levels) });
             self.add(part, name, list, levels)?;
         }
         Ok(factors)
@@ -434,12 +390,7 @@ impl<'a> Reader<'a, '_> {
         }
         self.add(part, &into[0], first, levels.clone())?;
         self.add(part, &into[1], second, levels.clone())?;
-        Ok(Pairs {
-            into,
-            levels: texts(&levels),
-            ordered,
-            identical,
-        })
+        Ok(Pairs { into, levels: texts(&levels), ordered, identical })
     }
 
     fn staircase(
@@ -449,10 +400,7 @@ impl<'a> Reader<'a, '_> {
         tables: &[Table<'a>],
     ) -> Result<StaircaseRule, SessionError> {
         let table = value.table(&STAIRCASE_KEYS)?;
-        let names = parts
-            .iter()
-            .map(|part| part.name.clone())
-            .collect::<Vec<_>>();
+        let names = parts.iter().map(|part| part.name.clone()).collect::<Vec<_>>();
         let wanted = table.get("part").map(Value::name).transpose()?;
         let index = match (&wanted, parts.len()) {
             (None, 1) => Some(0),
@@ -467,15 +415,12 @@ impl<'a> Reader<'a, '_> {
             )));
         };
         let (Some(part), Some(of_part)) = (parts.get_mut(index), tables.get(index)) else {
-            return Err(value.error(format!(
-                "staircase.part must name a part; allowed are {allowed}"
-            )));
+            return Err(
+                value.error(format!("staircase.part must name a part; allowed are {allowed}"))
+            );
         };
         let of_orders = ["pairs", "factors", "repeat", "blocks", "max_run"];
-        of_part.without(
-            &of_orders,
-            "in a part without staircases; their levels tell factors",
-        )?;
+        of_part.without(&of_orders, "in a part without staircases; their levels tell factors")?;
         let (start_k, max_k) = (table.number(&START_K)?, table.number(&MAX_K)?);
         let (reversals, counted) = (table.whole(&REVERSALS)?, table.whole(&COUNTED)?);
         let at = |key: &str| table.get(key).unwrap_or(value);
@@ -506,10 +451,7 @@ impl<'a> Reader<'a, '_> {
             levels: Vec::new(),
         };
         if let Some(levels) = table.get("levels") {
-            for (name, value) in levels
-                .any_table("a table of factors with a level each")?
-                .values
-            {
+            for (name, value) in levels.any_table("a table of factors with a level each")?.values {
                 let level = value.level()?;
                 rule.levels.push((name.into(), level.clone()));
                 let of_part = part.factor_names.iter().any(|known| known == name);
@@ -595,11 +537,7 @@ fn blocks(table: &Table<'_>, part: &Part) -> Result<Blocks, SessionError> {
     let repetitions = blocks.whole(&REPETITIONS)?;
     if !part.repeat.is_multiple_of(repetitions) {
         let at = blocks.get(REPETITIONS.key).unwrap_or(value);
-        return Err(at.wrong(format!(
-            "a divisor of {} = {}",
-            table.key("repeat"),
-            part.repeat
-        )));
+        return Err(at.wrong(format!("a divisor of {} = {}", table.key("repeat"), part.repeat)));
     }
     let Some(by) = blocks.get("by") else {
         return Ok(Blocks::Repetitions(repetitions));
@@ -610,8 +548,5 @@ fn blocks(table: &Table<'_>, part: &Part) -> Result<Blocks, SessionError> {
     if !names.contains(&name) {
         return Err(by.wrong(allowed));
     }
-    Ok(Blocks::OneLevel {
-        factor: name.into(),
-        repetitions,
-    })
+    Ok(Blocks::OneLevel { factor: name.into(), repetitions })
 }

@@ -96,19 +96,9 @@ pub(crate) fn parse(text: &str, path: &Path) -> Result<Session, SessionError> {
     let score = score::score(
         file.get("score"),
         &file,
-        &score::Facts {
-            stations,
-            present: &present.present,
-            trial: &trial,
-            design: &design,
-        },
+        &score::Facts { stations, present: &present.present, trial: &trial, design: &design },
     )?;
-    let Parts {
-        design,
-        staircases,
-        break_s,
-        ..
-    } = design;
+    let Parts { design, staircases, break_s, .. } = design;
     Ok(Session {
         title: text_of("title", 200)?,
         task: task(file.need("task", TASK)?)?,
@@ -136,9 +126,5 @@ const TASK: &str = "1 to 20 letters and digits";
 fn task(value: &Value<'_>) -> Result<String, SessionError> {
     let task = value.string(TASK)?;
     let known = task.chars().all(|c| c.is_ascii_alphanumeric());
-    if known && (1..=20).contains(&task.len()) {
-        Ok(task.into())
-    } else {
-        Err(value.wrong(TASK))
-    }
+    if known && (1..=20).contains(&task.len()) { Ok(task.into()) } else { Err(value.wrong(TASK)) }
 }

@@ -12,14 +12,8 @@ use crate::{MaterialOf, Present, PresentCase, Pulses, Quantity, Station, Stimulu
 pub(super) const STIMULUS_KEYS: [&str; 5] =
     ["sample", "display", "hold_c", "pulses", "device_finger"];
 pub(super) const DEVICE_FINGER: Whole = Whole::new("device_finger", 0, 4, Some(0));
-pub(super) const PULSES_KEYS: [&str; 6] = [
-    "base_c",
-    "standard_k",
-    "change",
-    "change_k",
-    "changed",
-    "rate_k_s",
-];
+pub(super) const PULSES_KEYS: [&str; 6] =
+    ["base_c", "standard_k", "change", "change_k", "changed", "rate_k_s"];
 pub(super) const STANDARD_K: Number = Number::new("standard_k", -20.0, 20.0, Some(0.0));
 pub(super) const CHANGE_K: Number = Number::new("change_k", 0.0, 20.0, None);
 pub(super) const RATE_K_S: Number = Number::new("rate_k_s", 0.01, 100.0, None);
@@ -42,41 +36,22 @@ pub(super) fn present<'a>(
     materials: &[(String, Material)],
 ) -> Result<Presentation<'a>, SessionError> {
     let table = file.any_table("a table")?;
-    let mut reader = Reader {
-        stations,
-        parts,
-        materials,
-        stimuli: Vec::new(),
-    };
+    let mut reader = Reader { stations, parts, materials, stimuli: Vec::new() };
     let present = match table.get("by") {
         None => Present {
             by: None,
-            cases: vec![PresentCase {
-                level: None,
-                stations: reader.case(&table, &parts.all())?,
-            }],
+            cases: vec![PresentCase { level: None, stations: reader.case(&table, &parts.all())? }],
         },
         Some(by) => reader.cases(by, &table)?,
     };
     let shown = |(stimulus, _): &&(Stimulus, Value<'a>)| stimulus.device_finger().is_some();
-    let display = reader
-        .stimuli
-        .iter()
-        .find(shown)
-        .map(|(_, value)| value.clone());
-    let pulses = reader
-        .stimuli
-        .iter()
-        .any(|(stimulus, _)| matches!(stimulus, Stimulus::Pulses(_)));
+    let display = reader.stimuli.iter().find(shown).map(|(_, value)| value.clone());
+    let pulses = reader.stimuli.iter().any(|(stimulus, _)| matches!(stimulus, Stimulus::Pulses(_)));
     if let (Some(staircase), false) = (parts.staircase_at.first(), pulses) {
         let problem = "a staircase without pulses, whose change it decides; it is allowed beside pulses in [present]";
         return Err(staircase.error(problem));
     }
-    Ok(Presentation {
-        present,
-        stimuli: reader.stimuli,
-        display,
-    })
+    Ok(Presentation { present, stimuli: reader.stimuli, display })
 }
 
 struct Reader<'a, 'p> {
@@ -91,23 +66,12 @@ impl<'a> Reader<'a, '_> {
     fn cases(&mut self, by: &Value<'a>, table: &Table<'a>) -> Result<Present, SessionError> {
         let factor = by.string("a factor")?;
         let all = self.parts.all();
-        if all
-            .iter()
-            .any(|part| self.parts.factor(*part, factor).is_none())
-        {
-            return Err(by.wrong(format!(
-                "a factor of all parts: {}",
-                self.parts.common(&all)
-            )));
+        if all.iter().any(|part| self.parts.factor(*part, factor).is_none()) {
+            return Err(by.wrong(format!("a factor of all parts: {}", self.parts.common(&all))));
         }
         // In which parts each level occurs.
         let mut levels: Vec<(String, Vec<usize>)> = Vec::new();
-        for of_part in self
-            .parts
-            .factors
-            .iter()
-            .filter(|levels| levels.name == factor)
-        {
+        for of_part in self.parts.factors.iter().filter(|levels| levels.name == factor) {
             for (level, _) in &of_part.levels {
                 match levels.iter_mut().find(|(known, _)| known == level) {
                     Some((_, parts)) => parts.push(of_part.part),
@@ -131,11 +95,8 @@ impl<'a> Reader<'a, '_> {
                 stations: self.case(&value.any_table("a table of stations")?, parts)?,
             });
         }
-        let missing = |level: &&&str| {
-            cases
-                .iter()
-                .all(|case| case.level.as_deref() != Some(**level))
-        };
+        let missing =
+            |level: &&&str| cases.iter().all(|case| case.level.as_deref() != Some(**level));
         if let Some(level) = names.iter().find(missing) {
             let problem = format!(
                 "{} is missing; allowed is a table for each level of {factor:?}: {}",
@@ -144,21 +105,15 @@ impl<'a> Reader<'a, '_> {
             );
             return Err(by.error(problem));
         }
-        Ok(Present {
-            by: Some(factor.into()),
-            cases,
-        })
+        Ok(Present { by: Some(factor.into()), cases })
     }
 
     /// What each station presents in some parts.
     fn case(&mut self, table: &Table<'a>, parts: &[usize]) -> Result<Vec<Stimulus>, SessionError> {
         let names: Vec<_> = self.stations.iter().map(|station| &*station.name).collect();
         if let Some((name, value)) = table.values.iter().find(|(name, _)| !names.contains(name)) {
-            let problem = format!(
-                "{}: {name:?} is no station; allowed are {}",
-                value.key,
-                listed(&names)
-            );
+            let problem =
+                format!("{}: {name:?} is no station; allowed are {}", value.key, listed(&names));
             return Err(value.error(problem));
         }
         let mut stimuli: Vec<Stimulus> = Vec::new();
@@ -189,10 +144,7 @@ impl<'a> Reader<'a, '_> {
             self.stimuli.push((stimulus.clone(), value.clone()));
             stimuli.push(stimulus);
         }
-        if stimuli
-            .iter()
-            .all(|stimulus| *stimulus == Stimulus::Nothing)
-        {
+        if stimuli.iter().all(|stimulus| *stimulus == Stimulus::Nothing) {
             return Err(
                 table.error("no station presents anything; allowed is one that does, or more")
             );
@@ -206,9 +158,7 @@ impl<'a> Reader<'a, '_> {
             return nothing.map_err(|_| value.wrong(STIMULUS));
         }
         let table = value.table(&STIMULUS_KEYS)?;
-        let kinds = STIMULUS_KEYS
-            .iter()
-            .filter(|key| **key != DEVICE_FINGER.key);
+        let kinds = STIMULUS_KEYS.iter().filter(|key| **key != DEVICE_FINGER.key);
         let mut given = kinds.filter_map(|key| Some((*key, table.get(key)?)));
         let (Some((kind, what)), None) = (given.next(), given.next()) else {
             let problem = format!(
@@ -223,10 +173,7 @@ impl<'a> Reader<'a, '_> {
         }
         let device_finger = table.whole(&DEVICE_FINGER)? as u8;
         Ok(match kind {
-            "display" => Stimulus::Display {
-                device_finger,
-                material: self.material(what, parts)?,
-            },
+            "display" => Stimulus::Display { device_finger, material: self.material(what, parts)? },
             "hold_c" => Stimulus::Hold {
                 device_finger,
                 celsius: quantity(what, setpoints_c(), self.parts, parts)?,
@@ -241,13 +188,8 @@ impl<'a> Reader<'a, '_> {
         let common = self.parts.common(parts);
         let allowed = format!("a factor ({common}) or a material ({known})");
         let name = value.string(&allowed)?;
-        if parts
-            .iter()
-            .all(|part| self.parts.factor(*part, name).is_some())
-        {
-            let factors = parts
-                .iter()
-                .filter_map(|part| self.parts.factor(*part, name));
+        if parts.iter().all(|part| self.parts.factor(*part, name).is_some()) {
+            let factors = parts.iter().filter_map(|part| self.parts.factor(*part, name));
             for (level, at) in factors.flat_map(|factor| &factor.levels) {
                 if !materials::is_known(self.materials, level) {
                     let problem = format!(
@@ -275,29 +217,20 @@ impl<'a> Reader<'a, '_> {
         let table = value.table(&PULSES_KEYS)?;
         let in_parts = |key: &Number| {
             let given = table.get(key.key);
-            given
-                .map(|given| quantity(given, key.range, self.parts, parts))
-                .transpose()
+            given.map(|given| quantity(given, key.range, self.parts, parts)).transpose()
         };
         let base_c = table.need("base_c", "15 to 42")?.number(setpoints_c())?;
         let changes = [("cooling", -1.0), ("warming", 1.0)];
-        let sign = table
-            .need("change", "\"cooling\" or \"warming\"")?
-            .word(&changes)?;
+        let sign = table.need("change", "\"cooling\" or \"warming\"")?.word(&changes)?;
         let change_k = in_parts(&CHANGE_K)?;
         let has_staircase = |part: &usize| {
             let name = self.parts.design.parts.get(*part).map(|part| &part.name);
-            self.parts
-                .staircases
-                .iter()
-                .any(|staircase| Some(&staircase.part) == name)
+            self.parts.staircases.iter().any(|staircase| Some(&staircase.part) == name)
         };
         match (&change_k, table.get(CHANGE_K.key)) {
             (Some(_), Some(given)) if parts.iter().any(has_staircase) => {
-                let problem = format!(
-                    "{} beside a [[staircase]]; allowed is one of both",
-                    given.key
-                );
+                let problem =
+                    format!("{} beside a [[staircase]]; allowed is one of both", given.key);
                 return Err(given.error(problem));
             }
             (None, _) if !parts.iter().all(has_staircase) => {

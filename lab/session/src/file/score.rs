@@ -47,11 +47,8 @@ pub(super) fn score<'a>(
     if correct == CorrectAnswer::None {
         table.without(&["chance", "threshold"], "beside score.correct")?;
     }
-    let optional = |key: &Number| {
-        (table.get(key.key))
-            .map(|value| value.number(key.range))
-            .transpose()
-    };
+    let optional =
+        |key: &Number| (table.get(key.key)).map(|value| value.number(key.range)).transpose();
     let answers = facts.trial.words.len();
     let by_number = (correct != CorrectAnswer::None && answers > 0).then(|| 1.0 / answers as f64);
     let (chance, threshold) = (optional(&CHANCE)?.or(by_number), optional(&THRESHOLD)?);
@@ -63,35 +60,18 @@ pub(super) fn score<'a>(
     }
     let analyses = analyses(&table, &correct, facts)?;
     let published = PUBLISHED_TABLES.map(|table| (table, table));
-    let against = table
-        .get("against")
-        .map(|value| value.word(&published))
-        .transpose()?;
-    let compares = analyses
-        .iter()
-        .any(|analysis| analysis == "chi-squared-against");
+    let against = table.get("against").map(|value| value.word(&published)).transpose()?;
+    let compares = analyses.iter().any(|analysis| analysis == "chi-squared-against");
     if !compares {
-        table.without(
-            &["against"],
-            "beside \"chi-squared-against\" in score.analyses",
-        )?;
+        table.without(&["against"], "beside \"chi-squared-against\" in score.analyses")?;
     }
-    Ok(Score {
-        correct,
-        chance,
-        threshold,
-        analyses,
-        against: against.map(Into::into),
-    })
+    Ok(Score { correct, chance, threshold, analyses, against: against.map(Into::into) })
 }
 
 /// How many materials the stations of a case present, at least.
 fn least_materials(present: &Present) -> usize {
     let materials = |stations: &Vec<Stimulus>| {
-        stations
-            .iter()
-            .filter(|stimulus| stimulus.material().is_some())
-            .count()
+        stations.iter().filter(|stimulus| stimulus.material().is_some()).count()
     };
     let counts = present.cases.iter().map(|case| materials(&case.stations));
     counts.min().unwrap_or_default()
@@ -120,10 +100,8 @@ fn correct(value: &Value<'_>, facts: &Facts<'_, '_>) -> Result<CorrectAnswer, Se
             if words.is_empty() {
                 return Err(needs_words("a factor"));
             }
-            if let Some((level, _)) = levels
-                .levels
-                .iter()
-                .find(|(level, _)| !words.contains(&&**level))
+            if let Some((level, _)) =
+                levels.levels.iter().find(|(level, _)| !words.contains(&&**level))
             {
                 let problem = format!(
                     "{} = {name:?}, whose level {level:?} is no answer; allowed is a factor of which each level is one of {}",
@@ -135,11 +113,8 @@ fn correct(value: &Value<'_>, facts: &Facts<'_, '_>) -> Result<CorrectAnswer, Se
         }
         return Ok(CorrectAnswer::Factor(name.into()));
     }
-    let kinds = [
-        ("none", CorrectKind::None),
-        ("colder", CorrectKind::Colder),
-        ("same", CorrectKind::Same),
-    ];
+    let kinds =
+        [("none", CorrectKind::None), ("colder", CorrectKind::Colder), ("same", CorrectKind::Same)];
     let kind = value.word(&kinds).map_err(|_| value.wrong(ALLOWED))?;
     if kind == CorrectKind::None {
         return Ok(CorrectAnswer::None);
@@ -159,38 +134,21 @@ fn correct(value: &Value<'_>, facts: &Facts<'_, '_>) -> Result<CorrectAnswer, Se
         return Err(value.error(problem));
     }
     if kind == CorrectKind::Same {
-        let odd = facts
-            .trial
-            .words
-            .iter()
-            .find(|(word, _)| !["same", "different"].contains(&&**word));
+        let odd =
+            facts.trial.words.iter().find(|(word, _)| !["same", "different"].contains(&&**word));
         return match odd {
             None => Ok(CorrectAnswer::Same),
             Some((_, at)) => Err(at.wrong("same and different with score.correct = \"same\"")),
         };
     }
-    let stations: Vec<_> = facts
-        .stations
-        .iter()
-        .map(|station| &*station.name)
-        .collect();
-    if let Some((_, at)) = facts
-        .trial
-        .words
-        .iter()
-        .find(|(word, _)| !stations.contains(&&**word))
-    {
-        return Err(at.wrong(format!(
-            "a station, with score.correct = \"colder\": {}",
-            listed(&stations)
-        )));
+    let stations: Vec<_> = facts.stations.iter().map(|station| &*station.name).collect();
+    if let Some((_, at)) = facts.trial.words.iter().find(|(word, _)| !stations.contains(&&**word)) {
+        return Err(
+            at.wrong(format!("a station, with score.correct = \"colder\": {}", listed(&stations)))
+        );
     }
     let presents = |index: usize| {
-        let mut stimuli = facts
-            .present
-            .cases
-            .iter()
-            .filter_map(|case| case.stations.get(index));
+        let mut stimuli = facts.present.cases.iter().filter_map(|case| case.stations.get(index));
         stimuli.any(|stimulus| stimulus.material().is_some())
     };
     let unanswered = |(index, name): &(usize, &&str)| presents(*index) && !words.contains(*name);
@@ -226,18 +184,13 @@ fn analyses(
     let values = list.list(&allowed)?;
     let mut analyses: Vec<String> = Vec::new();
     for value in &values {
-        let (word, needs) = value
-            .word(&known)
-            .map_err(|_| value.wrong(listed(&words)))?;
+        let (word, needs) = value.word(&known).map_err(|_| value.wrong(listed(&words)))?;
         if analyses.iter().any(|before| before == word) {
             continue;
         }
         analyses.push(word.into());
-        let chosen = |word: &str| {
-            values
-                .iter()
-                .any(|value| value.string("").is_ok_and(|it| it == word))
-        };
+        let chosen =
+            |word: &str| values.iter().any(|value| value.string("").is_ok_and(|it| it == word));
         if !has_what_it_needs(word, &chosen, table, correct, facts) {
             return Err(value.error(format!("score.analyses: {word:?} needs {needs}")));
         }
@@ -256,13 +209,7 @@ fn has_what_it_needs(
     let rules = &facts.trial.rules;
     let has_correct = *correct != CorrectAnswer::None;
     let rests = follows_force(rules)
-        || matches!(
-            rules.procedure,
-            Procedure::Touch {
-                contact: ContactRule::Hold,
-                ..
-            }
-        );
+        || matches!(rules.procedure, Procedure::Touch { contact: ContactRule::Hold, .. });
     let parts = facts.design.design.parts.len();
     let has_factor = facts.design.design.factor_names().iter().any(|name| {
         let mut levels: Vec<_> = (facts.design.factors.iter())
@@ -277,11 +224,8 @@ fn has_what_it_needs(
         CorrectAnswer::Factor(factor) => {
             let answers = facts.trial.words.iter();
             let levels = |word: &str| {
-                let mut factors = facts
-                    .design
-                    .factors
-                    .iter()
-                    .filter(|of_part| of_part.name == *factor);
+                let mut factors =
+                    facts.design.factors.iter().filter(|of_part| of_part.name == *factor);
                 factors.any(|of_part| of_part.levels.iter().any(|(level, _)| level == word))
             };
             answers.into_iter().all(|(word, _)| levels(word))
@@ -301,13 +245,8 @@ fn has_what_it_needs(
         "identical-pairs" => *correct == CorrectAnswer::ColderStation,
         "confusion" | "information" => confusion(),
         "oddity" => {
-            let is_answer = |station: &Station| {
-                facts
-                    .trial
-                    .words
-                    .iter()
-                    .any(|(word, _)| *word == station.name)
-            };
+            let is_answer =
+                |station: &Station| facts.trial.words.iter().any(|(word, _)| *word == station.name);
             facts.stations.len() == 3 && confusion() && facts.stations.iter().all(is_answer)
         }
         "same-different" => *correct == CorrectAnswer::Same,

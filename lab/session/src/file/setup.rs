@@ -11,14 +11,8 @@ use super::source::SessionError;
 use super::value::{Number, Value, Whole};
 use crate::{DeviceSetup, Rest, RestPlace, Station};
 
-pub(super) const DEVICE_KEYS: [&str; 6] = [
-    "law",
-    "mode",
-    "assumed_finger",
-    "object_c",
-    "skin_c",
-    "stream_ms",
-];
+pub(super) const DEVICE_KEYS: [&str; 6] =
+    ["law", "mode", "assumed_finger", "object_c", "skin_c", "stream_ms"];
 pub(super) const OBJECT_C: Number = Number::new("object_c", -20.0, 60.0, None);
 pub(super) const DEVICE_SKIN_C: Number = Number::new("skin_c", 15.0, 42.0, None);
 /// Five fingers each send a line; 5 ms is the device's shortest interval for that. The means of the skin over half a second, by
@@ -48,10 +42,7 @@ pub(super) fn device(
 ) -> Result<Option<DeviceSetup>, SessionError> {
     let Some(file) = file else {
         let needs = |value: &Value<'_>, what: &str| {
-            let problem = format!(
-                "{} is {what}; it is allowed beside a table [device]",
-                value.key
-            );
+            let problem = format!("{} is {what}; it is allowed beside a table [device]", value.key);
             Err(value.error(problem))
         };
         return match (&present.display, stations.skin_sensors.first()) {
@@ -113,15 +104,9 @@ pub(super) fn stations<'a>(file: &Value<'a>) -> Result<Stations<'a>, SessionErro
         let table = value.table(&STATION_KEYS)?;
         let finger = table.need("finger", "the participant's finger in words")?;
         let sensor = table.get(SKIN_SENSOR.key);
-        let skin_sensor = sensor
-            .map(|sensor| sensor.whole(&SKIN_SENSOR))
-            .transpose()?;
+        let skin_sensor = sensor.map(|sensor| sensor.whole(&SKIN_SENSOR)).transpose()?;
         let skin_sensor = skin_sensor.map(|finger| finger as u8);
-        stations.push(Station {
-            name: (*name).into(),
-            finger: finger.text(40)?,
-            skin_sensor,
-        });
+        stations.push(Station { name: (*name).into(), finger: finger.text(40)?, skin_sensor });
         if let Some((of, sensor)) = skin_sensor.zip(sensor) {
             if skin_sensors.iter().any(|(known, _)| *known == of) {
                 let problem = format!(
@@ -133,10 +118,7 @@ pub(super) fn stations<'a>(file: &Value<'a>) -> Result<Stations<'a>, SessionErro
             skin_sensors.push((of, sensor.clone()));
         }
     }
-    Ok(Stations {
-        stations,
-        skin_sensors,
-    })
+    Ok(Stations { stations, skin_sensors })
 }
 
 /// Columns of recorded tables, and keys, which no factor and no station may be named after.
@@ -182,11 +164,8 @@ pub(super) fn rest(
         return Ok(None);
     };
     let table = file.table(&REST_KEYS)?;
-    let places = [
-        ("pad", RestPlace::Pad),
-        ("display", RestPlace::Display),
-        ("air", RestPlace::Air),
-    ];
+    let places =
+        [("pad", RestPlace::Pad), ("display", RestPlace::Display), ("air", RestPlace::Air)];
     let rest = Rest {
         place: table.word_or("place", &places, RestPlace::Pad)?,
         skin_c: table.number(&REST_SKIN_C)?,
@@ -202,10 +181,7 @@ pub(super) fn rest(
         ));
     }
     if rest.timeout_s <= rest.for_s {
-        let at = table
-            .get("timeout_s")
-            .or(table.get("for_s"))
-            .unwrap_or(file);
+        let at = table.get("timeout_s").or(table.get("for_s")).unwrap_or(file);
         let (timeout_s, for_s) = (rest.timeout_s, rest.for_s);
         let problem =
             format!("rest.timeout_s = {timeout_s}; allowed is more than rest.for_s = {for_s}");

@@ -15,11 +15,7 @@ pub struct SessionError {
 impl SessionError {
     /// An error of the file as a whole.
     pub(super) fn of_file(file: &Path, problem: impl Into<String>) -> Self {
-        Self {
-            file: file.into(),
-            line: None,
-            problem: problem.into(),
-        }
+        Self { file: file.into(), line: None, problem: problem.into() }
     }
 
     /// The line, from 1; `None` if the error is one of the whole file.
@@ -68,10 +64,6 @@ impl Source<'_> {
         let text = self.text.get(span).unwrap_or_default();
         let first = text.lines().next().unwrap_or_default();
         let quoted: String = first.chars().take(MOST_CHARACTERS).collect();
-        if quoted.len() < text.len() {
-            quoted + " …"
-        } else {
-            quoted
-        }
+        if quoted.len() < text.len() { quoted + " …" } else { quoted }
     }
 }

@@ -42,26 +42,14 @@ fn a_wrong_file_is_answered_with_line_mistake_and_what_is_allowed() {
     assert_errors(
         example(),
         &[
-            (
-                "format = 1\n",
-                "\n",
-                "s.toml:1: format is missing; allowed is 1",
-            ),
-            (
-                "format = 1\n",
-                "format = 2\n",
-                "s.toml:1: format = 2; allowed is 1",
-            ),
+            ("format = 1\n", "\n", "s.toml:1: format is missing; allowed is 1"),
+            ("format = 1\n", "format = 2\n", "s.toml:1: format = 2; allowed is 1"),
             (
                 "title = ",
                 "titel = ",
                 "s.toml:2: titel is no key; allowed are format, title, task, cite, instruction, device, materials, stations, present, rest, trial, design, part, staircase, void, score",
             ),
-            (
-                "title = ",
-                "title 5 = ",
-                "s.toml:2: key with no value, expected `=`",
-            ),
+            ("title = ", "title 5 = ", "s.toml:2: key with no value, expected `=`"),
             (
                 "title = \"Copper and foam under two fingers\"",
                 "title = \"\"",
@@ -297,16 +285,8 @@ fn a_wrong_file_is_answered_with_line_mistake_and_what_is_allowed() {
                 "timeout_s = 1",
                 "s.toml:39: rest.timeout_s = 1; allowed is more than rest.for_s = 2",
             ),
-            (
-                "skin_c = 33.0",
-                "skin_c = 50",
-                "s.toml:36: rest.skin_c = 50; allowed is 20 to 40",
-            ),
-            (
-                "skin_c = 33.0",
-                "",
-                "s.toml:34: rest.skin_c is missing; allowed is 20 to 40",
-            ),
+            ("skin_c = 33.0", "skin_c = 50", "s.toml:36: rest.skin_c = 50; allowed is 20 to 40"),
+            ("skin_c = 33.0", "", "s.toml:34: rest.skin_c is missing; allowed is 20 to 40"),
             (
                 "procedure = \"touch\"",
                 "procedure = \"intervals\"",
@@ -322,11 +302,7 @@ fn a_wrong_file_is_answered_with_line_mistake_and_what_is_allowed() {
                 "max_s = \"long\"",
                 "s.toml:45: trial.max_s = \"long\"; allowed is 0.5 to 600",
             ),
-            (
-                "max_s = 10.0",
-                "max_s = nan",
-                "s.toml:45: trial.max_s = nan; allowed is 0.5 to 600",
-            ),
+            ("max_s = 10.0", "max_s = nan", "s.toml:45: trial.max_s = nan; allowed is 0.5 to 600"),
             (
                 "reach_s = 0.0",
                 "target_force_n = 1",
@@ -432,11 +408,7 @@ fn a_wrong_file_is_answered_with_line_mistake_and_what_is_allowed() {
                 "force_off_target = 0.2",
                 "s.toml:63: void.force_off_target has no meaning here; it is allowed with trial.contact = \"force\"",
             ),
-            (
-                "[device]",
-                "[device]\n[device]",
-                "s.toml:10: device again; allowed is each key once",
-            ),
+            ("[device]", "[device]\n[device]", "s.toml:10: device again; allowed is each key once"),
             (
                 "[score]",
                 "[[staircase]]\nname = \"a\"\nstart_k = 1\nmax_k = 2\n\n[score]",
@@ -481,10 +453,7 @@ fn assert_errors_at(right: &str, changes: &[(&str, &str, &str, &str)]) {
         let text = right.replace(from, to);
         let error = Session::parse(&text, path).expect_err(to);
         let line = error.line().and_then(|line| text.lines().nth(line - 1));
-        assert!(
-            line.is_some_and(|line| line.starts_with(at)),
-            "{line:?}: {error}"
-        );
+        assert!(line.is_some_and(|line| line.starts_with(at)), "{line:?}: {error}");
         assert_eq!(error.problem(), *expected, "{from:?} as {to:?}");
     }
 }
@@ -772,11 +741,7 @@ fn a_skin_thermistor_is_one_of_the_device_and_at_one_station() {
     );
     for (present, factors, key) in [
         (in_one, "", "present.right"),
-        (
-            in_two,
-            "factors = { side = [\"a\", \"b\"] }",
-            "present.b.right",
-        ),
+        (in_two, "factors = { side = [\"a\", \"b\"] }", "present.b.right"),
     ] {
         for own in ["", "skin_sensor = 1\n"] {
             let text = format!(
@@ -786,12 +751,7 @@ fn a_skin_thermistor_is_one_of_the_device_and_at_one_station() {
             );
             assert_errors_at(
                 &text,
-                &[(
-                    "device_finger = 2",
-                    "device_finger = 0",
-                    "right = { display",
-                    &problem(key),
-                )],
+                &[("device_finger = 2", "device_finger = 0", "right = { display", &problem(key))],
             );
         }
     }
@@ -800,29 +760,15 @@ fn a_skin_thermistor_is_one_of_the_device_and_at_one_station() {
 #[test]
 fn a_file_that_cannot_be_read_is_named() {
     let error = Session::read(Path::new("missing.toml")).expect_err("no file");
-    assert!(
-        error
-            .to_string()
-            .starts_with("missing.toml: cannot be read: "),
-        "{error}"
-    );
+    assert!(error.to_string().starts_with("missing.toml: cannot be read: "), "{error}");
     assert_eq!(error.line(), None);
 }
 
 /// Lines left out, cut, or with another value: an answer, or a session with a plan, and no panic.
 #[test]
 fn no_change_of_a_file_makes_the_reader_panic() {
-    let values = [
-        "0",
-        "-1e300",
-        "\"x\"",
-        "[]",
-        "[[1]]",
-        "{}",
-        "{ a = { b = 1 } }",
-        "true",
-        "1979-05-27",
-    ];
+    let values =
+        ["0", "-1e300", "\"x\"", "[]", "[[1]]", "{}", "{ a = { b = 1 } }", "true", "1979-05-27"];
     let names = [
         "p4-identification",
         "p6-skin-temperature",
@@ -835,9 +781,8 @@ fn no_change_of_a_file_makes_the_reader_panic() {
         let lines: Vec<&str> = text.lines().collect();
         for (at, line) in lines.iter().enumerate() {
             let key = line.split_once('=').map(|(key, _)| key);
-            let changed = key
-                .into_iter()
-                .flat_map(|key| values.map(|value| format!("{key}= {value}")));
+            let changed =
+                key.into_iter().flat_map(|key| values.map(|value| format!("{key}= {value}")));
             for change in
                 changed.chain([String::new(), line.chars().take(line.len() / 2).collect()])
             {
@@ -877,19 +822,8 @@ fn the_documentation_has_each_number_with_range_and_default() {
     let numbers: [(&str, &[Number]); 8] = [
         ("`[device]`", &[setup::OBJECT_C, setup::DEVICE_SKIN_C]),
         ("`[materials.NAME]`", &materials::PROPERTIES),
-        (
-            "`[rest]`",
-            &[
-                setup::REST_SKIN_C,
-                setup::WITHIN_K,
-                setup::FOR_S,
-                setup::TIMEOUT_S,
-            ],
-        ),
-        (
-            "Keys of `pulses`",
-            &[present::STANDARD_K, present::CHANGE_K, present::RATE_K_S],
-        ),
+        ("`[rest]`", &[setup::REST_SKIN_C, setup::WITHIN_K, setup::FOR_S, setup::TIMEOUT_S]),
+        ("Keys of `pulses`", &[present::STANDARD_K, present::CHANGE_K, present::RATE_K_S]),
         (
             "`[trial]`",
             &[
@@ -902,10 +836,7 @@ fn the_documentation_has_each_number_with_range_and_default() {
                 trial::ANSWER_S,
             ],
         ),
-        (
-            "## Staircases",
-            &[design::START_K, design::MAX_K, design::FACTOR],
-        ),
+        ("## Staircases", &[design::START_K, design::MAX_K, design::FACTOR]),
         (
             "## Void",
             &[
@@ -923,24 +854,11 @@ fn the_documentation_has_each_number_with_range_and_default() {
             assert_row(after, number.key, number.range, number.default);
         }
     }
-    assert_row(
-        "## Design",
-        "break_s",
-        design::BREAK_S.range,
-        design::BREAK_S.default,
-    );
+    assert_row("## Design", "break_s", design::BREAK_S.range, design::BREAK_S.default);
     let wholes: [(&str, &[Whole]); 5] = [
         ("`[device]`", &[setup::STREAM_MS]),
         ("## Design", &[design::REPEAT, design::BREAK_AFTER]),
-        (
-            "## Staircases",
-            &[
-                design::DOWN,
-                design::REVERSALS,
-                design::COUNTED,
-                design::TRIALS_MAX,
-            ],
-        ),
+        ("## Staircases", &[design::DOWN, design::REVERSALS, design::COUNTED, design::TRIALS_MAX]),
         ("## Void", &[trial::ATTEMPTS_MAX]),
         ("`[stations.NAME]`", &[setup::SKIN_SENSOR]),
     ];
@@ -984,19 +902,10 @@ fn the_documentation_has_all_keys_and_words() {
 #[test]
 fn the_device_accepts_the_same_materials() {
     let accepted = |values: [f64; 5]| {
-        let [
-            conductivity_w_mk,
-            density_kg_m3,
-            specific_heat_j_kgk,
-            roughness_um,
-            slope_rad,
-        ] = values;
+        let [conductivity_w_mk, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad] =
+            values;
         let material = Material {
-            surface: Surface {
-                conductivity_w_mk,
-                roughness_um,
-                slope_rad,
-            },
+            surface: Surface { conductivity_w_mk, roughness_um, slope_rad },
             density_kg_m3,
             specific_heat_j_kgk,
         };
@@ -1018,10 +927,6 @@ fn the_device_accepts_the_same_materials() {
         let (mut below, mut above) = (corner(0), corner(31));
         below[property] *= 0.5;
         above[property] *= 1.01;
-        assert!(
-            !accepted(below) && !accepted(above),
-            "{}",
-            materials::PROPERTIES[property].key
-        );
+        assert!(!accepted(below) && !accepted(above), "{}", materials::PROPERTIES[property].key);
     }
 }

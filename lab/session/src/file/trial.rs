@@ -61,13 +61,7 @@ pub(super) struct Trial<'a> {
 
 /// Whether the rules are those of a force that is followed.
 pub(super) fn follows_force(rules: &TrialRules) -> bool {
-    matches!(
-        rules.procedure,
-        Procedure::Touch {
-            contact: ContactRule::Force,
-            ..
-        }
-    )
+    matches!(rules.procedure, Procedure::Touch { contact: ContactRule::Force, .. })
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -145,12 +139,7 @@ pub(super) fn trial<'a>(
         let at = table.get("contact").unwrap_or(file);
         return Err(at.wrong("\"force\" with a station that presents a display, which measures it"));
     }
-    Ok(Trial {
-        rules,
-        answer,
-        words,
-        feedback: table.get("feedback").cloned(),
-    })
+    Ok(Trial { rules, answer, words, feedback: table.get("feedback").cloned() })
 }
 
 /// The largest departure must be reached within an interval, be undone within the time between two of them, and stay within
@@ -167,30 +156,20 @@ fn fits(
     };
     let changes_k = match &pulses.change_k {
         Some(change_k) => levels(change_k),
-        None => parts
-            .staircases
-            .iter()
-            .map(|staircase| staircase.initial.rule().most)
-            .collect(),
+        None => parts.staircases.iter().map(|staircase| staircase.initial.rule().most).collect(),
     };
     let standards_k = levels(&pulses.standard_k);
     let departures_k = standards_k.iter().flat_map(|standard_k| {
-        let changed_k = changes_k
-            .iter()
-            .map(|change_k| standard_k + pulses.sign * change_k);
+        let changed_k = changes_k.iter().map(|change_k| standard_k + pulses.sign * change_k);
         changed_k.chain([*standard_k]).collect::<Vec<_>>()
     });
     let (least, most) = setpoints_c();
     for departure_k in departures_k {
-        let (reached_c, needed_s) = (
-            pulses.base_c + departure_k,
-            departure_k.abs() / pulses.rate_k_s,
-        );
+        let (reached_c, needed_s) =
+            (pulses.base_c + departure_k, departure_k.abs() / pulses.rate_k_s);
         if !(least..=most).contains(&reached_c) {
-            let problem = format!(
-                "{} reaches {reached_c:.2} C; allowed is {least} to {most} C",
-                value.key
-            );
+            let problem =
+                format!("{} reaches {reached_c:.2} C; allowed is {least} to {most} C", value.key);
             return Err(value.error(problem));
         }
         if needed_s > time_s {
@@ -211,13 +190,7 @@ fn target_force(
     procedure: Procedure,
     parts: &Parts<'_>,
 ) -> Result<Option<Quantity>, SessionError> {
-    let follows = matches!(
-        procedure,
-        Procedure::Touch {
-            contact: ContactRule::Force,
-            ..
-        }
-    );
+    let follows = matches!(procedure, Procedure::Touch { contact: ContactRule::Force, .. });
     let key = &TARGET_FORCE_N;
     match (follows, table.get(key.key)) {
         (false, None) => Ok(None),
@@ -275,10 +248,7 @@ fn answer<'a>(
             let [least, most] = &numbers[..] else {
                 return Err(range.wrong(NUMBERS));
             };
-            let (least, most) = (
-                least.number((-1000.0, 1000.0))?,
-                most.number((-1000.0, 1000.0))?,
-            );
+            let (least, most) = (least.number((-1000.0, 1000.0))?, most.number((-1000.0, 1000.0))?);
             if least >= most {
                 return Err(range.wrong(NUMBERS));
             }
@@ -312,11 +282,8 @@ pub(super) fn voids<'a>(
     if stations.len() < 2 {
         table.without(&["landings_apart_s"], "with two stations or more")?;
     }
-    let optional = |key: &Number| {
-        (table.get(key.key))
-            .map(|value| value.number(key.range))
-            .transpose()
-    };
+    let optional =
+        |key: &Number| (table.get(key.key)).map(|value| value.number(key.range)).transpose();
     let voids = VoidRules {
         display_off_preset_k: table.number(&DISPLAY_OFF_PRESET_K)?,
         force_max_n: table.number(&FORCE_MAX_N)?,
@@ -329,10 +296,7 @@ pub(super) fn voids<'a>(
         Procedure::Touch { max_s, .. } => max_s,
         Procedure::Intervals { .. } => f64::INFINITY,
     };
-    if let (true, Some(value)) = (
-        voids.contact_min_s > longest_s,
-        table.get(CONTACT_MIN_S.key),
-    ) {
+    if let (true, Some(value)) = (voids.contact_min_s > longest_s, table.get(CONTACT_MIN_S.key)) {
         return Err(value.wrong(format!("0 to trial.max_s = {longest_s}")));
     }
     let targets_n = match &trial.rules.target_force_n {

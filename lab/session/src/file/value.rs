@@ -19,11 +19,7 @@ pub(super) struct Number {
 
 impl Number {
     pub const fn new(key: &'static str, least: f64, most: f64, default: Option<f64>) -> Self {
-        Self {
-            key,
-            range: (least, most),
-            default,
-        }
+        Self { key, range: (least, most), default }
     }
 
     fn allowed(&self) -> String {
@@ -44,11 +40,7 @@ pub(super) struct Whole {
 
 impl Whole {
     pub const fn new(key: &'static str, least: u32, most: u32, default: Option<u32>) -> Self {
-        Self {
-            key,
-            range: (least, most),
-            default,
-        }
+        Self { key, range: (least, most), default }
     }
 
     fn allowed(&self) -> String {
@@ -95,11 +87,7 @@ impl<'a> Value<'a> {
     /// An error at this value.
     pub fn error(&self, problem: impl Into<String>) -> SessionError {
         let is_table = self.value.get_ref().is_table();
-        let at = if is_table {
-            self.key_at
-        } else {
-            self.value.span().start
-        };
+        let at = if is_table { self.key_at } else { self.value.span().start };
         self.source.error(at, problem)
     }
 
@@ -169,19 +157,13 @@ impl<'a> Value<'a> {
         let allowed = quoted.join(" or ");
         let given = self.string(&allowed)?;
         let found = words.iter().find(|(word, _)| *word == given);
-        found
-            .map(|(_, meaning)| meaning.clone())
-            .ok_or_else(|| self.wrong(allowed))
+        found.map(|(_, meaning)| meaning.clone()).ok_or_else(|| self.wrong(allowed))
     }
 
     /// A name of a factor, a station or a part.
     pub fn name(&self) -> Result<String, SessionError> {
         let name = self.string(NAME)?;
-        if is_name(name) {
-            Ok(name.into())
-        } else {
-            Err(self.wrong(NAME))
-        }
+        if is_name(name) { Ok(name.into()) } else { Err(self.wrong(NAME)) }
     }
 
     /// A level of a factor: a word, or a number as the file writes it.
@@ -192,11 +174,7 @@ impl<'a> Value<'a> {
             DeValue::String(text) => text,
             _ => return Err(self.wrong(LEVEL)),
         };
-        if is_level(text) {
-            Ok(text.into())
-        } else {
-            Err(self.wrong(LEVEL))
-        }
+        if is_level(text) { Ok(text.into()) } else { Err(self.wrong(LEVEL)) }
     }
 
     pub fn boolean(&self) -> Result<bool, SessionError> {
@@ -231,12 +209,7 @@ impl<'a> Value<'a> {
     pub fn any_table(&self, allowed: &str) -> Result<Table<'a>, SessionError> {
         let value: &'a DeValue<'a> = self.value.get_ref();
         match value.as_table() {
-            Some(table) => Ok(Table::new(
-                self.source,
-                self.key.clone(),
-                self.key_at,
-                table,
-            )),
+            Some(table) => Ok(Table::new(self.source, self.key.clone(), self.key_at, table)),
             None => Err(self.wrong(allowed)),
         }
     }
@@ -264,44 +237,21 @@ impl<'a> Table<'a> {
         values.sort_by_key(|(key, _)| key.span().start);
         let named = values.into_iter().map(|(key, value)| {
             let name: &'a str = key.get_ref();
-            let full = if path.is_empty() {
-                name.into()
-            } else {
-                format!("{path}.{name}")
-            };
-            let value = Value {
-                source,
-                key: full,
-                key_at: key.span().start,
-                value,
-            };
+            let full = if path.is_empty() { name.into() } else { format!("{path}.{name}") };
+            let value = Value { source, key: full, key_at: key.span().start, value };
             (name, value)
         });
-        Self {
-            source,
-            values: named.collect(),
-            path,
-            at,
-        }
+        Self { source, values: named.collect(), path, at }
     }
 
     /// A table of this one that the file leaves out.
     pub fn empty(&self, key: &str) -> Self {
-        Self {
-            source: self.source,
-            path: self.key(key),
-            at: self.at,
-            values: Vec::new(),
-        }
+        Self { source: self.source, path: self.key(key), at: self.at, values: Vec::new() }
     }
 
     /// The full name of a key of this table.
     pub fn key(&self, key: &str) -> String {
-        if self.path.is_empty() {
-            key.into()
-        } else {
-            format!("{}.{key}", self.path)
-        }
+        if self.path.is_empty() { key.into() } else { format!("{}.{key}", self.path) }
     }
 
     /// Reports the first key that is none of these.
@@ -339,10 +289,7 @@ impl<'a> Table<'a> {
     /// The value of a key that must be there.
     pub fn need(&self, key: &str, allowed: &str) -> Result<&Value<'a>, SessionError> {
         self.get(key).ok_or_else(|| {
-            self.error(format!(
-                "{} is missing; allowed is {allowed}",
-                self.key(key)
-            ))
+            self.error(format!("{} is missing; allowed is {allowed}", self.key(key)))
         })
     }
 

@@ -67,13 +67,9 @@ fn check_plan(session: &Session) {
 
 fn texts() -> Vec<String> {
     let entries = std::fs::read_dir(folder()).expect("the ready sessions");
-    let mut paths: Vec<_> = entries
-        .map(|entry| entry.expect("an entry").path())
-        .collect();
+    let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
     paths.sort();
-    let texts = paths
-        .iter()
-        .map(|path| std::fs::read_to_string(path).expect("text"));
+    let texts = paths.iter().map(|path| std::fs::read_to_string(path).expect("text"));
     texts.collect()
 }
 
@@ -165,9 +161,8 @@ fn joined(count: usize, item: impl Fn(usize) -> String) -> String {
 fn large_files_are_refused_soon() {
     let levels = joined(90_000, |index| format!("\"l{index}\""));
     let factors = |count| joined(count, |index| format!("f{index} = [\"a\", \"b\"]"));
-    let parts: Vec<String> = (0..30_000)
-        .map(|index| format!("[[part]]\nname = \"p{index}\""))
-        .collect();
+    let parts: Vec<String> =
+        (0..30_000).map(|index| format!("[[part]]\nname = \"p{index}\"")).collect();
     let analyses = joined(90_000, |_| "\"falls\"".into());
     for (design, problem) in [
         (
@@ -175,21 +170,12 @@ fn large_files_are_refused_soon() {
             "a list of 2 to 100 different levels",
         ),
         (
-            format!(
-                "[design]\nrandom = {{ {} }}\nrepeat = 1000\n",
-                factors(45_000)
-            ),
+            format!("[design]\nrandom = {{ {} }}\nrepeat = 1000\n", factors(45_000)),
             "0 to 20 factors in a part",
         ),
-        (
-            format!("[design]\nfactors = {{ {} }}\n", factors(20)),
-            "more than 10000 trials",
-        ),
+        (format!("[design]\nfactors = {{ {} }}\n", factors(20)), "more than 10000 trials"),
         (parts.join("\n"), "more than 100 parts"),
-        (
-            format!("[score]\nanalyses = [{analyses}]\n"),
-            "\"falls\" needs contact",
-        ),
+        (format!("[score]\nanalyses = [{analyses}]\n"), "\"falls\" needs contact"),
     ] {
         let text = with_design(&design);
         assert!(text.len() < 1 << 20, "{}", text.len());

@@ -10,11 +10,7 @@ use crate::{changed, plan, ready};
 /// A plan is a promise: a laboratory that goes on next year with the seeds of this year must get the same trials.
 #[test]
 fn plans_do_not_change_with_versions() {
-    for name in [
-        "p5-real-and-simulated",
-        "p8-force-matching",
-        "p9-change-threshold",
-    ] {
+    for name in ["p5-real-and-simulated", "p8-force-matching", "p9-change-threshold"] {
         let path = format!("{}/tests/data/{name}.csv", env!("CARGO_MANIFEST_DIR"));
         let stored = std::fs::read_to_string(Path::new(&path)).expect(&path);
         assert!(plan(&ready(name), "P01", 1).csv() == stored, "{name}");
@@ -34,11 +30,8 @@ fn the_same_seed_and_participant_give_the_same_plan() {
 #[test]
 fn texts_and_comments_do_not_change_a_plan() {
     let one = plan(&ready("p5-real-and-simulated"), "P01", 1);
-    let asked = changed(
-        "p5-real-and-simulated",
-        "Which hand felt the colder material?",
-        "Left or right?",
-    );
+    let asked =
+        changed("p5-real-and-simulated", "Which hand felt the colder material?", "Left or right?");
     assert_eq!(plan(&asked, "P01", 1), one);
 }
 
@@ -57,16 +50,8 @@ fn each_purpose_has_its_own_random_numbers() {
     assert_eq!(more.factors, ["real", "simulated", "voice", "side"]);
     let levels =
         |trial: &PlannedTrial, indices: [usize; 3]| indices.map(|i| trial.levels[i].clone());
-    let of_one: Vec<_> = one
-        .trials
-        .iter()
-        .map(|trial| levels(trial, [0, 1, 2]))
-        .collect();
-    let of_more: Vec<_> = more
-        .trials
-        .iter()
-        .map(|trial| levels(trial, [0, 1, 3]))
-        .collect();
+    let of_one: Vec<_> = one.trials.iter().map(|trial| levels(trial, [0, 1, 2])).collect();
+    let of_more: Vec<_> = more.trials.iter().map(|trial| levels(trial, [0, 1, 3])).collect();
     assert_eq!(of_one, of_more);
 }
 
@@ -78,10 +63,7 @@ fn orders_are_uniform() {
     let mut counts = vec![0_u32; places];
     for seed in 0..seeds {
         let plan = plan(&session, "P01", u64::from(seed));
-        let place = plan
-            .trials
-            .iter()
-            .position(|trial| trial.levels[..2] == ["copper", "abs"]);
+        let place = plan.trials.iter().position(|trial| trial.levels[..2] == ["copper", "abs"]);
         counts[place.expect("the pair")] += 1;
     }
     let expected = f64::from(seeds) / places as f64;
@@ -98,16 +80,12 @@ fn participants_are_independent() {
     let session = ready("p5-real-and-simulated");
     let sides = |participant: u32| -> Vec<String> {
         let plan = plan(&session, &format!("P{participant}"), 1);
-        plan.trials
-            .iter()
-            .map(|trial| trial.levels[2].clone())
-            .collect()
+        plan.trials.iter().map(|trial| trial.levels[2].clone()).collect()
     };
     // Agreement of the sides of two participants at the same trial: half of them by chance.
     let all: Vec<_> = (0..40).map(sides).collect();
-    let pairs = all
-        .windows(2)
-        .map(|pair| pair[0].iter().zip(&pair[1]).filter(|(a, b)| a == b).count());
+    let pairs =
+        all.windows(2).map(|pair| pair[0].iter().zip(&pair[1]).filter(|(a, b)| a == b).count());
     let share = pairs.sum::<usize>() as f64 / (39.0 * 64.0);
     assert!((share - 0.5).abs() < 0.06, "{share}");
 }
@@ -124,15 +102,9 @@ fn no_level_runs_longer_than_the_session_allows() {
         let runs = trials.chunk_by(|one, other| one.levels[factor] == other.levels[factor]);
         runs.map(<[_]>::len).max()
     };
-    assert_eq!(
-        (longest(&session, 0), longest(&session, 2)),
-        (Some(2), Some(3))
-    );
+    assert_eq!((longest(&session, 0), longest(&session, 2)), (Some(2), Some(3)));
     let free = ready("p5-real-and-simulated");
-    assert!(
-        longest(&free, 2) > Some(3),
-        "without the constraint this seed has longer runs"
-    );
+    assert!(longest(&free, 2) > Some(3), "without the constraint this seed has longer runs");
 }
 
 #[test]
@@ -168,20 +140,13 @@ fn blocks_of_one_level_alternate_and_the_first_is_drawn() {
     let mut first = HashMap::new();
     for participant in 0..40 {
         let plan = plan(&session, &format!("P{participant}"), 1);
-        let windows: Vec<&str> = plan
-            .trials
-            .chunks(15)
-            .map(|block| &*block[0].levels[0])
-            .collect();
+        let windows: Vec<&str> = plan.trials.chunks(15).map(|block| &*block[0].levels[0]).collect();
         assert!(
             windows == ["baf2", "zns", "baf2", "zns"] || windows == ["zns", "baf2", "zns", "baf2"]
         );
         *first.entry(windows[0].to_owned()).or_insert(0) += 1;
     }
-    assert!(
-        first.values().all(|count| (8..=32).contains(count)),
-        "{first:?}"
-    );
+    assert!(first.values().all(|count| (8..=32).contains(count)), "{first:?}");
 }
 
 #[test]
@@ -189,11 +154,7 @@ fn breaks_can_come_after_a_number_of_trials_or_never() {
     let breaks = |to: &str| -> Vec<u32> {
         let session = changed("p5-real-and-simulated", "blocks = \"repetition\"", to);
         let trials = plan(&session, "P01", 1).trials;
-        trials
-            .iter()
-            .filter(|trial| trial.break_before)
-            .map(|trial| trial.number)
-            .collect()
+        trials.iter().filter(|trial| trial.break_before).map(|trial| trial.number).collect()
     };
     assert_eq!(breaks("blocks = \"repetition\""), [17, 33, 49]);
     assert_eq!(breaks("blocks = \"none\""), [0; 0]);

@@ -10,12 +10,7 @@ use thermal_session::{
 use crate::{changed, folder, plan, ready};
 
 /// A ready session: name, trials of each part, blocks of each part, and trials before which a break comes.
-type Expected = (
-    &'static str,
-    &'static [usize],
-    &'static [u32],
-    &'static [u32],
-);
+type Expected = (&'static str, &'static [usize], &'static [u32], &'static [u32]);
 
 const SESSIONS: [Expected; 13] = [
     ("p1-discrimination", &[84], &[4], &[22, 43, 64]),
@@ -24,21 +19,11 @@ const SESSIONS: [Expected; 13] = [
     ("p3-localisation-displays", &[180], &[3], &[61, 121]),
     ("p4-identification", &[15, 45], &[1, 3], &[16, 31, 46]),
     ("p5-real-and-simulated", &[64], &[4], &[17, 33, 49]),
-    (
-        "p5-real-and-simulated-contact-model",
-        &[64],
-        &[4],
-        &[17, 33, 49],
-    ),
+    ("p5-real-and-simulated-contact-model", &[64], &[4], &[17, 33, 49]),
     ("p6-skin-temperature", &[15, 15], &[1, 1], &[16]),
     ("p8-force-matching", &[60], &[4], &[16, 31, 46]),
     ("p9-change-threshold", &[120], &[1], &[41, 81]),
-    (
-        "p10-pulse-difference",
-        &[180],
-        &[1],
-        &[31, 61, 91, 121, 151],
-    ),
+    ("p10-pulse-difference", &[180], &[1], &[31, 61, 91, 121, 151]),
     ("p12-referral", &[32], &[4], &[9, 17, 25]),
     ("p14-same-or-different", &[96], &[6], &[17, 33, 49, 65, 81]),
 ];
@@ -56,17 +41,10 @@ fn each(check: impl Fn(&Session, &Plan)) {
 #[test]
 fn the_folder_has_these_sessions() {
     let files = std::fs::read_dir(folder()).expect("the folder");
-    let names = files.map(|file| {
-        file.expect("a file")
-            .file_name()
-            .into_string()
-            .expect("its name")
-    });
+    let names =
+        files.map(|file| file.expect("a file").file_name().into_string().expect("its name"));
     let expected = SESSIONS.map(|(name, ..)| format!("{name}.toml"));
-    assert_eq!(
-        names.collect::<BTreeSet<_>>(),
-        expected.into_iter().collect()
-    );
+    assert_eq!(names.collect::<BTreeSet<_>>(), expected.into_iter().collect());
 }
 
 /// Names of tasks are names of files: two sessions with the same one would mix their data.
@@ -93,11 +71,7 @@ fn a_session_needs_a_device_for_displays_and_skin_thermistors_only() {
     let beside = "present]\nleft = { sample = \"copper\" }\nright = \"nothing\"\n";
     for (thermistor_at, expected) in [("left", true), ("right", false)] {
         let keys = |station: &str| {
-            let own = if station == thermistor_at {
-                "skin_sensor = 0\n"
-            } else {
-                ""
-            };
+            let own = if station == thermistor_at { "skin_sensor = 0\n" } else { "" };
             format!("[stations.{station}]\nfinger = \"{station} index\"\n{own}")
         };
         let text = format!(
@@ -116,28 +90,16 @@ fn trials_blocks_and_breaks_are_those_of_the_source() {
     for (name, trials, blocks, breaks) in SESSIONS {
         let session = ready(name);
         let plan = plan(&session, "P01", 1);
-        let of_part = |part: &Part| {
-            plan.trials
-                .iter()
-                .filter(|trial| trial.part == part.name)
-                .count()
-        };
+        let of_part =
+            |part: &Part| plan.trials.iter().filter(|trial| trial.part == part.name).count();
         let counts: Vec<_> = session.design.parts.iter().map(of_part).collect();
         assert_eq!(counts, trials, "{name}");
         let blocks_of = |part: &Part| {
             let trials = plan.trials.iter().filter(|trial| trial.part == part.name);
-            trials
-                .map(|trial| trial.block)
-                .collect::<BTreeSet<_>>()
-                .len() as u32
+            trials.map(|trial| trial.block).collect::<BTreeSet<_>>().len() as u32
         };
         assert_eq!(
-            session
-                .design
-                .parts
-                .iter()
-                .map(blocks_of)
-                .collect::<Vec<_>>(),
+            session.design.parts.iter().map(blocks_of).collect::<Vec<_>>(),
             blocks,
             "{name}"
         );
@@ -162,32 +124,20 @@ fn trials_are_numbered_and_blocks_follow_each_other() {
             );
         }
         let blocks: Vec<_> = plan.trials.iter().map(|trial| trial.block).collect();
-        assert!(
-            blocks
-                .windows(2)
-                .all(|pair| pair[1] == pair[0] || pair[1] == pair[0] + 1)
-        );
+        assert!(blocks.windows(2).all(|pair| pair[1] == pair[0] || pair[1] == pair[0] + 1));
         assert_eq!(blocks[0], 1);
     });
 }
 
 /// The levels of a trial for these factors.
 fn levels<'a>(plan: &'a Plan, trial: &'a PlannedTrial, factors: &[(&str, &str)]) -> Vec<&'a str> {
-    factors
-        .iter()
-        .map(|(factor, _)| plan.level(trial, factor).expect("a factor"))
-        .collect()
+    factors.iter().map(|(factor, _)| plan.level(trial, factor).expect("a factor")).collect()
 }
 
 #[test]
 fn each_block_has_each_combination_equally_often() {
     each(|session, plan| {
-        for part in session
-            .design
-            .parts
-            .iter()
-            .filter(|_| session.staircases.is_empty())
-        {
+        for part in session.design.parts.iter().filter(|_| session.staircases.is_empty()) {
             let combinations = part.combinations();
             let blocks: BTreeSet<_> = plan
                 .trials
@@ -200,16 +150,11 @@ fn each_block_has_each_combination_equally_often() {
                 let trials = plan.trials.iter().filter(|trial| trial.block == block);
                 let mut counts: HashMap<Vec<&str>, u32> = HashMap::new();
                 for trial in trials {
-                    *counts
-                        .entry(levels(plan, trial, &combinations[0]))
-                        .or_default() += 1;
+                    *counts.entry(levels(plan, trial, &combinations[0])).or_default() += 1;
                 }
                 let (repetitions, of_block) = match &part.blocks {
                     Blocks::Repetitions(repetitions) => (*repetitions, combinations.len()),
-                    Blocks::OneLevel {
-                        factor,
-                        repetitions,
-                    } => {
+                    Blocks::OneLevel { factor, repetitions } => {
                         let factor = part.factors.iter().find(|known| known.name == *factor);
                         (
                             *repetitions,
@@ -218,10 +163,7 @@ fn each_block_has_each_combination_equally_often() {
                     }
                 };
                 assert_eq!(counts.len(), of_block);
-                assert!(
-                    counts.values().all(|count| *count == repetitions),
-                    "{counts:?}"
-                );
+                assert!(counts.values().all(|count| *count == repetitions), "{counts:?}");
                 for (levels, count) in counts {
                     *in_all.entry(levels).or_default() += count;
                 }
@@ -240,23 +182,14 @@ fn balanced_levels_occur_equally_often_with_each_combination() {
         let plan = plan(&session, "P03", 3);
         for part in &session.design.parts {
             let combination = part.combinations().remove(0);
-            for factor in part
-                .random
-                .iter()
-                .filter(|factor| part.balance.contains(&factor.name))
-            {
+            for factor in part.random.iter().filter(|factor| part.balance.contains(&factor.name)) {
                 let mut counts: HashMap<(Vec<&str>, &str), u32> = HashMap::new();
                 for trial in &plan.trials {
                     let level = plan.level(trial, &factor.name).expect("the factor");
-                    *counts
-                        .entry((levels(&plan, trial, &combination), level))
-                        .or_default() += 1;
+                    *counts.entry((levels(&plan, trial, &combination), level)).or_default() += 1;
                 }
                 let each = part.repeat / factor.levels.len() as u32;
-                assert!(
-                    counts.values().all(|count| *count == each),
-                    "{name}: {counts:?}"
-                );
+                assert!(counts.values().all(|count| *count == each), "{name}: {counts:?}");
                 checked += 1;
             }
         }
@@ -273,18 +206,9 @@ fn stations_present_what_the_factors_say() {
         let [real, simulated, side] = &trial.levels[..] else {
             panic!("{:?}", trial.levels);
         };
-        let sample = Presented::Sample {
-            material: real.clone(),
-        };
-        let display = Presented::Material {
-            device_finger: 0,
-            material: simulated.clone(),
-        };
-        let expected = if side == "real-left" {
-            [sample, display]
-        } else {
-            [display, sample]
-        };
+        let sample = Presented::Sample { material: real.clone() };
+        let display = Presented::Material { device_finger: 0, material: simulated.clone() };
+        let expected = if side == "real-left" { [sample, display] } else { [display, sample] };
         assert_eq!(trial.presented, expected);
     }
     let session = ready("p3-localisation");
@@ -294,17 +218,8 @@ fn stations_present_what_the_factors_say() {
             panic!("{:?}", trial.levels);
         };
         for (station, presented) in plan.stations.iter().zip(&trial.presented) {
-            let material = if station == position {
-                target
-            } else {
-                distractor
-            };
-            assert_eq!(
-                *presented,
-                Presented::Sample {
-                    material: material.clone()
-                }
-            );
+            let material = if station == position { target } else { distractor };
+            assert_eq!(*presented, Presented::Sample { material: material.clone() });
         }
         assert_eq!(trial.correct.as_ref(), Some(position));
     }
@@ -344,17 +259,11 @@ fn p4_names_the_material_on_sample_and_display() {
             panic!("{:?}", trial.levels);
         };
         let material = material.clone();
-        assert_eq!(
-            (&trial.part, trial.correct.as_ref()),
-            (mode, Some(&material))
-        );
+        assert_eq!((&trial.part, trial.correct.as_ref()), (mode, Some(&material)));
         let expected = if mode == "real" {
             Presented::Sample { material }
         } else {
-            Presented::Material {
-                device_finger: 0,
-                material,
-            }
+            Presented::Material { device_finger: 0, material }
         };
         assert_eq!(trial.presented, [expected]);
     }
@@ -362,10 +271,8 @@ fn p4_names_the_material_on_sample_and_display() {
 
 #[test]
 fn p5_has_real_and_simulated_and_its_files_differ_in_the_device_only() {
-    let (thesis, ours) = (
-        ready("p5-real-and-simulated"),
-        ready("p5-real-and-simulated-contact-model"),
-    );
+    let (thesis, ours) =
+        (ready("p5-real-and-simulated"), ready("p5-real-and-simulated-contact-model"));
     assert!(
         plan(&thesis, "P01", 1)
             .csv()
@@ -385,16 +292,10 @@ fn p5_has_real_and_simulated_and_its_files_differ_in_the_device_only() {
 #[test]
 fn p8_follows_the_force_of_its_factor() {
     let session = ready("p8-force-matching");
-    assert_eq!(
-        session.trial.target_force_n,
-        Some(Quantity::Factor("force_n".into()))
-    );
+    assert_eq!(session.trial.target_force_n, Some(Quantity::Factor("force_n".into())));
     for trial in &plan(&session, "P01", 1).trials {
         assert_eq!(
-            trial
-                .target_force_n
-                .map(|force_n| force_n.to_string())
-                .as_ref(),
+            trial.target_force_n.map(|force_n| force_n.to_string()).as_ref(),
             Some(&trial.levels[1])
         );
     }
@@ -419,19 +320,13 @@ fn staircases_take_turns_and_the_change_is_in_the_interval_of_the_correct_answer
             let [Presented::Pulses { departures_k, .. }] = &trial.presented[..] else {
                 panic!("{:?}", trial.presented);
             };
-            let (standard, changed) = (
-                Departure::Fixed(standard_k),
-                Departure::Staircase { standard_k, sign },
-            );
+            let (standard, changed) =
+                (Departure::Fixed(standard_k), Departure::Staircase { standard_k, sign });
             let first = trial.correct.as_deref() == Some("first");
             firsts += usize::from(first);
             assert_eq!(
                 *departures_k,
-                if first {
-                    [changed, standard]
-                } else {
-                    [standard, changed]
-                }
+                if first { [changed, standard] } else { [standard, changed] }
             );
         }
         let share = firsts as f64 / plan.trials.len() as f64;
@@ -445,24 +340,12 @@ fn p12_cools_the_outer_fingers_or_the_middle_one() {
     assert_eq!(session.device_fingers(), [1, 2, 3]);
     for trial in &plan(&session, "P01", 1).trials {
         let cold_c: f64 = trial.levels[1].parse().expect("a temperature");
-        let (outer_c, middle_c) = if trial.levels[0] == "outer" {
-            (cold_c, 33.0)
-        } else {
-            (33.0, cold_c)
-        };
-        for ((presented, celsius), device_finger) in trial
-            .presented
-            .iter()
-            .zip([outer_c, middle_c, outer_c])
-            .zip(1..)
+        let (outer_c, middle_c) =
+            if trial.levels[0] == "outer" { (cold_c, 33.0) } else { (33.0, cold_c) };
+        for ((presented, celsius), device_finger) in
+            trial.presented.iter().zip([outer_c, middle_c, outer_c]).zip(1..)
         {
-            assert_eq!(
-                *presented,
-                Presented::Hold {
-                    device_finger,
-                    celsius
-                }
-            );
+            assert_eq!(*presented, Presented::Hold { device_finger, celsius });
         }
     }
 }

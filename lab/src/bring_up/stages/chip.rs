@@ -90,10 +90,7 @@ pub const RESET: Stage = Stage {
         lines: &["press stop", "fit usb", "fit supply"],
     },
     steps: &[
-        manual(
-            "Hold the Nucleo's reset button (B2) during the next readings.",
-            &["press reset"],
-        ),
+        manual("Hold the Nucleo's reset button (B2) during the next readings.", &["press reset"]),
         low_in_reset(
             "in1-in-reset",
             "bridge IN1, PA8 (D7), in reset",

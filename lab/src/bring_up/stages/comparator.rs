@@ -100,16 +100,12 @@ pub const LATCH: Stage = Stage {
                  TLV1702, block comparator) dead or without 5 V, test switch X1 (74LVC1G3157), PC3 \
                  (CN7-37) or PB2 (CN10-22) not connected, latch X6 (74HCT74) dead",
         ),
-        cut_supply(
-            "hot-supply",
-            "bridge supply at the end of that test",
-            |report| report.hot_supply_v.map(Value::Number),
-        ),
-        release(
-            "hot-release",
-            "end of that test until nFAULT rises",
-            |report| report.hot_release_ms.map(Value::Number),
-        ),
+        cut_supply("hot-supply", "bridge supply at the end of that test", |report| {
+            report.hot_supply_v.map(Value::Number)
+        }),
+        release("hot-release", "end of that test until nFAULT rises", |report| {
+            report.hot_release_ms.map(Value::Number)
+        }),
         cut(
             "cold-cut",
             "comparator's test at its cold side until nFAULT falls",
@@ -117,16 +113,12 @@ pub const LATCH: Stage = Stage {
             "the comparator does not cut when its cold side is tested: cold side X4 (half of the \
                  TLV1702, block comparator) dead, or PB2 (CN10-22) not connected to R7 (6.34 kΩ)",
         ),
-        cut_supply(
-            "cold-supply",
-            "bridge supply at the end of that test",
-            |report| report.cold_supply_v.map(Value::Number),
-        ),
-        release(
-            "cold-release",
-            "end of that test until nFAULT rises",
-            |report| report.cold_release_ms.map(Value::Number),
-        ),
+        cut_supply("cold-supply", "bridge supply at the end of that test", |report| {
+            report.cold_supply_v.map(Value::Number)
+        }),
+        release("cold-release", "end of that test until nFAULT rises", |report| {
+            report.cold_release_ms.map(Value::Number)
+        }),
         read(
             "supply",
             "sensed bridge supply after the tests",

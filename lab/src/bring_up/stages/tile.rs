@@ -44,23 +44,19 @@ const fn response(
 /// A thermistor, at this input, against the reference thermometer at rest.
 macro_rules! at_rest {
     ($name:literal, $thermistor:literal, $input:literal) => {
-        read(
-            $name,
-            concat!($thermistor, " less reference"),
-            Reading::Kept,
-        )
-        .range(-1.2, 1.2, Kelvin)
-        .basis("what calibration corrects: 1.2 K; 1 % of thermistor and beta are 0.4 K")
-        .finding(concat!(
-            "the ",
-            $thermistor,
-            " (",
-            $input,
-            ") reads another temperature than the reference thermometer at its place: a 10 kΩ \
+        read($name, concat!($thermistor, " less reference"), Reading::Kept)
+            .range(-1.2, 1.2, Kelvin)
+            .basis("what calibration corrects: 1.2 K; 1 % of thermistor and beta are 0.4 K")
+            .finding(concat!(
+                "the ",
+                $thermistor,
+                " (",
+                $input,
+                ") reads another temperature than the reference thermometer at its place: a 10 kΩ \
              thermistor of beta 3950 K? In its place? Wires swapped?"
-        ))
-        .blocks(StageId::Commissioning)
-        .step()
+            ))
+            .blocks(StageId::Commissioning)
+            .step()
     };
 }
 
@@ -92,13 +88,7 @@ pub const TILE: Stage = Stage {
              on. Connect the five thermistors in place of the resistors: two in the display's plate, one on the sink, one for \
              the skin and one for the room in the air. Replace the laboratory supply by the 12 V supply of the device. Keep \
              your fingers off. Release the emergency stop.",
-            &[
-                "press stop",
-                "remove load",
-                "fit tile",
-                "fit thermistors",
-                "release stop",
-            ],
+            &["press stop", "remove load", "fit tile", "fit thermistors", "release stop"],
         ),
         routine(Routine::Wait(3000)),
         routine(Routine::Thermistors),
@@ -145,10 +135,7 @@ pub const TILE: Stage = Stage {
         .low("")
         .blocks(StageId::Tile)
         .step(),
-        routine(Routine::Hold {
-            keep: "warm",
-            celsius: 38.0,
-        }),
+        routine(Routine::Hold { keep: "warm", celsius: 38.0 }),
         held(
             "warm-display",
             "display thermistor less reference, held at 38 °C",
@@ -161,10 +148,7 @@ pub const TILE: Stage = Stage {
             "the second display thermistor (PA1, A1) is right at room temperature and wrong at \
                  38 °C: a thermistor of another type (beta is not 3950 K)",
         ),
-        routine(Routine::Hold {
-            keep: "cold",
-            celsius: 17.0,
-        }),
+        routine(Routine::Hold { keep: "cold", celsius: 17.0 }),
         held(
             "cold-display",
             "display thermistor less reference, held at 17 °C",

@@ -36,9 +36,7 @@ pub fn one_way<R: AsRef<[f64]>>(groups: &[R]) -> Result<OneWay> {
     });
     let within: f64 = groups.iter().map(|g| sum_of_squares(g.as_ref())).sum();
     if !varies(within, all()) {
-        return Err(StatisticsError::NoVariation {
-            what: "what is observed within the groups",
-        });
+        return Err(StatisticsError::NoVariation { what: "what is observed within the groups" });
     }
     Ok(OneWay {
         effect: Effect::new(

@@ -43,9 +43,7 @@ pub fn contrast_within<R: AsRef<[f64]>>(subjects: &[R], weights: &[f64]) -> Resu
     let largest = weights.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
     let cells = subjects.iter().flat_map(AsRef::as_ref);
     if !varies(squares, cells.map(|y| y * largest)) {
-        return Err(StatisticsError::NoVariation {
-            what: "the contrast over the subjects",
-        });
+        return Err(StatisticsError::NoVariation { what: "the contrast over the subjects" });
     }
     let count = subjects.len() as f64;
     let df = count - 1.0;
@@ -61,22 +59,15 @@ pub fn contrast_between<R: AsRef<[f64]>>(groups: &[R], weights: &[f64]) -> Resul
     check_weights(weights, groups.len())?;
     let analysis = one_way(groups)?;
     let estimate = analysis.means.iter().zip(weights).map(|(m, w)| m * w).sum();
-    let squares = groups
-        .iter()
-        .zip(weights)
-        .map(|(group, w)| w * w / group.as_ref().len() as f64);
+    let squares = groups.iter().zip(weights).map(|(group, w)| w * w / group.as_ref().len() as f64);
     let error = (analysis.effect.mean_square_error() * squares.sum::<f64>()).sqrt();
     Contrast::new(estimate, error, analysis.effect.error_df)
 }
 
 impl Contrast {
     fn new(estimate: f64, standard_error: f64, error_df: f64) -> Result<Self> {
-        let standard_error = checked(
-            "standard error of the contrast",
-            standard_error,
-            "finite",
-            f64::is_finite,
-        )?;
+        let standard_error =
+            checked("standard error of the contrast", standard_error, "finite", f64::is_finite)?;
         let f = (estimate / standard_error).powi(2);
         Ok(Self {
             estimate,
@@ -101,8 +92,6 @@ fn check_weights(weights: &[f64], levels: usize) -> Result<()> {
     }
     let sum: f64 = weights.iter().sum();
     let size: f64 = weights.iter().map(|w| w.abs()).sum();
-    checked("sum of the weights", sum, "0", |sum| {
-        sum.abs() <= 1e-12 * size
-    })?;
+    checked("sum of the weights", sum, "0", |sum| sum.abs() <= 1e-12 * size)?;
     checked("largest weight", size, "other than 0", |size| size > 0.0).map(|_| ())
 }

@@ -32,11 +32,7 @@ pub fn repeated_measures<R: AsRef<[f64]>>(subjects: &[R]) -> Result<RepeatedMeas
     let all = || subjects.iter().flat_map(AsRef::as_ref).copied();
     let projection = |subject: &R| centred(subject.as_ref());
     let projections: Vec<Vec<f64>> = subjects.iter().map(projection).collect();
-    let projected = Projected {
-        groups: &[projections],
-        cells: 1.0,
-        df: (levels - 1) as f64,
-    };
+    let projected = Projected { groups: &[projections], cells: 1.0, df: (levels - 1) as f64 };
     let subject_means: Vec<f64> = subjects.iter().map(|s| mean_of(s.as_ref())).collect();
     let of_level = |level: usize| subjects.iter().map(move |s| s.as_ref()[level]);
     Ok(RepeatedMeasures {

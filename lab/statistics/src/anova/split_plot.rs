@@ -42,15 +42,9 @@ pub fn split_plot(groups: &[Vec<Vec<f64>>]) -> Result<SplitPlot> {
     between.sum_of_squares *= levels as f64;
     between.error_sum_of_squares *= levels as f64;
 
-    let projections: Vec<Vec<Vec<f64>>> = groups
-        .iter()
-        .map(|group| group.iter().map(|subject| centred(subject)).collect())
-        .collect();
-    let projected = Projected {
-        groups: &projections,
-        cells: 1.0,
-        df: (levels - 1) as f64,
-    };
+    let projections: Vec<Vec<Vec<f64>>> =
+        groups.iter().map(|group| group.iter().map(|subject| centred(subject)).collect()).collect();
+    let projected = Projected { groups: &projections, cells: 1.0, df: (levels - 1) as f64 };
     let all = subjects.iter().flat_map(|subject| subject.iter().copied());
     let within = projected.effects(all)?;
     Ok(SplitPlot {

@@ -51,25 +51,13 @@ pub fn two_within(subjects: &[Vec<Vec<f64>>]) -> Result<TwoWithin> {
         cells.iter().flat_map(less_both).collect()
     };
     let effect = |projections: Vec<Vec<f64>>, cells: usize, df: usize| {
-        let projected = Projected {
-            groups: &[projections],
-            cells: cells as f64,
-            df: df as f64,
-        };
+        let projected = Projected { groups: &[projections], cells: cells as f64, df: df as f64 };
         let all = rows.iter().flat_map(|row| row.iter().copied());
         Ok(projected.effects(all)?.effect)
     };
     Ok(TwoWithin {
-        a: effect(
-            subjects.iter().map(|s| centred(&of_a(s))).collect(),
-            levels_b,
-            levels_a - 1,
-        )?,
-        b: effect(
-            subjects.iter().map(|s| centred(&of_b(s))).collect(),
-            levels_a,
-            levels_b - 1,
-        )?,
+        a: effect(subjects.iter().map(|s| centred(&of_a(s))).collect(), levels_b, levels_a - 1)?,
+        b: effect(subjects.iter().map(|s| centred(&of_b(s))).collect(), levels_a, levels_b - 1)?,
         interaction: effect(
             subjects.iter().map(of_both).collect(),
             1,

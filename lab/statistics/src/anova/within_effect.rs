@@ -42,9 +42,7 @@ impl Projected<'_> {
         let error = (error, self.df * (subject_count - groups));
         let epsilon = Some(epsilon(&residuals, self.df));
         let of_effect = self.cells * subject_count * square(&mean);
-        let of_groups = means
-            .iter()
-            .map(|of_group| square(&difference(of_group, &mean)));
+        let of_groups = means.iter().map(|of_group| square(&difference(of_group, &mean)));
         let of_groups = self.cells * subject_count / groups * of_groups.sum::<f64>();
         let with_groups = (self.groups.len() > 1)
             .then(|| Effect::new((of_groups, self.df * (groups - 1.0)), error, epsilon));
@@ -61,9 +59,7 @@ fn epsilon(residuals: &[Vec<f64>], df: f64) -> f64 {
     let size = residuals.first().map_or(0, Vec::len);
     let scatter = |i: usize, j: usize| residuals.iter().map(|r| r[i] * r[j]).sum::<f64>();
     let trace: f64 = (0..size).map(|i| scatter(i, i)).sum();
-    let squares: f64 = (0..size * size)
-        .map(|cell| scatter(cell / size, cell % size).powi(2))
-        .sum();
+    let squares: f64 = (0..size * size).map(|cell| scatter(cell / size, cell % size).powi(2)).sum();
     // Rounding must not make a corrected test more liberal than the uncorrected one.
     (trace * trace / (df * squares)).min(1.0)
 }

@@ -24,42 +24,18 @@ fn a_missing_cell_is_named() {
     );
     let group = vec![vec![1.0, 2.0], vec![2.0, 4.0]];
     let groups = [group.clone(), [group, vec![vec![1.0, 1.0]]].concat()];
-    assert!(matches!(
-        split_plot(&groups),
-        Err(Unbalanced {
-            what: "group",
-            row: 1,
-            ..
-        })
-    ));
-    let cells = [
-        vec![vec![1.0, 2.0], vec![1.0]],
-        vec![vec![2.0, 1.0], vec![3.0, 1.0]],
-    ];
-    assert!(matches!(
-        two_within(&cells),
-        Err(Unbalanced {
-            row: 1,
-            count: 1,
-            ..
-        })
-    ));
+    assert!(matches!(split_plot(&groups), Err(Unbalanced { what: "group", row: 1, .. })));
+    let cells = [vec![vec![1.0, 2.0], vec![1.0]], vec![vec![2.0, 1.0], vec![3.0, 1.0]]];
+    assert!(matches!(two_within(&cells), Err(Unbalanced { row: 1, count: 1, .. })));
 }
 
 #[test]
 fn what_is_not_finite_is_named() {
     let rows = [[1.0, 2.0], [3.0, f64::NAN]];
-    let place = NotFinite {
-        what: "subject",
-        row: 1,
-        column: 1,
-    };
+    let place = NotFinite { what: "subject", row: 1, column: 1 };
     assert_eq!(repeated_measures(&rows), Err(place));
     assert!(matches!(one_way(&rows), Err(NotFinite { .. })));
-    assert!(matches!(
-        one_sample(&[1.0, f64::INFINITY], 0.0),
-        Err(NotFinite { .. })
-    ));
+    assert!(matches!(one_sample(&[1.0, f64::INFINITY], 0.0), Err(NotFinite { .. })));
 }
 
 #[test]
@@ -69,19 +45,11 @@ fn too_few_are_refused() {
     assert_eq!(repeated_measures(&[[1.0], [2.0]]), few("levels", 1, 2));
     assert_eq!(
         one_way(&[vec![1.0], vec![2.0]]).map(|_| ()),
-        Err(TooFew {
-            what: "observations",
-            count: 2,
-            least: 3
-        })
+        Err(TooFew { what: "observations", count: 2, least: 3 })
     );
     assert_eq!(
         pearson(&[1.0, 2.0], &[2.0, 3.0]).map(|_| ()),
-        Err(TooFew {
-            what: "pairs",
-            count: 2,
-            least: 3
-        })
+        Err(TooFew { what: "pairs", count: 2, least: 3 })
     );
     assert!(Proportion::new(0, 0).is_err());
 }
@@ -92,23 +60,11 @@ fn subjects_that_do_not_differ_are_refused() {
     for row in [[1.0, 1.0, 1.0], [0.1, 0.2, 0.3]] {
         let rows = [row; 4];
         assert!(matches!(repeated_measures(&rows), Err(NoVariation { .. })));
-        assert!(matches!(
-            contrast_within(&rows, &[1.0, 0.0, -1.0]),
-            Err(NoVariation { .. })
-        ));
+        assert!(matches!(contrast_within(&rows, &[1.0, 0.0, -1.0]), Err(NoVariation { .. })));
     }
-    assert!(matches!(
-        one_sample(&[0.7; 10], 0.5),
-        Err(NoVariation { .. })
-    ));
-    assert!(matches!(
-        pearson(&[0.1; 5], &[1.0, 2.0, 3.0, 4.0, 5.0]),
-        Err(NoVariation { .. })
-    ));
-    assert!(matches!(
-        contingency(&[[0, 3], [0, 4]]),
-        Err(NoVariation { .. })
-    ));
+    assert!(matches!(one_sample(&[0.7; 10], 0.5), Err(NoVariation { .. })));
+    assert!(matches!(pearson(&[0.1; 5], &[1.0, 2.0, 3.0, 4.0, 5.0]), Err(NoVariation { .. })));
+    assert!(matches!(contingency(&[[0, 3], [0, 4]]), Err(NoVariation { .. })));
 }
 
 #[test]
@@ -117,27 +73,18 @@ fn what_the_data_do_not_determine_is_refused() {
     let line: Vec<f64> = t.iter().map(|t| 2.0 * t).collect();
     let what = "the time constant";
     assert_eq!(fit_exponential(&t, &line), Err(NotDetermined { what }));
-    assert_eq!(
-        through_origin(&[0.0, 0.0], &[1.0, 2.0]),
-        Err(NotDetermined { what: "the slope" })
-    );
+    assert_eq!(through_origin(&[0.0, 0.0], &[1.0, 2.0]), Err(NotDetermined { what: "the slope" }));
 }
 
 #[test]
 fn arguments_out_of_range_are_named_with_their_range() {
     let error = d_prime(3, 1.2).expect_err("no proportion");
-    assert_eq!(
-        error.to_string(),
-        "proportion is 1.2; it must be from 0 to 1"
-    );
+    assert_eq!(error.to_string(), "proportion is 1.2; it must be from 0 to 1");
     let refused = |result: Result<f64, StatisticsError>| matches!(result, Err(OutOfRange { .. }));
     assert!(refused(d_prime(1, 0.5)));
     assert!(refused(d_prime_oddity(f64::NAN)));
     assert!(matches!(Proportion::new(3, 2), Err(OutOfRange { .. })));
-    assert!(matches!(
-        tukey(&[1.0, 2.0], 5, 0.0, 10.0),
-        Err(OutOfRange { .. })
-    ));
+    assert!(matches!(tukey(&[1.0, 2.0], 5, 0.0, 10.0), Err(OutOfRange { .. })));
     for proportion in [0.0, 2.1e-308, 0.9e-100] {
         let refused = goodness_of_fit(&[3, 4], &[1.0, proportion]);
         assert!(matches!(refused, Err(OutOfRange { .. })), "{refused:?}");
@@ -145,10 +92,7 @@ fn arguments_out_of_range_are_named_with_their_range() {
     let smallest = goodness_of_fit(&[u32::MAX, u32::MAX], &[1e100, 1e-100]);
     assert!(smallest.expect("a test").statistic.is_finite());
     let rows = [[1.0, 2.0], [2.0, 5.0], [0.0, 1.0]];
-    assert!(matches!(
-        contrast_within(&rows, &[1.0, 1.0]),
-        Err(OutOfRange { .. })
-    ));
+    assert!(matches!(contrast_within(&rows, &[1.0, 1.0]), Err(OutOfRange { .. })));
 }
 
 #[test]

@@ -26,10 +26,7 @@ fn committed_exact_values_are_those_that_the_generator_writes() {
 
 /// Probability of a statistic, named as in the tables.
 fn tail(statistic: &str, df: &str, value: f64) -> Result<f64> {
-    let df: Vec<f64> = df
-        .split(' ')
-        .map(|n| n.parse().expect("a number"))
-        .collect();
+    let df: Vec<f64> = df.split(' ').map(|n| n.parse().expect("a number")).collect();
     match (statistic, df.as_slice()) {
         ("F", &[effect, error]) => f_tail(value, effect, error),
         ("t", &[df]) => t_tail(value, df),
@@ -53,13 +50,7 @@ fn tails_meet_exact_values() {
     let golden: Vec<Golden> = table(include_str!("../data/tails.csv"));
     assert_eq!(golden.len(), 67);
     let mut errors = Errors::default();
-    for Golden {
-        statistic,
-        df,
-        value,
-        p,
-    } in golden
-    {
+    for Golden { statistic, df, value, p } in golden {
         errors.add(&statistic, tail(&statistic, &df, value).expect("a p"), p);
     }
     errors.assert(&[
@@ -89,9 +80,7 @@ fn printed() -> Vec<Printed> {
 
 /// Half a unit of the last printed digit.
 fn half_unit(printed: &str) -> f64 {
-    let digits = printed
-        .split_once('.')
-        .map_or(0, |(_, digits)| digits.len());
+    let digits = printed.split_once('.').map_or(0, |(_, digits)| digits.len());
     0.5 * 0.1f64.powi(digits as i32)
 }
 
@@ -184,18 +173,10 @@ fn sensitivities_meet_exact_values() {
         let (m, p, d) = (golden.n_afc, golden.p_correct, golden.d_prime);
         let found = d_prime(m, p).expect("a d'");
         errors.add_relative_to("d' of forced choice, absolute", found, d, 1.0);
-        errors.add(
-            "p of forced choice",
-            proportion_correct(m, d).expect("a p"),
-            p,
-        );
+        errors.add("p of forced choice", proportion_correct(m, d).expect("a p"), p);
     }
     for Odd { p_correct, d_prime } in odd {
-        errors.add(
-            "d' of oddity",
-            d_prime_oddity(p_correct).expect("a d'"),
-            d_prime,
-        );
+        errors.add("d' of oddity", d_prime_oddity(p_correct).expect("a d'"), d_prime);
         let p = proportion_correct_oddity(d_prime).expect("a p");
         errors.add("p of oddity", p, p_correct);
     }
@@ -230,11 +211,7 @@ fn quantiles_are_where_the_tail_is() {
     }
     for means in [2, 5, 20] {
         let q = studentized_range_quantile(0.05, means, 36.0).expect("a q");
-        errors.add(
-            "q",
-            studentized_range_tail(q, means, 36.0).expect("a p"),
-            0.05,
-        );
+        errors.add("q", studentized_range_tail(q, means, 36.0).expect("a p"), 0.05);
     }
     errors.assert(&[("normal", 1e-12), ("t", 1e-12), ("q", 1e-12)]);
 }
@@ -244,9 +221,6 @@ fn a_range_of_two_means_is_a_t_test() {
     for (q, df) in [(0.1, 4.0), (3.67, 36.0), (9.0, 2.0), (12.0, 60.0)] {
         let of_t = t_tail(q / 2f64.sqrt(), df).expect("a p");
         let of_range = studentized_range_tail(q, 2, df).expect("a p");
-        assert!(
-            (of_range / of_t - 1.0).abs() < 1e-10,
-            "{q}, {df}: {of_range}, {of_t}"
-        );
+        assert!((of_range / of_t - 1.0).abs() < 1e-10, "{q}, {df}: {of_range}, {of_t}");
     }
 }

@@ -28,11 +28,7 @@ impl Errors {
 
     /// Compares a value with the exact one, relative to a size, for an exact value of about zero.
     fn add_relative_to(&mut self, quantity: &str, value: f64, exact: f64, size: f64) {
-        let error = if value == exact {
-            0.0
-        } else {
-            (value - exact).abs() / size
-        };
+        let error = if value == exact { 0.0 } else { (value - exact).abs() / size };
         assert!(!error.is_nan(), "{quantity}: {value} for {exact}");
         let (worst, count) = self.0.entry(quantity.into()).or_default();
         *worst = worst.max(error);

@@ -159,11 +159,7 @@ fn add_effect(errors: &mut Errors, effect: &Effect, golden: &GoldenEffect) {
     assert_eq!((effect.df, effect.error_df), (golden.df, golden.error_df));
     errors.add("F", effect.f, golden.f);
     errors.add("p", effect.p, golden.p);
-    errors.add(
-        "partial eta squared",
-        effect.partial_eta_squared,
-        golden.eta,
-    );
+    errors.add("partial eta squared", effect.partial_eta_squared, golden.eta);
     assert_eq!(effect.sphericity.is_some(), golden.epsilon.is_some());
     if let (Some(found), Some(epsilon), Some(p)) =
         (effect.sphericity, golden.epsilon, golden.corrected_p)
@@ -196,11 +192,7 @@ fn analyses_between_subjects_meet_those_of_packages() {
         let contrast = contrast_between(&golden.groups, &golden.weights).expect("a contrast");
         let (estimate, standard_error, p) = golden.contrast;
         others.add("contrast", contrast.estimate, estimate);
-        others.add(
-            "contrast, standard error",
-            contrast.standard_error,
-            standard_error,
-        );
+        others.add("contrast, standard error", contrast.standard_error, standard_error);
         others.add("contrast, p", contrast.p, p);
 
         let tukey = tukey_groups(&golden.groups).expect("a comparison");
@@ -232,9 +224,7 @@ fn repeated_measures_meet_those_of_packages() {
     let mut others = Errors::default();
     assert_eq!(GOLDEN.repeated_measures.len(), 4);
     for golden in &GOLDEN.repeated_measures {
-        let effect = repeated_measures(&golden.subjects)
-            .expect("an analysis")
-            .effect;
+        let effect = repeated_measures(&golden.subjects).expect("an analysis").effect;
         add_effect(&mut errors, &effect, &golden.effect);
         let (of_effect, of_error) = golden.sums_of_squares;
         others.add("sums of squares", effect.sum_of_squares, of_effect);
@@ -244,11 +234,7 @@ fn repeated_measures_meet_those_of_packages() {
         others.add("contrast, p", contrast.p, golden.contrast.1);
     }
     errors.assert(&WITHIN);
-    others.assert(&[
-        ("sums of squares", EXACT),
-        ("contrast, F", EXACT),
-        ("contrast, p", EXACT),
-    ]);
+    others.assert(&[("sums of squares", EXACT), ("contrast, F", EXACT), ("contrast, p", EXACT)]);
 }
 
 #[test]
@@ -257,10 +243,7 @@ fn two_factors_within_subjects_meet_those_of_packages() {
     assert_eq!(GOLDEN.two_within.len(), 4);
     for golden in &GOLDEN.two_within {
         let found = two_within(&golden.subjects).expect("an analysis");
-        for (effect, golden) in [found.a, found.b, found.interaction]
-            .iter()
-            .zip(&golden.effects)
-        {
+        for (effect, golden) in [found.a, found.b, found.interaction].iter().zip(&golden.effects) {
             add_effect(&mut errors, effect, golden);
         }
     }
@@ -308,15 +291,11 @@ fn tests_of_counts_meet_those_of_packages() {
         errors.add("p", found.p, golden.fit.1);
 
         // A matrix of as many labels as the table has columns; its last rows may be empty.
-        let labels: Vec<String> = (0..golden.proportions.len())
-            .map(|i| i.to_string())
-            .collect();
+        let labels: Vec<String> = (0..golden.proportions.len()).map(|i| i.to_string()).collect();
         let mut matrix = ConfusionMatrix::new(labels.clone()).expect("a matrix");
         for (row, presented) in golden.table.iter().zip(&labels) {
             for (&count, answered) in row.iter().zip(&labels) {
-                matrix
-                    .add_many(presented, answered, count)
-                    .expect("a label");
+                matrix.add_many(presented, answered, count).expect("a label");
             }
         }
         let bits = matrix.information().expect("answers").observed_bits;
@@ -353,11 +332,7 @@ fn tests_of_pairs_meet_those_of_packages() {
         let (slope, standard_error, residual_sd) = golden.origin;
         let found = through_origin(x, y).expect("a line");
         errors.add("slope", found.slope, slope);
-        errors.add(
-            "slope, standard error",
-            found.standard_error,
-            standard_error,
-        );
+        errors.add("slope, standard error", found.standard_error, standard_error);
         errors.add("slope, residual", found.residual_sd, residual_sd);
     }
     let quantities = [
@@ -379,10 +354,10 @@ fn analyses_of_covariance_meet_those_of_packages() {
     let mut errors = Errors::default();
     assert_eq!(GOLDEN.ancova.len(), 3);
     for golden in &GOLDEN.ancova {
-        let groups = golden.groups.iter().map(|group| Group {
-            covariate: group.x.clone(),
-            y: group.y.clone(),
-        });
+        let groups = golden
+            .groups
+            .iter()
+            .map(|group| Group { covariate: group.x.clone(), y: group.y.clone() });
         let found = ancova(&groups.collect::<Vec<_>>()).expect("an analysis");
         assert!((found.slope / golden.slope - 1.0).abs() < EXACT);
         add_effect(&mut errors, &found.factor, &golden.factor);
@@ -402,12 +377,7 @@ fn exponentials_meet_those_of_scipy() {
         errors.add("time constant", found.time_constant, golden.tau);
         errors.add("R²", found.r_squared, golden.r2);
     }
-    errors.assert(&[
-        ("offset", 1e-7),
-        ("amplitude", 1e-7),
-        ("time constant", 1e-6),
-        ("R²", 1e-12),
-    ]);
+    errors.assert(&[("offset", 1e-7), ("amplitude", 1e-7), ("time constant", 1e-6), ("R²", 1e-12)]);
 }
 
 #[test]
@@ -434,11 +404,7 @@ fn psychometric_functions_meet_those_of_packages() {
         errors.add("deviance", fit.deviance, golden.deviance);
         let threshold = fit.threshold(golden.proportion).expect("a threshold");
         errors.add("threshold", threshold.level, golden.threshold);
-        errors.add(
-            "standard error",
-            threshold.standard_error,
-            golden.standard_error,
-        );
+        errors.add("standard error", threshold.standard_error, golden.standard_error);
         let reached = fit.probability(threshold.level).expect("a proportion");
         errors.add("proportion at the threshold", reached, golden.proportion);
     }

@@ -65,15 +65,12 @@ fn anything() -> impl Strategy<Value = f64> {
 
 /// Rows that are sometimes of different length.
 fn any_rows() -> impl Strategy<Value = Vec<Vec<f64>>> {
-    let finite = (
-        0..4usize,
-        0..5usize,
-        prop_oneof![Just(0.0), Just(1.0), Just(1e160), Just(1e-170)],
-    )
-        .prop_flat_map(|(count, length, scale)| {
-            let cell = (-2..3i32).prop_map(move |i| scale * f64::from(i) + 0.1);
-            vec(vec(cell, length), count)
-        });
+    let finite =
+        (0..4usize, 0..5usize, prop_oneof![Just(0.0), Just(1.0), Just(1e160), Just(1e-170)])
+            .prop_flat_map(|(count, length, scale)| {
+                let cell = (-2..3i32).prop_map(move |i| scale * f64::from(i) + 0.1);
+                vec(vec(cell, length), count)
+            });
     prop_oneof![
         finite,
         (0..4usize).prop_flat_map(|length| vec(vec(anything(), length), 0..4)),

@@ -15,11 +15,7 @@ fn level(level: f64, correct: u32, total: u32) -> Level {
 
 /// 2AFC with a Weibull function of location 1 and exponent 1.5.
 fn model(lapse: f64) -> Model {
-    Model {
-        shape: Shape::Weibull,
-        guess: 0.5,
-        lapse,
-    }
+    Model { shape: Shape::Weibull, guess: 0.5, lapse }
 }
 
 fn simulated(lapse: f64, total: u32, random: &mut Xoshiro256PlusPlus) -> Vec<Level> {
@@ -44,16 +40,11 @@ fn intervals_from_the_standard_error_and_the_bootstrap_contain_the_truth_as_ofte
         let threshold = fit.threshold(proportion).expect("a threshold");
         by_error += u32::from((threshold.level - 1.0).abs() < 1.96 * threshold.standard_error);
         let seed = u64::from(experiment);
-        let bootstrap = fit
-            .bootstrap(&levels, proportion, 0.95, 200, seed)
-            .expect("a bootstrap");
+        let bootstrap = fit.bootstrap(&levels, proportion, 0.95, 200, seed).expect("a bootstrap");
         let interval = bootstrap.interval;
         by_bootstrap += u32::from(interval.low < 1.0 && 1.0 < interval.high);
         let ratio = bootstrap.standard_error / threshold.standard_error;
-        assert!(
-            (0.5..2.0).contains(&ratio),
-            "standard errors differ by {ratio}"
-        );
+        assert!((0.5..2.0).contains(&ratio), "standard errors differ by {ratio}");
     }
     println!("of {EXPERIMENTS}: {by_error} by standard error, {by_bootstrap} by bootstrap");
     assert!(by_error >= 88 && by_bootstrap >= 88);
@@ -63,10 +54,7 @@ fn intervals_from_the_standard_error_and_the_bootstrap_contain_the_truth_as_ofte
 fn the_same_seed_gives_the_same_bootstrap() {
     let levels = simulated(0.0, 60, &mut Xoshiro256PlusPlus::seed_from_u64(4));
     let fit = model(0.0).fit(&levels).expect("a fit");
-    let bootstrap = |seed| {
-        fit.bootstrap(&levels, 0.75, 0.95, 100, seed)
-            .expect("a bootstrap")
-    };
+    let bootstrap = |seed| fit.bootstrap(&levels, 0.75, 0.95, 100, seed).expect("a bootstrap");
     assert_eq!(bootstrap(1), bootstrap(1));
     assert_ne!(bootstrap(1), bootstrap(2));
 }
@@ -98,10 +86,7 @@ fn a_fitted_lapse_rate_is_that_of_the_answers() {
         let levels = simulated(lapse, 20_000, &mut random);
         let fit = model(0.5).fit_with_lapse(&levels, 0.1).expect("a fit");
         assert!((fit.model.lapse - lapse).abs() < 0.005, "{lapse}: {fit:?}");
-        assert!(
-            (fit.location - 1.0).abs() < 0.03 && (fit.slope - 1.5).abs() < 0.1,
-            "{fit:?}"
-        );
+        assert!((fit.location - 1.0).abs() < 0.03 && (fit.slope - 1.5).abs() < 0.1, "{fit:?}");
         assert!(fit.deviance_p.expect("more than two levels") > 1e-3);
     }
 }
@@ -128,28 +113,14 @@ fn answers_that_determine_no_rising_function_are_refused() {
     let perfect = [level(1.0, 40, 40), level(2.0, 40, 40)];
     for levels in [&falling[..], &step, &perfect] {
         for shape in [Shape::Weibull, Shape::CumulativeNormal] {
-            let model = Model {
-                shape,
-                guess: 0.0,
-                lapse: 0.0,
-            };
+            let model = Model { shape, guess: 0.0, lapse: 0.0 };
             assert_eq!(model.fit(levels), Err(not_determined.clone()), "{levels:?}");
         }
     }
     assert!(model(0.0).fit(&[level(1.0, 30, 40)]).is_err(), "one level");
-    assert!(
-        model(0.0)
-            .fit(&[level(0.0, 30, 40), level(1.0, 35, 40)])
-            .is_err(),
-        "no logarithm"
-    );
-    assert!(
-        model(0.5).fit(&falling).is_err(),
-        "guess and lapse leave nothing"
-    );
-    let fit = model(0.02)
-        .fit(&[level(1.0, 24, 40), level(2.0, 35, 40)])
-        .expect("a fit");
+    assert!(model(0.0).fit(&[level(0.0, 30, 40), level(1.0, 35, 40)]).is_err(), "no logarithm");
+    assert!(model(0.5).fit(&falling).is_err(), "guess and lapse leave nothing");
+    let fit = model(0.02).fit(&[level(1.0, 24, 40), level(2.0, 35, 40)]).expect("a fit");
     assert!(fit.threshold(0.5).is_err() && fit.threshold(0.98).is_err());
     assert_eq!(fit.deviance_p, None);
 }

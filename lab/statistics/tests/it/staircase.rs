@@ -72,28 +72,13 @@ fn two_down_converges_to_70_7_percent_and_three_down_to_79_4() {
 fn levels_follow_the_answers() {
     let mut staircase = new(rule(2));
     let mut levels = vec![staircase.level()];
-    for correct in [
-        true, true, true, true, false, true, false, true, true, true, false,
-    ] {
+    for correct in [true, true, true, true, false, true, false, true, true, true, false] {
         staircase.answered(correct);
         levels.push(staircase.level());
     }
     // Twice down by 2, up at the first reversal, up once more, down at the second reversal by the fine factor, then one
     // correct answer, which a wrong one forgets.
-    let expected = [
-        8.0,
-        8.0,
-        4.0,
-        4.0,
-        2.0,
-        4.0,
-        4.0,
-        8.0,
-        8.0,
-        8.0 / 1.1,
-        8.0 / 1.1,
-        8.0,
-    ];
+    let expected = [8.0, 8.0, 4.0, 4.0, 2.0, 4.0, 4.0, 8.0, 8.0, 8.0 / 1.1, 8.0 / 1.1, 8.0];
     for (i, (level, expected)) in levels.iter().zip(expected).enumerate() {
         assert!((level / expected - 1.0).abs() < 1e-12, "{i}: {levels:?}");
     }
@@ -102,10 +87,7 @@ fn levels_follow_the_answers() {
     assert!((reversals[2] - 8.0 / 1.1).abs() < 1e-12);
     assert_eq!((reversals[0], reversals[1]), (2.0, 8.0));
     assert_eq!(staircase.trials(), 11);
-    assert_eq!(
-        (staircase.is_finished(), staircase.threshold()),
-        (false, None)
-    );
+    assert_eq!((staircase.is_finished(), staircase.threshold()), (false, None));
 }
 
 #[test]
@@ -130,10 +112,7 @@ fn the_threshold_is_the_geometric_mean_of_the_last_reversals() {
 
 #[test]
 fn answers_after_the_end_change_nothing() {
-    let mut staircase = new(StaircaseRule {
-        trials_max: 3,
-        ..rule(2)
-    });
+    let mut staircase = new(StaircaseRule { trials_max: 3, ..rule(2) });
     for _ in 0..3 {
         staircase.answered(true);
     }
@@ -145,11 +124,7 @@ fn answers_after_the_end_change_nothing() {
 
 #[test]
 fn levels_stay_within_their_limits() {
-    let limits = StaircaseRule {
-        least: 3.0,
-        most: 10.0,
-        ..rule(1)
-    };
+    let limits = StaircaseRule { least: 3.0, most: 10.0, ..rule(1) };
     for (answer, end) in [(true, 3.0), (false, 10.0)] {
         let mut staircase = new(limits);
         for _ in 0..20 {
@@ -172,9 +147,7 @@ fn the_same_answers_lead_to_the_same_levels() {
     }
     // A copy from any trial goes on as the first did.
     for (i, mut copy) in copies.into_iter().enumerate() {
-        answers[i..]
-            .iter()
-            .for_each(|&answer| copy.answered(answer));
+        answers[i..].iter().for_each(|&answer| copy.answered(answer));
         assert_eq!(copy, one);
     }
 }
@@ -182,49 +155,19 @@ fn the_same_answers_lead_to_the_same_levels() {
 #[test]
 fn a_wrong_rule_is_refused() {
     let wrong = [
-        StaircaseRule {
-            start: f64::NAN,
-            ..rule(2)
-        },
-        StaircaseRule {
-            start: 200.0,
-            ..rule(2)
-        },
-        StaircaseRule {
-            least: 0.0,
-            ..rule(2)
-        },
-        StaircaseRule {
-            most: f64::INFINITY,
-            ..rule(2)
-        },
-        StaircaseRule {
-            factor: 1.0,
-            ..rule(2)
-        },
-        StaircaseRule {
-            coarse_factor: f64::INFINITY,
-            ..rule(2)
-        },
-        StaircaseRule {
-            averaged: 0,
-            ..rule(2)
-        },
-        StaircaseRule {
-            averaged: 13,
-            ..rule(2)
-        },
-        StaircaseRule {
-            trials_max: 0,
-            ..rule(2)
-        },
+        StaircaseRule { start: f64::NAN, ..rule(2) },
+        StaircaseRule { start: 200.0, ..rule(2) },
+        StaircaseRule { least: 0.0, ..rule(2) },
+        StaircaseRule { most: f64::INFINITY, ..rule(2) },
+        StaircaseRule { factor: 1.0, ..rule(2) },
+        StaircaseRule { coarse_factor: f64::INFINITY, ..rule(2) },
+        StaircaseRule { averaged: 0, ..rule(2) },
+        StaircaseRule { averaged: 13, ..rule(2) },
+        StaircaseRule { trials_max: 0, ..rule(2) },
         rule(0),
     ];
     for rule in wrong {
         let refused = Staircase::new(rule);
-        assert!(
-            matches!(refused, Err(StatisticsError::OutOfRange { .. })),
-            "{rule:?}"
-        );
+        assert!(matches!(refused, Err(StatisticsError::OutOfRange { .. })), "{rule:?}");
     }
 }

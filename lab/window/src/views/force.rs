@@ -16,9 +16,7 @@ const EDGE: Color32 = Color32::from_rgb(0x50, 0x58, 0x5E);
 pub(super) fn force(ui: &mut Ui, follow: &Follow, now: Duration) {
     let size = ui.available_size();
     let (response, painter) = ui.allocate_painter(size, egui::Sense::hover());
-    let rect = response
-        .rect
-        .shrink2(egui::vec2(size.x * 0.04, size.y * 0.06));
+    let rect = response.rect.shrink2(egui::vec2(size.x * 0.04, size.y * 0.06));
     painter.rect_stroke(rect, 6.0, Stroke::new(1.0, EDGE), egui::StrokeKind::Inside);
     let right = rect.left() + rect.width() * 0.8;
     let y = |force_n: f64| {
@@ -31,16 +29,9 @@ pub(super) fn force(ui: &mut Ui, follow: &Follow, now: Duration) {
     };
     let target_y = y(follow.target_n);
     let dashes = [pos2(rect.left(), target_y), pos2(rect.right(), target_y)];
-    painter.extend(Shape::dashed_line(
-        &dashes,
-        Stroke::new(4.0, TARGET),
-        18.0,
-        10.0,
-    ));
+    painter.extend(Shape::dashed_line(&dashes, Stroke::new(4.0, TARGET), 18.0, 10.0));
     let shown = follow.forces.iter().filter(|(at, _)| x(*at) >= rect.left());
-    let points: Vec<Pos2> = shown
-        .map(|(at, force_n)| pos2(x(*at), y(*force_n)))
-        .collect();
+    let points: Vec<Pos2> = shown.map(|(at, force_n)| pos2(x(*at), y(*force_n))).collect();
     if let Some(last) = points.last().copied() {
         painter.add(Shape::line(points, Stroke::new(5.0, ACTUAL)));
         painter.circle_filled(pos2(right, last.y), 12.0, ACTUAL);
@@ -49,11 +40,5 @@ pub(super) fn force(ui: &mut Ui, follow: &Follow, now: Duration) {
     let label = Rect::from_min_max(rect.left_top(), rect.right_bottom()).shrink(10.0);
     let at = pos2(label.right(), target_y - 8.0);
     painter.text(at, Align2::RIGHT_BOTTOM, "target", font.clone(), TARGET);
-    painter.text(
-        label.right_bottom(),
-        Align2::RIGHT_BOTTOM,
-        "your force",
-        font,
-        ACTUAL,
-    );
+    painter.text(label.right_bottom(), Align2::RIGHT_BOTTOM, "your force", font, ACTUAL);
 }

@@ -11,14 +11,7 @@ pub fn pressed(ctx: &Context) -> Vec<Key> {
 }
 
 fn key(event: &Event) -> Option<Key> {
-    let &Event::Key {
-        key,
-        physical_key,
-        pressed: true,
-        repeat,
-        modifiers,
-    } = event
-    else {
+    let &Event::Key { key, physical_key, pressed: true, repeat, modifiers } = event else {
         return None;
     };
     // The digits of a French keyboard are digits only with the shift key; their place counts otherwise.

@@ -52,19 +52,12 @@ pub fn operator(
 ) -> Vec<Action> {
     let mut actions = Vec::new();
     Panel::top("device").show(ui, |ui| header(ui, model, state, now, &mut actions));
-    Panel::bottom("log")
-        .resizable(false)
-        .show(ui, |ui| log(ui, model, state, now, &mut actions));
+    Panel::bottom("log").resizable(false).show(ui, |ui| log(ui, model, state, now, &mut actions));
     if let Some(fault) = tripped(model) {
         Panel::top("fault").frame(banner(RED)).show(ui, |ui| {
             let words = fault_words(fault);
             let title = format!("Tripped by `{}`: {}.", fault.name(), words.meaning);
-            ui.label(
-                RichText::new(title)
-                    .strong()
-                    .size(18.0)
-                    .color(Color32::WHITE),
-            );
+            ui.label(RichText::new(title).strong().size(18.0).color(Color32::WHITE));
             ui.label(RichText::new(format!("What to do: {}.", words.remedy)).color(Color32::WHITE));
         });
     }
@@ -73,25 +66,16 @@ pub fn operator(
             .frame(banner(AMBER))
             .show(ui, |ui| question(ui, model, &mut actions));
     }
-    Panel::left("session")
-        .exact_size(330.0)
-        .resizable(false)
-        .show(ui, |ui| {
-            ScrollArea::vertical().show(ui, |ui| {
-                ui.add_space(4.0);
-                panel(ui, model, now, &mut actions);
-            });
+    Panel::left("session").exact_size(330.0).resizable(false).show(ui, |ui| {
+        ScrollArea::vertical().show(ui, |ui| {
+            ui.add_space(4.0);
+            panel(ui, model, now, &mut actions);
         });
+    });
     egui::CentralPanel::default().show(ui, |ui| match state.view(model) {
-        Some(view) => plots(
-            ui,
-            view,
-            model
-                .participant()
-                .follow
-                .as_ref()
-                .map(|follow| follow.target_n),
-        ),
+        Some(view) => {
+            plots(ui, view, model.participant().follow.as_ref().map(|follow| follow.target_n))
+        }
         None => {
             ui.centered_and_justified(|ui| ui.label("No telemetry yet"));
         }
@@ -120,9 +104,7 @@ fn header(
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop(ui, model, actions);
             ui.with_layout(Layout::top_down(Align::Min), |ui| {
-                let title = model
-                    .session()
-                    .map_or("Monitor", |session| session.title.as_str());
+                let title = model.session().map_or("Monitor", |session| session.title.as_str());
                 ui.label(RichText::new(title).heading());
                 device(ui, model, state, now);
                 ui.label(RichText::new(texts::EMERGENCY_STOP).small());
@@ -133,15 +115,9 @@ fn header(
 }
 
 fn stop(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
-    let text = if model.is_stopped() {
-        "STOPPING"
-    } else {
-        "STOP [Esc]"
-    };
-    let label = RichText::new(format!("{text}\nbridge off"))
-        .size(24.0)
-        .strong()
-        .color(Color32::WHITE);
+    let text = if model.is_stopped() { "STOPPING" } else { "STOP [Esc]" };
+    let label =
+        RichText::new(format!("{text}\nbridge off")).size(24.0).strong().color(Color32::WHITE);
     let button = egui::Button::new(label).fill(RED).corner_radius(8.0);
     if ui.add_sized(vec2(200.0, 84.0), button).clicked() {
         actions.push(Action::Stop);
@@ -152,10 +128,7 @@ fn stop(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
 fn device(ui: &mut Ui, model: &Model, state: &mut OperatorState, now: Duration) {
     let colours = colours(ui.visuals().dark_mode);
     ui.horizontal(|ui| {
-        let silent = model
-            .link()
-            .silent_for(now)
-            .filter(|silent| *silent >= SILENT);
+        let silent = model.link().silent_for(now).filter(|silent| *silent >= SILENT);
         match (state.view(model), silent) {
             (_, Some(_)) if model.end().is_some() => {
                 ui.label(RichText::new("Not connected any more.").strong());
@@ -205,21 +178,13 @@ fn question(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
         return;
     };
     let (title, text) = texts::question(question);
-    ui.label(
-        RichText::new(title)
-            .heading()
-            .strong()
-            .color(Color32::BLACK),
-    );
+    ui.label(RichText::new(title).heading().strong().color(Color32::BLACK));
     ui.label(RichText::new(text).color(Color32::BLACK));
     ui.horizontal(|ui| {
         for choice in texts::choices(question) {
             let label = format!("{}   [{}]", choice.label, texts::key_cap(choice.key));
             let button = egui::Button::new(RichText::new(label).strong().color(Color32::BLACK));
-            if ui
-                .add(button.fill(Color32::from_rgb(0xFF, 0xF3, 0xD6)))
-                .clicked()
-            {
+            if ui.add(button.fill(Color32::from_rgb(0xFF, 0xF3, 0xD6))).clicked() {
                 actions.push(Action::Decide(choice.decision));
             }
         }
@@ -251,9 +216,8 @@ fn log(
     ui.horizontal(|ui| {
         let link = model.link();
         let lost = format!("lines {}, lost {}", link.received, link.lost);
-        let recent = link
-            .lost_at
-            .is_some_and(|at| now.saturating_sub(at) < Duration::from_secs(10));
+        let recent =
+            link.lost_at.is_some_and(|at| now.saturating_sub(at) < Duration::from_secs(10));
         ui.label(RichText::new(lost).color(if recent {
             colours.alarm
         } else {

@@ -79,13 +79,7 @@ fn show_cue(ui: &mut Ui, shown: ShownCue, now: Duration, size: f32) {
     symbol(painter, shown.cue, centre, radius, colour);
     let below = pos2(rect.center().x, centre.y + radius * 1.35 + size);
     let font = FontId::proportional(size * 1.3);
-    painter.text(
-        below,
-        Align2::CENTER_TOP,
-        texts::cue(shown.cue),
-        font,
-        colour,
-    );
+    painter.text(below, Align2::CENTER_TOP, texts::cue(shown.cue), font, colour);
 }
 
 /// Arrows: along above the stimuli, down onto them, up from them; an interval has its number.
@@ -96,10 +90,7 @@ fn symbol(painter: &Painter, cue: Cue, centre: Pos2, radius: f32, colour: Color3
         let side = direction.rot90() * radius * 0.4;
         let back = direction * radius * 0.45;
         painter.line_segment(
-            [
-                centre - direction * radius * 0.8,
-                tip - direction * radius * 0.2,
-            ],
+            [centre - direction * radius * 0.8, tip - direction * radius * 0.2],
             stroke,
         );
         let head = vec![tip, tip - back + side, tip - back - side];
@@ -130,10 +121,8 @@ fn ask(
     size: f32,
 ) -> Option<Response> {
     let rect = ui.available_rect_before_wrap();
-    let title = Rect::from_min_max(
-        rect.left_top(),
-        pos2(rect.right(), rect.top() + rect.height() * 0.34),
-    );
+    let title =
+        Rect::from_min_max(rect.left_top(), pos2(rect.right(), rect.top() + rect.height() * 0.34));
     let mut upper = ui.new_child(egui::UiBuilder::new().max_rect(title));
     centred(&mut upper, &question.ask, size);
     let lower = Rect::from_min_max(title.left_bottom(), rect.right_bottom())
@@ -166,8 +155,7 @@ fn choose(ui: &mut Ui, words: &[String], size: f32) -> Option<Response> {
         if index < 9 {
             let cap = place.left_top() + vec2(size * 0.45, size * 0.35);
             let font = FontId::proportional(size * 0.6);
-            ui.painter()
-                .text(cap, Align2::LEFT_TOP, index + 1, font, CALM);
+            ui.painter().text(cap, Align2::LEFT_TOP, index + 1, font, CALM);
             let beside = cap + vec2(size * 0.8, size * 0.38);
             let of_two = (words.len() == 2).then_some(index);
             key_arrow(ui.painter(), word, of_two, beside, size);
@@ -203,22 +191,11 @@ fn numbers(
         if response.clicked() {
             entry.choose(station);
         }
-        ui.painter()
-            .rect_filled(line, 10.0, if is_chosen { CHOSEN } else { BUTTON });
+        ui.painter().rect_filled(line, 10.0, if is_chosen { CHOSEN } else { BUTTON });
         let name = stations.get(station).map_or("", String::as_str);
-        text(
-            ui,
-            line.left_center() + vec2(size * 0.5, 0.0),
-            Align2::LEFT_CENTER,
-            name,
-            size * 0.8,
-        );
+        text(ui, line.left_center() + vec2(size * 0.5, 0.0), Align2::LEFT_CENTER, name, size * 0.8);
         let text_of = entry.texts().get(station).map_or("", String::as_str);
-        let shown = if is_chosen {
-            format!("{text_of}_")
-        } else {
-            text_of.to_owned()
-        };
+        let shown = if is_chosen { format!("{text_of}_") } else { text_of.to_owned() };
         text(
             ui,
             line.right_center() - vec2(size * 0.5, 0.0),
@@ -232,9 +209,8 @@ fn numbers(
         ui.add_space(size * 0.1);
     }
     ui.add_space(size * 0.3);
-    let button = egui::Button::new(RichText::new("Enter").size(size * 0.8))
-        .fill(BUTTON)
-        .corner_radius(10.0);
+    let button =
+        egui::Button::new(RichText::new("Enter").size(size * 0.8)).fill(BUTTON).corner_radius(10.0);
     let clicked = ui.horizontal(|ui| {
         let is_complete = entry.response().is_some();
         let clicked = ui.add_enabled(is_complete, button).clicked();
@@ -243,21 +219,13 @@ fn numbers(
         ui.label(RichText::new(hint).size(size * 0.45).color(CALM));
         clicked
     });
-    if clicked.inner {
-        entry.response()
-    } else {
-        None
-    }
+    if clicked.inner { entry.response() } else { None }
 }
 
 /// A scale to click and drag on. It has no mark until there is a number, because a mark would suggest one.
 fn scale(ui: &mut Ui, entry: &mut NumberEntry, station: usize, bar: Rect) {
     let (least, most) = entry.range();
-    let response = ui.interact(
-        bar,
-        ui.id().with(("scale", station)),
-        Sense::click_and_drag(),
-    );
+    let response = ui.interact(bar, ui.id().with(("scale", station)), Sense::click_and_drag());
     if let Some(pointer) = response.interact_pointer_pos() {
         let share = f64::from((pointer.x - bar.left()) / bar.width()).clamp(0.0, 1.0);
         entry.choose(station);
@@ -276,6 +244,5 @@ fn scale(ui: &mut Ui, entry: &mut NumberEntry, station: usize, bar: Rect) {
 
 fn text(ui: &Ui, at: Pos2, align: Align2, text: &str, size: f32) {
     let colour = ui.visuals().text_color();
-    ui.painter()
-        .text(at, align, text, FontId::proportional(size), colour);
+    ui.painter().text(at, align, text, FontId::proportional(size), colour);
 }

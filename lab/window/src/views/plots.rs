@@ -75,13 +75,8 @@ fn temperatures(ui: &mut Ui, view: &FingerView, colours: &Colours, height: f32) 
             now: view.last.skin_c,
         },
     ];
-    let frame = Frame {
-        title: "temperature",
-        unit: "°C",
-        digits: 2,
-        range_min: 2.0,
-        from_zero: false,
-    };
+    let frame =
+        Frame { title: "temperature", unit: "°C", digits: 2, range_min: 2.0, from_zero: false };
     plot(ui, view, &frame, &quantities, None, height);
 }
 
@@ -93,22 +88,12 @@ fn force(ui: &mut Ui, view: &FingerView, colours: &Colours, target_n: Option<f64
         of: |sample| sample.force_n,
         now: view.last.force_n,
     }];
-    let frame = Frame {
-        title: "force",
-        unit: "N",
-        digits: 2,
-        range_min: 1.0,
-        from_zero: true,
-    };
+    let frame = Frame { title: "force", unit: "N", digits: 2, range_min: 1.0, from_zero: true };
     plot(ui, view, &frame, &quantities, target_n, height);
 }
 
 fn current(ui: &mut Ui, view: &FingerView, colours: &Colours, height: f32) {
-    let sign = if view.last.demand_a.is_some_and(|demand_a| demand_a < 0.0) {
-        -1.0
-    } else {
-        1.0
-    };
+    let sign = if view.last.demand_a.is_some_and(|demand_a| demand_a < 0.0) { -1.0 } else { 1.0 };
     let quantities = [
         Quantity {
             name: "demanded",
@@ -147,9 +132,9 @@ fn plot(
     ui.horizontal(|ui| {
         ui.label(RichText::new(frame.title).strong());
         for quantity in quantities {
-            let now = quantity.now.map_or("unknown".into(), |now| {
-                format!("{now:.*} {}", frame.digits, frame.unit)
-            });
+            let now = quantity
+                .now
+                .map_or("unknown".into(), |now| format!("{now:.*} {}", frame.digits, frame.unit));
             swatch(ui, quantity);
             ui.label(format!("{} {now}", quantity.name));
         }
@@ -174,13 +159,11 @@ fn plot(
         .grid_color(ui.visuals().weak_text_color().gamma_multiply(0.45))
         .grid_fade(0.2)
         .x_grid_spacer(uniform_grid_spacer(|_| [20.0, 5.0, 5.0]))
-        .x_axis_formatter(move |mark, _| {
-            if is_last {
-                format!("{:.0} s", mark.value)
-            } else {
-                String::new()
-            }
-        })
+        .x_axis_formatter(
+            move |mark, _| {
+                if is_last { format!("{:.0} s", mark.value) } else { String::new() }
+            },
+        )
         .show(ui, |plot_ui| {
             plot_ui.set_plot_bounds(PlotBounds::from_min_max([-TRACE_S, least], [0.0, most]));
             for quantity in quantities {
@@ -212,10 +195,7 @@ fn segments(view: &FingerView, of: fn(&Sample) -> f32) -> Vec<PlotPoints<'static
             _ => {}
         }
     }
-    runs.into_iter()
-        .filter(|run| !run.is_empty())
-        .map(PlotPoints::from)
-        .collect()
+    runs.into_iter().filter(|run| !run.is_empty()).map(PlotPoints::from).collect()
 }
 
 /// A range that holds all values and moves in steps, so that the eye has something to hold on to.
@@ -226,16 +206,14 @@ fn range(
     target: Option<f64>,
 ) -> (f64, f64) {
     let samples = view.trace.samples();
-    let values = samples.flat_map(|sample| {
-        quantities
-            .iter()
-            .map(|quantity| f64::from((quantity.of)(sample)))
-    });
+    let values = samples
+        .flat_map(|sample| quantities.iter().map(|quantity| f64::from((quantity.of)(sample))));
     let values = values.chain(target).chain(frame.from_zero.then_some(0.0));
-    let (least, most) = values.filter(|value| value.is_finite()).fold(
-        (f64::INFINITY, f64::NEG_INFINITY),
-        |(least, most), value| (least.min(value), most.max(value)),
-    );
+    let (least, most) = values
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
+            (least.min(value), most.max(value))
+        });
     if least > most {
         return (0.0, frame.range_min);
     }

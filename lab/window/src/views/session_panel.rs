@@ -25,18 +25,10 @@ fn session(ui: &mut Ui, model: &Model, now: Duration) {
     let colours = colours(ui.visuals().dark_mode);
     match model.end() {
         Some(End::Completed) => {
-            ui.label(
-                RichText::new("Session completed")
-                    .heading()
-                    .color(colours.good),
-            );
+            ui.label(RichText::new("Session completed").heading().color(colours.good));
         }
         Some(End::Broken(reason)) => {
-            ui.label(
-                RichText::new("Session ended")
-                    .heading()
-                    .color(colours.alarm),
-            );
+            ui.label(RichText::new("Session ended").heading().color(colours.alarm));
             ui.label(reason);
         }
         None => {}
@@ -106,11 +98,7 @@ fn orders(ui: &mut Ui, actions: &mut Vec<Action>) {
             Order::Clear => "refused while the fault is present",
             Order::Off => "",
         };
-        if ui
-            .add_sized([300.0, 40.0], egui::Button::new(text))
-            .on_hover_text(hint)
-            .clicked()
-        {
+        if ui.add_sized([300.0, 40.0], egui::Button::new(text)).on_hover_text(hint).clicked() {
             actions.push(Action::Order(order));
         }
     }
@@ -122,22 +110,18 @@ fn readings(ui: &mut Ui, model: &Model) {
     }
     ui.separator();
     ui.label(RichText::new("Readings").strong());
-    egui::Grid::new("readings")
-        .num_columns(3)
-        .striped(true)
-        .show(ui, |ui| {
-            ui.label("finger");
-            ui.label("sink, °C");
-            ui.label("room, °C");
+    egui::Grid::new("readings").num_columns(3).striped(true).show(ui, |ui| {
+        ui.label("finger");
+        ui.label("sink, °C");
+        ui.label("room, °C");
+        ui.end_row();
+        for (finger, view) in model.fingers() {
+            let number =
+                |value: Option<f64>| value.map_or("unknown".into(), |value| format!("{value:.2}"));
+            ui.label(format!("{finger}"));
+            ui.label(number(view.last.sink_c));
+            ui.label(number(view.last.room_c));
             ui.end_row();
-            for (finger, view) in model.fingers() {
-                let number = |value: Option<f64>| {
-                    value.map_or("unknown".into(), |value| format!("{value:.2}"))
-                };
-                ui.label(format!("{finger}"));
-                ui.label(number(view.last.sink_c));
-                ui.label(number(view.last.room_c));
-                ui.end_row();
-            }
-        });
+        }
+    });
 }

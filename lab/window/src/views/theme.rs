@@ -60,9 +60,7 @@ pub fn apply(ctx: &Context, dark: bool) {
             (TextStyle::Button, 17.0),
             (TextStyle::Small, 13.0),
         ] {
-            style
-                .text_styles
-                .insert(text_style, FontId::proportional(size));
+            style.text_styles.insert(text_style, FontId::proportional(size));
         }
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.spacing.button_padding = egui::vec2(12.0, 7.0);

@@ -28,11 +28,7 @@ pub fn session_view() -> SessionView {
         }),
         rules: TrialRules {
             target_force_n: None,
-            procedure: Procedure::Touch {
-                reach_s: 5.0,
-                contact: ContactRule::Free,
-                max_s: 10.0,
-            },
+            procedure: Procedure::Touch { reach_s: 5.0, contact: ContactRule::Free, max_s: 10.0 },
             land_s: 3.0,
             answer_s: 20.0,
             feedback: false,
@@ -50,13 +46,8 @@ pub fn trial() -> Update {
             break_before: false,
             levels: vec!["copper".into(), "granite".into()],
             presented: vec![
-                Presented::Sample {
-                    material: "copper".into(),
-                },
-                Presented::Material {
-                    device_finger: 0,
-                    material: "granite".into(),
-                },
+                Presented::Sample { material: "copper".into() },
+                Presented::Material { device_finger: 0, material: "granite".into() },
             ],
             staircase: None,
             target_force_n: None,
@@ -109,10 +100,7 @@ pub fn numbers() -> Update {
 pub fn operator_questions() -> [OperatorQuestion; 4] {
     [
         OperatorQuestion::Ready("Put copper to the left.".into()),
-        OperatorQuestion::SkinNotReady {
-            skin_c: Some(32.5),
-            wanted_c: 34.0,
-        },
+        OperatorQuestion::SkinNotReady { skin_c: Some(32.5), wanted_c: 34.0 },
         OperatorQuestion::Tripped {
             fault: "sink-hot".into(),
             explanation: "the sink was too warm".into(),

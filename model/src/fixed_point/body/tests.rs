@@ -18,10 +18,7 @@ fn exact(impedance: &Impedance<'_>, fluxes: &[f64]) -> Vec<f64> {
     let mut states: Vec<f64> = impedance.relaxations.iter().map(|_| 0.0).collect();
     let step = |flux: &f64| {
         for (state, one) in states.iter_mut().zip(impedance.relaxations) {
-            let one_only = Impedance {
-                direct_m2k_w: 0.0,
-                relaxations: core::slice::from_ref(one),
-            };
+            let one_only = Impedance { direct_m2k_w: 0.0, relaxations: core::slice::from_ref(one) };
             *state = *state * libm::exp(-one.rate_1_s * TICK_S)
                 + flux * flux_w_m2 * one_only.step_response(TICK_S);
         }
@@ -31,10 +28,8 @@ fn exact(impedance: &Impedance<'_>, fluxes: &[f64]) -> Vec<f64> {
 }
 
 fn relaxation() -> impl Strategy<Value = Relaxation> {
-    (1e-3..690.0f64, -9.0..-4.5f64).prop_map(|(rate_1_s, gain)| Relaxation {
-        rate_1_s,
-        gain_m2k_j: libm::pow(10.0, gain),
-    })
+    (1e-3..690.0f64, -9.0..-4.5f64)
+        .prop_map(|(rate_1_s, gain)| Relaxation { rate_1_s, gain_m2k_j: libm::pow(10.0, gain) })
 }
 
 proptest! {
@@ -81,16 +76,9 @@ proptest! {
 /// The body of these rates whose gains, all equal, are the largest that are allowed, m² K/J.
 fn largest(rates_1_s: &[f64], direct_m2k_w: f64) -> Body {
     let with = |gain_m2k_j| {
-        let relaxations: Vec<_> = (rates_1_s.iter())
-            .map(|&rate_1_s| Relaxation {
-                rate_1_s,
-                gain_m2k_j,
-            })
-            .collect();
-        let impedance = Impedance {
-            direct_m2k_w,
-            relaxations: &relaxations,
-        };
+        let relaxations: Vec<_> =
+            (rates_1_s.iter()).map(|&rate_1_s| Relaxation { rate_1_s, gain_m2k_j }).collect();
+        let impedance = Impedance { direct_m2k_w, relaxations: &relaxations };
         Body::new(&impedance, SKIN.effusivity(), TICK_S)
     };
     let (mut allowed, mut refused) = (1e-12, 1e3);
@@ -107,13 +95,9 @@ fn largest(rates_1_s: &[f64], direct_m2k_w: f64) -> Body {
 #[test]
 fn largest_bodies_under_the_largest_flux_neither_overflow_nor_change_sign() {
     // Ends of the range of rates: the slowest fast one is 12.5 1/s.
-    for (fast_1_s, slow_1_s) in [
-        (690.0, 12.499),
-        (690.0, 0.0),
-        (12.5, 12.499),
-        (12.5, 1e-6),
-        (100.0, 1.0),
-    ] {
+    for (fast_1_s, slow_1_s) in
+        [(690.0, 12.499), (690.0, 0.0), (12.5, 12.499), (12.5, 1e-6), (100.0, 1.0)]
+    {
         let rates_1_s = [[fast_1_s].repeat(FAST_MAX), [slow_1_s].repeat(SLOW_MAX)].concat();
         for (rates_1_s, direct_m2k_w) in [
             (&rates_1_s[..], 0.0),
@@ -149,27 +133,13 @@ fn largest_bodies_under_the_largest_flux_neither_overflow_nor_change_sign() {
 #[test]
 fn what_cannot_be_followed_is_refused() {
     let with = |relaxations: &[Relaxation], direct_m2k_w| {
-        Body::new(
-            &Impedance {
-                direct_m2k_w,
-                relaxations,
-            },
-            SKIN.effusivity(),
-            TICK_S,
-        )
-        .err()
+        Body::new(&Impedance { direct_m2k_w, relaxations }, SKIN.effusivity(), TICK_S).err()
     };
-    let one = |rate_1_s, gain_m2k_j| Relaxation {
-        rate_1_s,
-        gain_m2k_j,
-    };
+    let one = |rate_1_s, gain_m2k_j| Relaxation { rate_1_s, gain_m2k_j };
     assert_eq!(with(&[one(700.0, 1e-6)], 0.0), Some(BodyError::Rate(700.0)));
     assert_eq!(with(&[one(690.0, 1e-6)], 0.0), None);
     assert_eq!(with(&[one(-1.0, 1e-6)], 0.0), Some(BodyError::Rate(-1.0)));
-    assert!(matches!(
-        with(&[one(f64::NAN, 1e-6)], 0.0),
-        Some(BodyError::Rate(_))
-    ));
+    assert!(matches!(with(&[one(f64::NAN, 1e-6)], 0.0), Some(BodyError::Rate(_))));
     let message = |relaxations: &[Relaxation], direct_m2k_w| {
         with(relaxations, direct_m2k_w).map(|error| std::format!("{error}"))
     };
@@ -203,34 +173,14 @@ fn what_cannot_be_followed_is_refused() {
 /// The largest gain that an error names is allowed, and hardly more is.
 #[test]
 fn the_gain_that_a_refusal_allows_is_the_limit() {
-    for (before, rate_1_s) in [
-        (1.0, 0.0),
-        (3.5, 5.0),
-        (2.0, 13.0),
-        (0.5, 40.0),
-        (9.0, 690.0),
-    ] {
+    for (before, rate_1_s) in [(1.0, 0.0), (3.5, 5.0), (2.0, 13.0), (0.5, 40.0), (9.0, 690.0)] {
         let with = |gain_m2k_j| {
-            let before = Relaxation {
-                rate_1_s: 0.0,
-                gain_m2k_j: before,
-            };
-            let last = Relaxation {
-                rate_1_s,
-                gain_m2k_j,
-            };
-            let impedance = Impedance {
-                direct_m2k_w: 0.0,
-                relaxations: &[before, last],
-            };
+            let before = Relaxation { rate_1_s: 0.0, gain_m2k_j: before };
+            let last = Relaxation { rate_1_s, gain_m2k_j };
+            let impedance = Impedance { direct_m2k_w: 0.0, relaxations: &[before, last] };
             Body::new(&impedance, SKIN.effusivity(), TICK_S).err()
         };
-        let Some(BodyError::Gain {
-            gain_m2k_j,
-            max_m2k_j,
-            index: 1,
-        }) = with(20.0)
-        else {
+        let Some(BodyError::Gain { gain_m2k_j, max_m2k_j, index: 1 }) = with(20.0) else {
             panic!("20 m2K/J at {rate_1_s} 1/s: {:?}", with(20.0));
         };
         assert_eq!(gain_m2k_j, 20.0);
@@ -243,13 +193,7 @@ fn the_gain_that_a_refusal_allows_is_the_limit() {
 fn source(finger: &FingerBody) -> std::string::String {
     let tissue = &finger.tissue;
     let fast: Vec<_> = (tissue.fast[..tissue.fast_count].iter())
-        .map(|one| {
-            [
-                one.input_gain.to_bits(),
-                -one.change.to_bits(),
-                one.horizon_factor.to_bits(),
-            ]
-        })
+        .map(|one| [one.input_gain.to_bits(), -one.change.to_bits(), one.horizon_factor.to_bits()])
         .collect();
     let slow: Vec<_> = (tissue.slow[..tissue.slow_count].iter())
         .map(|one| [one.input_gain.to_bits(), one.decay.to_bits()])
@@ -279,16 +223,9 @@ fn committed_fingers_are_those_of_their_impedances() {
 #[test]
 fn expm1_has_no_cancellation() {
     for k in -120..=13 {
-        for x in [
-            10f64.powf(f64::from(k) / 10.0),
-            -(10f64.powf(f64::from(k) / 10.0)),
-        ] {
+        for x in [10f64.powf(f64::from(k) / 10.0), -(10f64.powf(f64::from(k) / 10.0))] {
             let exact = libm::expm1(x);
-            assert!(
-                (expm1(x) / exact - 1.0).abs() < 1e-15,
-                "{x}: {} for {exact}",
-                expm1(x)
-            );
+            assert!((expm1(x) / exact - 1.0).abs() < 1e-15, "{x}: {} for {exact}", expm1(x));
         }
     }
 }

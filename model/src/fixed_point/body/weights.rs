@@ -28,11 +28,7 @@ const TICK_BITS: u32 = 28;
 const HORIZON_BITS: u32 = 26;
 
 const fn part([slow_input_gain, tick_gain, horizon_gain]: [i32; 3]) -> Part {
-    Part {
-        slow_input_gain,
-        tick_gain,
-        horizon_gain,
-    }
+    Part { slow_input_gain, tick_gain, horizon_gain }
 }
 
 /// Parts of the integrator, which keeps weight 1.

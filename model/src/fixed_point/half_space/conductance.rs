@@ -23,11 +23,7 @@ pub struct ContactConductance {
 const fn tick_resistance(tick_gain: I12F20) -> u32 {
     const FEWER: u32 = I12F20::FRAC_NBITS - U16F16::FRAC_NBITS;
     let bits = tick_gain.to_bits();
-    let bits = if bits < 1 << I12F20::FRAC_NBITS {
-        1 << I12F20::FRAC_NBITS
-    } else {
-        bits as u32
-    };
+    let bits = if bits < 1 << I12F20::FRAC_NBITS { 1 << I12F20::FRAC_NBITS } else { bits as u32 };
     (bits + (1 << FEWER >> 1)) >> FEWER
 }
 
@@ -36,14 +32,9 @@ impl ContactConductance {
     /// relative error of at most 1e-5.
     const fn new(resistance: U16F16, tick_gain: I12F20) -> Self {
         // At least 1, so at most 15 zeros lead it.
-        let total = resistance
-            .to_bits()
-            .saturating_add(tick_resistance(tick_gain));
+        let total = resistance.to_bits().saturating_add(tick_resistance(tick_gain));
         let zeros = total.leading_zeros();
-        Self {
-            series: U0F32::from_bits(inverse(total << zeros) << 1 >> (15 - zeros)),
-            resistance,
-        }
+        Self { series: U0F32::from_bits(inverse(total << zeros) << 1 >> (15 - zeros)), resistance }
     }
 
     /// Scaled flux of the coming tick, K, if the surface would reach a change of `target` kelvin without
@@ -77,11 +68,7 @@ pub struct OwnResistances {
 
 impl OwnResistances {
     /// Those of the thesis's skin on a bare display.
-    pub const NONE: Self = Self {
-        skin_factor: I4F28::ONE,
-        display_layer: U16F16::ZERO,
-        law: None,
-    };
+    pub const NONE: Self = Self { skin_factor: I4F28::ONE, display_layer: U16F16::ZERO, law: None };
 
     /// The contact of this finger at the pressure given by `log2(P / H)`, without its gap and factor.
     pub fn contact(&self, pair: &ContactPair, log2_relative_pressure: Log2) -> Contact {
@@ -153,10 +140,7 @@ impl Contact {
     /// Conductance between skin and display, for a finger that is another [`super::super::Body`].
     pub fn display_conductance_of(&self, skin: &Body, own: &OwnResistances) -> ContactConductance {
         let of_contact = own.of_contact(self.display_resistance());
-        ContactConductance::new(
-            of_contact.saturating_add(own.display_layer),
-            skin.tick_gain(),
-        )
+        ContactConductance::new(of_contact.saturating_add(own.display_layer), skin.tick_gain())
     }
 
     /// Conductance between the bodies of skin and object. Its target is `T_skin,i - T_object,i`, less the free responses
@@ -177,9 +161,8 @@ impl Contact {
     pub fn ratio_of(&self, own: &OwnResistances) -> Ratio {
         let object = own.of_contact(self.object_resistance()).to_bits().max(1);
         if own.law.is_some_and(|law| law.has_gap()) {
-            let display = own
-                .of_contact(self.display_resistance())
-                .saturating_add(own.display_layer);
+            let display =
+                own.of_contact(self.display_resistance()).saturating_add(own.display_layer);
             let ratio = (u64::from(display.to_bits()) << Ratio::FRAC_NBITS) / u64::from(object);
             return Ratio::from_bits(ratio.min(Ratio::MAX.to_bits().into()) as u32);
         }

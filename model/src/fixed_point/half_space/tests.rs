@@ -28,21 +28,14 @@ impl Exact {
         let rate = |k: i32| 2f64.powi(-(2 * k + 1));
         let weight = |r: f64| 4f64.ln() / PI * r.sqrt();
         let slowest = (FAST + SLOW - 1) as i32;
-        let mut modes: Vec<_> = (0..slowest)
-            .map(|k| (rate(k), weight(rate(k)), 0.0))
-            .collect();
+        let mut modes: Vec<_> = (0..slowest).map(|k| (rate(k), weight(rate(k)), 0.0)).collect();
         modes.push((0.0, 2.0 / PI * (rate(slowest - 1) / 2.0).sqrt(), 0.0));
         Self { modes }
     }
 
     /// `(1 - e^-r) / r` times the weight.
     fn input_gain(&(rate, weight, _): &(f64, f64, f64)) -> f64 {
-        weight
-            * if rate > 0.0 {
-                -(-rate).exp_m1() / rate
-            } else {
-                1.0
-            }
+        weight * if rate > 0.0 { -(-rate).exp_m1() / rate } else { 1.0 }
     }
 
     fn step(&mut self, scaled_flux: f64) {
@@ -53,10 +46,7 @@ impl Exact {
 
     /// Response `ticks` later if no flux flows.
     fn free_response(&self, ticks: f64) -> f64 {
-        self.modes
-            .iter()
-            .map(|(rate, _, value)| value * (-rate * ticks).exp())
-            .sum()
+        self.modes.iter().map(|(rate, _, value)| value * (-rate * ticks).exp()).sum()
     }
 
     /// Response to `ticks` of a constant scaled flux of 1.
@@ -74,38 +64,18 @@ fn coefficients_are_those_of_the_sum_of_modes() {
     let exact = Exact::new();
     let (fast, slow) = exact.modes.split_at(FAST);
     for (mode, exact) in FAST_MODES.iter().zip(fast) {
-        assert_eq!(
-            mode.input_gain.to_bits(),
-            scaled(Exact::input_gain(exact), 32)
-        );
+        assert_eq!(mode.input_gain.to_bits(), scaled(Exact::input_gain(exact), 32));
         assert_eq!(mode.change.to_bits(), scaled((-exact.0).exp_m1(), 32));
         let remaining = f64::from(MATCH_HORIZON_TICKS) - 1.0;
-        assert_eq!(
-            mode.horizon_factor.to_bits(),
-            scaled((-remaining * exact.0).exp(), 31)
-        );
+        assert_eq!(mode.horizon_factor.to_bits(), scaled((-remaining * exact.0).exp(), 31));
     }
     for (mode, exact) in SLOW_MODES.iter().zip(slow) {
-        let mean = (0..WINDOW)
-            .map(|j| (exact.0 * f64::from(j)).exp())
-            .sum::<f64>()
-            / window;
-        assert_eq!(
-            mode.input_gain.to_bits(),
-            scaled(Exact::input_gain(exact) * mean, 32)
-        );
-        assert_eq!(
-            mode.decay.to_bits(),
-            scaled(-(-window * exact.0).exp_m1(), 32)
-        );
+        let mean = (0..WINDOW).map(|j| (exact.0 * f64::from(j)).exp()).sum::<f64>() / window;
+        assert_eq!(mode.input_gain.to_bits(), scaled(Exact::input_gain(exact) * mean, 32));
+        assert_eq!(mode.decay.to_bits(), scaled(-(-window * exact.0).exp_m1(), 32));
     }
-    let slow_gain = slow
-        .iter()
-        .map(|mode| Exact::input_gain(mode) * (-mode.0).exp());
-    assert_eq!(
-        RELAXATIONS.slow_input_gain.to_bits(),
-        scaled(slow_gain.sum(), 32)
-    );
+    let slow_gain = slow.iter().map(|mode| Exact::input_gain(mode) * (-mode.0).exp());
+    assert_eq!(RELAXATIONS.slow_input_gain.to_bits(), scaled(slow_gain.sum(), 32));
     assert_eq!(TICK_GAIN.to_bits(), scaled(Exact::gain(1), 20));
     assert_eq!(
         RELAXATIONS.inverse_horizon_gain.to_bits(),
@@ -128,16 +98,9 @@ fn updates_once_per_window_agree_with_updates_every_tick() {
         }
         for tick in 0..20_000u32 {
             // The flux of a contact decays, ends, and is followed by that of a contact with a warm object.
-            let (since, size) = if tick < 9_001 {
-                (tick, 1.0)
-            } else {
-                (tick - 9_001, -0.5)
-            };
-            let scaled_flux = if since < 6_003 {
-                size / (1.0 + f64::from(since) / 30.0).sqrt()
-            } else {
-                0.0
-            };
+            let (since, size) = if tick < 9_001 { (tick, 1.0) } else { (tick - 9_001, -0.5) };
+            let scaled_flux =
+                if since < 6_003 { size / (1.0 + f64::from(since) / 30.0).sqrt() } else { 0.0 };
             if tick == 7_000 {
                 body = body.staggered();
             }
@@ -167,10 +130,7 @@ fn scaled_flux_to_match_makes_two_surfaces_meet_at_the_horizon() {
             to.step(back);
         }
         let end_k = (to.free_response() - from.free_response()).to_num::<f64>();
-        assert!(
-            difference_k.abs() < 0.2e-3,
-            "{ticks}: {difference_k} K, {end_k} K after it"
-        );
+        assert!(difference_k.abs() < 0.2e-3, "{ticks}: {difference_k} K, {end_k} K after it");
     }
 }
 
@@ -187,10 +147,7 @@ fn staggered_copy_ends_its_windows_half_a_window_apart_and_responds_the_same() {
             body.step(Celsius::lit("0.1"));
             other.step(Celsius::lit("0.1"));
             let difference = body.free_response().abs_diff(other.free_response());
-            assert!(
-                difference.to_num::<f64>() < 0.3 * LINE_ERROR,
-                "{difference}"
-            );
+            assert!(difference.to_num::<f64>() < 0.3 * LINE_ERROR, "{difference}");
         }
     }
 }
@@ -283,18 +240,13 @@ fn conductances_are_those_of_their_contact() {
             ] {
                 let (body, target) = (HalfSpace::default(), Celsius::lit("20"));
                 let flux = conductance.scaled_flux(target, &body).to_num::<f64>();
-                let drop = conductance
-                    .temperature_drop(Celsius::lit("0.0078125"))
-                    .to_num::<f64>();
+                let drop = conductance.temperature_drop(Celsius::lit("0.0078125")).to_num::<f64>();
                 let errors = [
                     (flux - 20.0 / (resistance + gain)).abs() / flux - 2f64.powi(-21) / flux,
                     (drop - resistance / 128.0).abs() / drop - 2f64.powi(-21) / drop,
                 ];
                 worst = errors.into_iter().fold(worst, f64::max);
-                assert!(
-                    errors.iter().all(|&e| e < 1e-5),
-                    "{name}, {force_n} N: {errors:?}"
-                );
+                assert!(errors.iter().all(|&e| e < 1e-5), "{name}, {force_n} N: {errors:?}");
             }
         }
     }
@@ -349,15 +301,9 @@ fn response_to_a_long_contact_decays_as_in_a_half_space() {
     let root = |ticks: u32| f64::from(ticks).sqrt();
     let change: f64 = body.free_response().to_num();
     let expected = 0.01 * 2.0 / PI.sqrt() * root(contact);
-    assert!(
-        (change / expected - 1.0).abs() < 0.005,
-        "{change}, not {expected}"
-    );
+    assert!((change / expected - 1.0).abs() < 0.005, "{change}, not {expected}");
     (0..pause).for_each(|_| body.step(Celsius::ZERO));
     let remaining = body.free_response().to_num::<f64>() / expected;
     let expected = (root(contact + pause) - root(pause)) / root(contact);
-    assert!(
-        (remaining / expected - 1.0).abs() < 0.02,
-        "{remaining}, not {expected}"
-    );
+    assert!((remaining / expected - 1.0).abs() < 0.02, "{remaining}, not {expected}");
 }

@@ -100,13 +100,7 @@ impl BridgePeripherals {
         let (_, (b4, ..)) = tim11.pwm_hz(frequency, rcc);
         let (first, second, third, fourth, fifth) =
             (self.first, self.second, self.third, self.fourth, self.fifth);
-        let [
-            first_lines,
-            second_lines,
-            third_lines,
-            fourth_lines,
-            fifth_lines,
-        ] = self.lines;
+        let [first_lines, second_lines, third_lines, fourth_lines, fifth_lines] = self.lines;
         let stages = [
             FingerPowerStage::new(
                 BridgeInputPwmChannel::Tim1(a0.with(first.0).erase()),
@@ -145,20 +139,11 @@ impl FingerPowerStage {
     fn new(
         mut in1: BridgeInputPwmChannel,
         mut in2: BridgeInputPwmChannel,
-        BridgeAndComparatorPins {
-            enable,
-            fault,
-            test,
-        }: BridgeAndComparatorPins,
+        BridgeAndComparatorPins { enable, fault, test }: BridgeAndComparatorPins,
     ) -> Self {
         in1.enable();
         in2.enable();
-        Self {
-            bridge: Bridge::new(in1, in2, enable),
-            fault,
-            test,
-            on: false,
-        }
+        Self { bridge: Bridge::new(in1, in2, enable), fault, test, on: false }
     }
 
     /// Whether TIM1 and TIM8 still have the locked settings that switch their outputs off when the
@@ -189,8 +174,7 @@ impl FingerPowerStage {
     /// comparator's input is at a level outside of its window, so it cuts the bridge's supply, which
     /// the self-test checks.
     pub fn apply_drive_and_comparator_test(&mut self, outputs: &BoardOutputs) {
-        self.test
-            .set_state((outputs.comparator_test != ComparatorTest::None).into());
+        self.test.set_state((outputs.comparator_test != ComparatorTest::None).into());
         match outputs.drive {
             Drive::Off => self.off(),
             Drive::On(duty) => {

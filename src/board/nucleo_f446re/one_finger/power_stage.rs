@@ -104,8 +104,7 @@ impl FingerPowerStage {
     /// a low fault line or a failure of the 8 MHz clock, disables the PWM outputs; they stay
     /// disabled until the station has detected the fault and has switched the bridge off itself.
     pub fn apply_drive_and_comparator_test(&mut self, outputs: &BoardOutputs) {
-        self.test
-            .set_state((outputs.comparator_test != ComparatorTest::None).into());
+        self.test.set_state((outputs.comparator_test != ComparatorTest::None).into());
         match outputs.drive {
             Drive::Off => self.off(),
             Drive::On(duty) => {

@@ -142,26 +142,14 @@ fn parameters_of_a_simulated_tile_are_identified() {
             let near = |found: f64, expected: f64, relative: f64, absolute: f64| {
                 (found - expected).abs() < relative * expected + absolute
             };
-            assert!(
-                near(found.gain_k_s_a, gain * flowing_ratio, 0.01, 0.0),
-                "{found:?}, {tile:?}"
-            );
+            assert!(near(found.gain_k_s_a, gain * flowing_ratio, 0.01, 0.0), "{found:?}, {tile:?}");
             assert!(
                 near(found.joule_per_a, joule * flowing_ratio, 0.02, 1.5e-3),
                 "{found:?}, {tile:?}"
             );
-            assert!(
-                near(found.leak_1_s, leak, 0.03, 0.01),
-                "{found:?}, {tile:?}"
-            );
-            assert!(
-                near(found.sensor_lag_s, lag, 0.015, 1e-3),
-                "{found:?}, {tile:?}"
-            );
-            assert!(
-                near(found.dead_time_s, 0.016, 0.0, 1.5e-3),
-                "{found:?}, {tile:?}"
-            );
+            assert!(near(found.leak_1_s, leak, 0.03, 0.01), "{found:?}, {tile:?}");
+            assert!(near(found.sensor_lag_s, lag, 0.015, 1e-3), "{found:?}, {tile:?}");
+            assert!(near(found.dead_time_s, 0.016, 0.0, 1.5e-3), "{found:?}, {tile:?}");
         }
     }
 }
@@ -174,10 +162,7 @@ fn the_identified_gain_is_that_of_large_currents() {
     let found = plant.identify(UNTOUCHED).expect("a tile");
     let ratio = found.gain_k_s_a / TILE.gain_k_s_a;
     // That of currents between 2.5 and 6 A.
-    assert!(
-        (1.0 - 0.2 / 2.5..1.0 - 0.2 / 6.0).contains(&ratio),
-        "{ratio}"
-    );
+    assert!((1.0 - 0.2 / 2.5..1.0 - 0.2 / 6.0).contains(&ratio), "{ratio}");
 }
 
 #[test]
@@ -188,10 +173,7 @@ fn a_zero_error_of_the_mirror_does_not_shift_the_gain() {
         plant.identify(UNTOUCHED).expect("a tile").gain_k_s_a
     };
     let sound = gain_k_s_a(f64::abs);
-    for off in [
-        gain_k_s_a(|a| (a.abs() - 0.05).max(0.0)),
-        gain_k_s_a(|a| a.abs() + 0.05),
-    ] {
+    for off in [gain_k_s_a(|a| (a.abs() - 0.05).max(0.0)), gain_k_s_a(|a| a.abs() + 0.05)] {
         assert!((off / sound - 1.0).abs() < 2.5e-4, "{off}, {sound}");
     }
 }
@@ -208,10 +190,7 @@ fn each_reason_to_abort_is_reported() {
     );
     let mut hot = Plant::new(TILE);
     hot.sink_c = 42.6;
-    assert_eq!(
-        hot.identify(UNTOUCHED),
-        Err(Refused::TuneAborted(AbortReason::SinkHot).into())
-    );
+    assert_eq!(hot.identify(UNTOUCHED), Err(Refused::TuneAborted(AbortReason::SinkHot).into()));
     let mut disturbed = Plant::new(TILE);
     disturbed.disturbance = |tick| if tick / 700 % 2 == 0 { 0.1 } else { -0.1 };
     assert_eq!(
@@ -219,10 +198,7 @@ fn each_reason_to_abort_is_reported() {
         Err(Refused::TuneAborted(AbortReason::NotSettled).into())
     );
     // Starts in its steady state, and then moves by eight times the 2.3 K that the pulses are made for.
-    let mut sensitive = Plant::new(Tile {
-        gain_k_s_a: 24.0,
-        ..TILE
-    });
+    let mut sensitive = Plant::new(Tile { gain_k_s_a: 24.0, ..TILE });
     sensitive.reading_c = 25.0;
     sensitive.plate_c = 25.0;
     assert_eq!(
@@ -259,19 +235,12 @@ fn defects_are_told_apart_from_a_tile() {
         plant.tile.gain_k_s_a = 0.0;
         (plant.plate_c, plant.reading_c) = (25.0, 25.0);
     });
-    assert!(
-        matches!(unresponsive, Err(SessionError::Identification(_))),
-        "{unresponsive:?}"
-    );
+    assert!(matches!(unresponsive, Err(SessionError::Identification(_))), "{unresponsive:?}");
     // A finger too light for the force sensor comes and goes from the first pulse on.
     let rubbed = with(|plant| {
         (plant.plate_c, plant.reading_c) = (25.0, 25.0);
         plant.disturbance = |tick| {
-            if tick > 3000 && tick / 400 % 2 == 0 {
-                1.5
-            } else {
-                0.0
-            }
+            if tick > 3000 && tick / 400 % 2 == 0 { 1.5 } else { 0.0 }
         };
     });
     assert!(
@@ -284,12 +253,7 @@ fn defects_are_told_apart_from_a_tile() {
         plant.disturbance = |tick| if tick > 7000 && tick < 8500 { 3.0 } else { 0.0 };
     });
     assert!(
-        matches!(
-            loose,
-            Err(SessionError::Identification(
-                IdentificationError::ModelMismatch(_)
-            ))
-        ),
+        matches!(loose, Err(SessionError::Identification(IdentificationError::ModelMismatch(_)))),
         "{loose:?}"
     );
 }

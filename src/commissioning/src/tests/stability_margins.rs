@@ -37,10 +37,7 @@ fn quotient(a: Complex, (c, d): Complex) -> Complex {
 
 /// The complex gain of the open loop at `s = jw`, by its transfer function.
 fn open_loop(tile: &Tile, gains: &PiGains, w: f64) -> Complex {
-    let controller = (
-        gains.proportional_a_k,
-        -gains.proportional_a_k / (gains.integral_s * w),
-    );
+    let controller = (gains.proportional_a_k, -gains.proportional_a_k / (gains.integral_s * w));
     let plate = quotient((tile.gain_k_s_a, 0.0), (tile.leak_1_s, w));
     let sensor = quotient((1.0, 0.0), (1.0, tile.sensor_lag_s * w));
     let dead = ((tile.dead_time_s * w).cos(), -(tile.dead_time_s * w).sin());

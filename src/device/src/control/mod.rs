@@ -38,11 +38,8 @@ pub enum Law {
 
 impl Law {
     /// All laws, each with its word in the protocol with the host.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 3] = [
-        ("pi-10hz", Self::Pi10Hz),
-        ("pi", Self::Pi),
-        ("model", Self::Model),
-    ];
+    pub const PROTOCOL_WORDS: [(&'static str, Self); 3] =
+        [("pi-10hz", Self::Pi10Hz), ("pi", Self::Pi), ("model", Self::Model)];
 
     /// Word for this law in the protocol with the host, as in [`Self::PROTOCOL_WORDS`].
     pub const fn name(self) -> &'static str {
@@ -127,9 +124,7 @@ impl Controller {
         plate: &PlateObserver,
     ) -> Current {
         self.current = match self.law {
-            Law::Pi10Hz => self
-                .pi_10hz
-                .update_output_when_due(reference.setpoint, display),
+            Law::Pi10Hz => self.pi_10hz.update_output_when_due(reference.setpoint, display),
             Law::Pi => self.pi.update_output_when_due(reference.setpoint, display),
             Law::Model => plate
                 .current_to_target(reference.target.celsius())
@@ -143,9 +138,7 @@ impl Controller {
     /// up to [`COOLING_DERATING_SINK_TEMPERATURE`] (39.5 °C), falling linearly to zero 2 K above it. At such temperatures more
     /// current would warm the sink more than cool the display.
     fn sink_derated_cooling_limit(&self, sink: Celsius) -> Current {
-        let excess = sink
-            .saturating_sub(COOLING_DERATING_SINK_TEMPERATURE)
-            .max(Celsius::ZERO)
+        let excess = sink.saturating_sub(COOLING_DERATING_SINK_TEMPERATURE).max(Celsius::ZERO)
             >> COOLING_LIMIT_FRACTION_LOST_PER_K_SHIFT;
         let part = Celsius::ONE.saturating_sub(excess).max(Celsius::ZERO);
         product(self.current_limit(), part)

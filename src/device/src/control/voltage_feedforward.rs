@@ -236,10 +236,8 @@ mod tests {
     #[test]
     fn warm_legs_need_more_voltage() {
         let mut voltage = VoltageFeedforward::new(&Settings::default().module);
-        let warm = LegTemperatures {
-            mean: DATA_SHEET_TEMPERATURE + Celsius::lit("10"),
-            ..legs(0.0)
-        };
+        let warm =
+            LegTemperatures { mean: DATA_SHEET_TEMPERATURE + Celsius::lit("10"), ..legs(0.0) };
         let mut part = |legs| {
             voltage
                 .duty_for_current(SafeCurrent::saturating(Current::lit("4")), legs)

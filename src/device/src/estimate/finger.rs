@@ -87,26 +87,13 @@ impl ContactConductances {
         };
         let (display, object) = match bodies {
             None => (contact.display_conductance(), contact.object_conductance()),
-            Some(Bodies {
-                finger,
-                object,
-                resistances,
-                ..
-            }) => (
+            Some(Bodies { finger, object, resistances, .. }) => (
                 contact.display_conductance_of(&finger.tissue, resistances),
                 contact.conductance_of(&finger.tissue, object, resistances),
             ),
         };
-        let ratio = bodies.map_or(contact.ratio, |bodies| {
-            contact.ratio_of(&bodies.resistances)
-        });
-        Self {
-            force,
-            contact,
-            display,
-            object,
-            ratio,
-        }
+        let ratio = bodies.map_or(contact.ratio, |bodies| contact.ratio_of(&bodies.resistances));
+        Self { force, contact, display, object, ratio }
     }
 
     /// Contact resistance of skin and display without the factor that was learnt, K per K of scaled flux; `own` are the finger's.
@@ -225,11 +212,8 @@ impl FingerContact {
     pub fn adopt_setpoint_force_and_conductances(&mut self, pair: &ContactPair) {
         self.force.use_long_mean_for_setpoints();
         if self.contact_if_computed_for_setpoint_force().is_none() {
-            self.conductances = Some(ContactConductances::new(
-                pair,
-                None,
-                self.force.mean_for_setpoints(),
-            ));
+            self.conductances =
+                Some(ContactConductances::new(pair, None, self.force.mean_for_setpoints()));
         }
     }
 
@@ -301,11 +285,8 @@ impl FingerEstimator {
         match (touch, &mut self.contact) {
             (None, contact) => *contact = None,
             (Some(force), contact @ None) => {
-                *contact = Some(FingerContact::new_at_contact_detection(
-                    force,
-                    landed_ticks,
-                    recovered,
-                ));
+                *contact =
+                    Some(FingerContact::new_at_contact_detection(force, landed_ticks, recovered));
             }
             (Some(force), Some(contact)) => contact.update_by_force(force),
         }
@@ -345,10 +326,7 @@ impl FingerEstimator {
     /// the estimates, and a landing or lifting of the finger would be missed.
     pub fn invalidate(&mut self) {
         let assumed = self.assumed_skin.as_ref().map(|skin| skin.temperature);
-        *self = Self {
-            skin_offset: self.skin_offset,
-            ..Self::default()
-        };
+        *self = Self { skin_offset: self.skin_offset, ..Self::default() };
         self.assume_skin(assumed);
     }
 

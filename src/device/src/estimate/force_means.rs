@@ -7,18 +7,12 @@ use contact_model::fixed_point::Force;
 /// Threshold of a jump: a tick's force that differs from the mean of the last 64 ticks by more than 1/16 of that mean,
 /// and by more than 10 mN, is a new force, and the means start again from it. A smaller difference is no jump.
 const FORCE_JUMP_FROM_RECENT_MEAN: RelativeForceThresholdWithFloor =
-    RelativeForceThresholdWithFloor {
-        shift: 4,
-        floor: Force::lit("0.01"),
-    };
+    RelativeForceThresholdWithFloor { shift: 4, floor: Force::lit("0.01") };
 /// Threshold of drift: the mean of the last 64 ticks has drifted if it differs from the mean for which the set-points
 /// were computed by more than 1/2048 of that mean, and by more than 0.25 mN. Smaller than the threshold of a jump,
 /// because a mean has less noise than the force of a single tick.
 const RECENT_MEAN_DRIFT_THRESHOLD: RelativeForceThresholdWithFloor =
-    RelativeForceThresholdWithFloor {
-        shift: 11,
-        floor: Force::lit("0.00025"),
-    };
+    RelativeForceThresholdWithFloor { shift: 11, floor: Force::lit("0.00025") };
 /// Ticks of 1 ms (64 ms) over which the recent mean of the force averages. Jumps and drift of the force are detected by
 /// comparison with the recent mean.
 const RECENT_MEAN_TICKS: u32 = 64;
@@ -86,12 +80,7 @@ pub enum ForceChange {
 impl ForceMeans {
     /// Starts the means with a single force, N, at landing and after each jump of the force.
     pub const fn new(force: Force) -> Self {
-        Self {
-            recent_mean: force,
-            long_mean: force,
-            mean_for_setpoints: force,
-            ticks: 1,
-        }
+        Self { recent_mean: force, long_mean: force, mean_for_setpoints: force, ticks: 1 }
     }
 
     /// Long running mean of the force, N: over all ticks since the last jump of the force while these are fewer than
@@ -152,11 +141,7 @@ impl ForceMeans {
 fn updated_mean(mean: Force, force: Force, ticks: u32) -> Force {
     let ticks = NonZeroU32::new(ticks).unwrap_or(NonZeroU32::MIN);
     let part = Force::from_bits((force.max(mean) - force.min(mean)).to_bits() / ticks);
-    if force >= mean {
-        mean.saturating_add(part)
-    } else {
-        mean.saturating_sub(part)
-    }
+    if force >= mean { mean.saturating_add(part) } else { mean.saturating_sub(part) }
 }
 
 #[cfg(test)]
@@ -167,11 +152,7 @@ mod tests {
     fn the_mean_averages_noise_and_takes_a_step_at_once() {
         let mut mean = ForceMeans::new(Force::lit("2"));
         for i in 0..500 {
-            let noisy = if i % 2 == 0 {
-                Force::lit("2.01")
-            } else {
-                Force::lit("1.99")
-            };
+            let noisy = if i % 2 == 0 { Force::lit("2.01") } else { Force::lit("1.99") };
             assert_eq!(mean.add_force(noisy), ForceChange::Noise);
         }
         mean.add_force(Force::lit("2"));

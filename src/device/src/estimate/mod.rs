@@ -60,25 +60,17 @@ impl Estimator {
         pair: Option<&ContactPair>,
         bodies: &Bodies,
     ) -> PlateEstimateBeforeReading {
-        let ValidReadings {
-            display,
-            sink,
-            skin,
-            room,
-            ..
-        } = *readings;
+        let ValidReadings { display, sink, skin, room, .. } = *readings;
         let estimate = PlateEstimateBeforeReading {
             previous_surface: self.plate.surface().unwrap_or(display),
             previous_legs: (self.plate.leg_end_and_mean_temperatures())
                 .unwrap_or_else(|| LegTemperatures::between_display_and_sink(display, sink)),
         };
-        self.finger
-            .update_by_readings(skin, room, touch, landed_ticks);
+        self.finger.update_by_readings(skin, room, touch, landed_ticks);
         let heat = pair.map_or(Watt::ZERO, |pair| {
             (self.finger).step_skin_heat_flow(pair, bodies, estimate.previous_surface)
         });
-        self.plate
-            .update_disturbance_and_correction(display, sink, heat);
+        self.plate.update_disturbance_and_correction(display, sink, heat);
         estimate
     }
 

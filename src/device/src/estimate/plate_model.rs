@@ -49,10 +49,7 @@ const fn class_relaxation_row(
     joule: f64,
     finger: f64,
 ) -> RelaxationParameters {
-    RelaxationParameters {
-        time_constant_s,
-        gains_k_w: [pumped, joule, finger],
-    }
+    RelaxationParameters { time_constant_s, gains_k_w: [pumped, joule, finger] }
 }
 
 /// Number of relaxations in the plate model; the surface temperature is their sum and the finger's immediate effect.
@@ -120,18 +117,11 @@ struct HeatInputGains<Gain> {
 }
 
 impl<Frac: LeEqU32> HeatInputGains<FixedI32<Frac>> {
-    const ZERO: Self = Self {
-        pumped: FixedI32::ZERO,
-        joule: FixedI32::ZERO,
-        finger: FixedI32::ZERO,
-    };
+    const ZERO: Self =
+        Self { pumped: FixedI32::ZERO, joule: FixedI32::ZERO, finger: FixedI32::ZERO };
 
     fn new([pumped, joule, finger]: [f64; 3]) -> Self {
-        Self {
-            pumped: to_fixed(pumped),
-            joule: to_fixed(joule),
-            finger: to_fixed(finger),
-        }
+        Self { pumped: to_fixed(pumped), joule: to_fixed(joule), finger: to_fixed(finger) }
     }
 
     /// `temperature`, K or °C, plus the change of the display's surface temperature, or of one relaxation's contribution
@@ -231,10 +221,7 @@ impl FixedPointRelaxation {
 
     #[inline(never)]
     fn new(relaxation: &RelaxationParameters) -> Self {
-        let RelaxationParameters {
-            time_constant_s,
-            gains_k_w,
-        } = *relaxation;
+        let RelaxationParameters { time_constant_s, gains_k_w } = *relaxation;
         let tick_decay = decay(1.0, time_constant_s);
         Self {
             state: I12F52::ZERO,
@@ -288,16 +275,12 @@ struct LinearInLegTemperature<Value> {
 
 impl<Frac: LeEqU32> LinearInLegTemperature<FixedI32<Frac>> {
     fn new(value: f64, rise_per_k: f64) -> Self {
-        Self {
-            value: to_fixed(value),
-            rise_per_k: to_fixed(rise_per_k * value),
-        }
+        Self { value: to_fixed(value), rise_per_k: to_fixed(rise_per_k * value) }
     }
 
     /// Resistance or Seebeck coefficient of legs whose mean temperature is 27 °C plus `above_data_sheet`, K.
     fn at(&self, above_data_sheet: Celsius) -> FixedI32<Frac> {
-        self.value
-            .saturating_add(product(above_data_sheet, self.rise_per_k))
+        self.value.saturating_add(product(above_data_sheet, self.rise_per_k))
     }
 }
 
@@ -318,11 +301,7 @@ impl LegTemperatures {
     /// Temperatures of legs without current: the ends at the temperatures of display and sink, °C, and the mean half
     /// way between.
     pub fn between_display_and_sink(display: Celsius, sink: Celsius) -> Self {
-        Self {
-            cold: display,
-            hot: sink,
-            mean: (display >> 1u32).saturating_add(sink >> 1u32),
-        }
+        Self { cold: display, hot: sink, mean: (display >> 1u32).saturating_add(sink >> 1u32) }
     }
 }
 
@@ -403,16 +382,13 @@ impl PlateModel {
         sink: Celsius,
     ) -> PlateInputs {
         (self.hot, self.surface) = (sink, surface);
-        self.leg_mean
-            .set_output(LegTemperatures::between_display_and_sink(surface, sink).mean);
+        self.leg_mean.set_output(LegTemperatures::between_display_and_sink(surface, sink).mean);
         let inputs = self.inputs_of_tick(current, finger, sink);
         let mut remainder = to_model_temperature(surface)
             .saturating_sub(product(inputs.finger, self.finger_feedthrough));
         let [slowest, others @ ..] = &mut self.relaxations;
         for relaxation in others {
-            relaxation.state = relaxation
-                .steady_state_gains
-                .added_to(I12F52::ZERO, &inputs);
+            relaxation.state = relaxation.steady_state_gains.added_to(I12F52::ZERO, &inputs);
             remainder -= relaxation.state_temperature();
         }
         slowest.set_state_temperature(remainder);
@@ -448,11 +424,7 @@ impl PlateModel {
 
     /// Modelled temperatures of the legs' two ends and their mean, °C, after the last step of the model.
     pub fn leg_end_and_mean_temperatures(&self) -> LegTemperatures {
-        LegTemperatures {
-            cold: self.surface,
-            hot: self.hot,
-            mean: self.leg_mean.output(),
-        }
+        LegTemperatures { cold: self.surface, hot: self.hot, mean: self.leg_mean.output() }
     }
 
     /// Inputs of the model in a tick with this current, A (positive cools), heat flow from the finger, W, and
@@ -463,28 +435,19 @@ impl PlateModel {
     pub fn inputs_of_tick(&self, current: Current, finger: Watt, sink: Celsius) -> PlateInputs {
         let above_data_sheet = (self.leg_mean.output())
             .saturating_sub(DATA_SHEET_TEMPERATURE)
-            .clamp(
-                -LEG_DEVIATION_FROM_27_C_MAX_MAGNITUDE,
-                LEG_DEVIATION_FROM_27_C_MAX_MAGNITUDE,
-            );
+            .clamp(-LEG_DEVIATION_FROM_27_C_MAX_MAGNITUDE, LEG_DEVIATION_FROM_27_C_MAX_MAGNITUDE);
         let surface_k = self.surface.saturating_add(ZERO_C_IN_K);
         let peltier_v: I8F24 = product(self.seebeck.at(above_data_sheet), surface_k);
         let current_squared: I8F24 = saturating_product(current, current);
         let heat = |volts_or_ohms: I8F24, factor: I8F24| -> Watt {
             let heat: Watt = saturating_product(volts_or_ohms, factor);
-            heat.clamp(
-                -PUMPED_OR_JOULE_HEAT_MAX_MAGNITUDE,
-                PUMPED_OR_JOULE_HEAT_MAX_MAGNITUDE,
-            )
+            heat.clamp(-PUMPED_OR_JOULE_HEAT_MAX_MAGNITUDE, PUMPED_OR_JOULE_HEAT_MAX_MAGNITUDE)
         };
         PlateInputs {
             pumped: heat(peltier_v, current),
             joule: heat(self.resistance.at(above_data_sheet), current_squared),
             finger: finger.clamp(-FINGER_HEAT_MAX_MAGNITUDE, FINGER_HEAT_MAX_MAGNITUDE),
-            sink: sink.clamp(
-                -SINK_TEMPERATURE_MAX_MAGNITUDE,
-                SINK_TEMPERATURE_MAX_MAGNITUDE,
-            ),
+            sink: sink.clamp(-SINK_TEMPERATURE_MAX_MAGNITUDE, SINK_TEMPERATURE_MAX_MAGNITUDE),
         }
     }
 
@@ -499,9 +462,7 @@ impl PlateModel {
             - to_model_temperature(inputs.sink).wide_mul(slowest.horizon_change);
         change = self.horizon_gains.added_to(change, inputs);
         for relaxation in &self.relaxations {
-            change += relaxation
-                .state_temperature()
-                .wide_mul(relaxation.horizon_change);
+            change += relaxation.state_temperature().wide_mul(relaxation.horizon_change);
         }
         let excess: Celsius = saturated(change);
         saturating_product(excess, self.current_per_kelvin)
@@ -515,19 +476,14 @@ impl PlateModel {
         let [slowest, ..] = &mut self.relaxations;
         slowest.state -= to_model_temperature(inputs.sink).wide_mul(slowest.tick_change);
         for relaxation in &mut self.relaxations {
-            let change = relaxation
-                .state_temperature()
-                .wide_mul(relaxation.tick_change);
-            relaxation.state = relaxation
-                .tick_gains
-                .added_to(relaxation.state + change, inputs);
+            let change = relaxation.state_temperature().wide_mul(relaxation.tick_change);
+            relaxation.state = relaxation.tick_gains.added_to(relaxation.state + change, inputs);
             surface += relaxation.state_temperature();
         }
         self.surface = to_celsius(surface);
         let rise: Celsius = product(inputs.joule, LEG_MEAN_RISE_PER_JOULE_HEAT_K_W);
         let between = LegTemperatures::between_display_and_sink(self.surface, self.hot);
-        self.leg_mean
-            .update_by_input(between.mean.saturating_add(rise));
+        self.leg_mean.update_by_input(between.mean.saturating_add(rise));
         let heat_out = inputs.joule.saturating_add(inputs.pumped);
         let hot_side_rise = product(heat_out, HOT_SIDE_THERMAL_RESISTANCE_K_W);
         self.hot = inputs.sink.saturating_add(hot_side_rise);

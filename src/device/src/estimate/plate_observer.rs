@@ -129,15 +129,13 @@ impl PlateObserver {
     /// disturbance, which is the filtered difference between the thermistor's reading and the modelled reading. `None`
     /// until a reading has started the model, also after [`Self::invalidate`].
     pub fn surface(&self) -> Option<Celsius> {
-        self.valid
-            .then(|| (self.plate.surface()).saturating_add(self.disturbance.output()))
+        self.valid.then(|| (self.plate.surface()).saturating_add(self.disturbance.output()))
     }
 
     /// Modelled temperatures of the legs' cold and hot ends and their mean, °C. `None` until a reading has started the
     /// model, also after [`Self::invalidate`].
     pub fn leg_end_and_mean_temperatures(&self) -> Option<LegTemperatures> {
-        self.valid
-            .then(|| self.plate.leg_end_and_mean_temperatures())
+        self.valid.then(|| self.plate.leg_end_and_mean_temperatures())
     }
 
     /// Whether the residual exceeds [`ObserverParameters::largest_residual`] in magnitude; false until a reading has
@@ -163,9 +161,7 @@ impl PlateObserver {
         finger: Watt,
     ) {
         if !self.valid {
-            self.inputs = self
-                .plate
-                .initialise_steady_state(reading, Current::ZERO, finger, sink);
+            self.inputs = self.plate.initialise_steady_state(reading, Current::ZERO, finger, sink);
             self.model_current = Current::ZERO;
             self.sensor.set_output(reading);
             self.disturbance.set_output(Celsius::ZERO);
@@ -177,8 +173,7 @@ impl PlateObserver {
         if self.recalibrated {
             let offset = innovation.saturating_sub(self.disturbance.output());
             self.plate.shift_plate_temperature(offset);
-            self.sensor
-                .set_output(self.sensor.output().saturating_add(offset));
+            self.sensor.set_output(self.sensor.output().saturating_add(offset));
             innovation = self.disturbance.output();
             self.recalibrated = false;
         }
@@ -192,10 +187,7 @@ impl PlateObserver {
     /// here; the controller limits it.
     pub fn current_to_target(&self, target: Celsius) -> Current {
         self.model_current
-            .saturating_add(
-                self.plate
-                    .additional_current_to_target(target, &self.inputs),
-            )
+            .saturating_add(self.plate.additional_current_to_target(target, &self.inputs))
             .saturating_add(self.correction)
     }
 
@@ -206,13 +198,8 @@ impl PlateObserver {
         if !self.valid {
             return;
         }
-        let limit = self
-            .limit
-            .saturating_add(self.limit >> MODEL_CURRENT_MARGIN_SHIFT);
-        self.model_current = current
-            .saturating_sub(self.correction)
-            .min(limit)
-            .max(-limit);
+        let limit = self.limit.saturating_add(self.limit >> MODEL_CURRENT_MARGIN_SHIFT);
+        self.model_current = current.saturating_sub(self.correction).min(limit).max(-limit);
         let PlateInputs { finger, sink, .. } = self.inputs;
         self.inputs = self.plate.inputs_of_tick(self.model_current, finger, sink);
         let previous_surface = self.plate.surface();

@@ -81,10 +81,7 @@ const EXCITATION_TICKS: u32 = {
 
 /// Gains of the PI loop that brings the display to the operating point. They are stable for any tile of the class and
 /// any thermistor lag up to 0.5 s, because the parameters of this tile are not known yet.
-const SETTLING_GAINS: PiGains = PiGains {
-    proportional_a_k: 0.3,
-    integral_s: 5.0,
-};
+const SETTLING_GAINS: PiGains = PiGains { proportional_a_k: 0.3, integral_s: 5.0 };
 /// Computed by the compiler, because `tune` locks out the tick.
 const SETTLING_COEFFICIENTS: PiCoefficients =
     PiCoefficients::new(&SETTLING_GAINS, UpdatePeriod::EveryTick);
@@ -277,16 +274,12 @@ impl Identification {
                 } else if ticks == SETTLING_TIMEOUT_TICKS {
                     IdentificationPhase::Aborted(AbortReason::NotSettled)
                 } else {
-                    IdentificationPhase::Settling {
-                        ticks: ticks + 1,
-                        near,
-                    }
+                    IdentificationPhase::Settling { ticks: ticks + 1, near }
                 };
             }
             IdentificationPhase::Baseline { ticks } if ticks < TICKS_PER_BASELINE_HALF => {
-                let current = self
-                    .pi
-                    .update_output_when_due(self.operating_point, readings.display);
+                let current =
+                    self.pi.update_output_when_due(self.operating_point, readings.display);
                 self.baseline_demand += i64::from(current.to_bits());
                 self.phase = IdentificationPhase::Baseline { ticks: ticks + 1 };
                 return Some(current);
@@ -324,19 +317,13 @@ impl Identification {
                     - certain_current_direction(self.baseline_current_plus_eighths(0));
                 equations.add_tick(change, measured, self.baseline_measured, turned);
                 self.previous_demand = demand;
-                let (pulse, ticks) = if ticks + 1 < *length {
-                    (pulse, ticks + 1)
-                } else {
-                    (pulse + 1, 0)
-                };
+                let (pulse, ticks) =
+                    if ticks + 1 < *length { (pulse, ticks + 1) } else { (pulse + 1, 0) };
                 self.phase = IdentificationPhase::Pulses { pulse, ticks };
                 return Some(demand);
             }
         }
-        Some(
-            self.pi
-                .update_output_when_due(self.operating_point, readings.display),
-        )
+        Some(self.pi.update_output_when_due(self.operating_point, readings.display))
     }
 
     /// Current to demand, A (positive cools): the baseline current plus `eighths` eighths of [`NOMINAL_PULSE_CURRENT`].
@@ -349,11 +336,7 @@ impl Identification {
 /// Direction in which the module's current certainly flows if this current, A, is demanded: 1 if it cools, -1 if it
 /// heats, 0 (uncertain) if its magnitude is below 0.25 A.
 fn certain_current_direction(demanded: Current) -> i64 {
-    if demanded.abs() < CERTAIN_DIRECTION_CURRENT_MIN {
-        0
-    } else {
-        demanded.signum().to_num()
-    }
+    if demanded.abs() < CERTAIN_DIRECTION_CURRENT_MIN { 0 } else { demanded.signum().to_num() }
 }
 
 /// The measured current, A, with the sign of the demanded one, because the current mirror shows only the magnitude. The

@@ -81,10 +81,7 @@ mod tests {
     };
 
     fn parameters(lag_ms: f64) -> FluxParameters {
-        FluxParameters::new(&FluxSensor {
-            lag_ms,
-            ..FluxSensor::DESIGNED
-        })
+        FluxParameters::new(&FluxSensor { lag_ms, ..FluxSensor::DESIGNED })
     }
 
     fn w_m2(flux: FluxPerMm2) -> f64 {
@@ -106,11 +103,7 @@ mod tests {
                 let of_window = 0.5 * lagged;
                 added += w_m2(beyond.flux());
                 measured += of_window;
-                let change = if window == 0 {
-                    of_window
-                } else {
-                    of_window - before
-                };
+                let change = if window == 0 { of_window } else { of_window - before };
                 let apart = measured - added - change;
                 assert!(
                     apart.abs() < 2.0 * f64::from(1 + window),
@@ -131,10 +124,7 @@ mod tests {
     fn nothing_is_added_soon_after_a_landing_and_without_a_flux() {
         let (mut beyond, parameters) = (BeyondModel::default(), parameters(5.0));
         let mut added_w_m2 = |flux: Option<Flux>, ticks_since_landing| {
-            let state = StateAtEnd {
-                ticks_since_landing,
-                ..STATE
-            };
+            let state = StateAtEnd { ticks_since_landing, ..STATE };
             beyond.end_window(flux, FluxPerMm2::ZERO, &parameters, &state);
             w_m2(beyond.flux())
         };

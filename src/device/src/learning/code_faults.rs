@@ -48,10 +48,7 @@ impl CodeFaults {
         let is_unchanged = sum == self.last_sum && sum == WINDOW_TICKS * u32::from(last);
         self.last_sum = sum;
         self.unchanged_windows = counted(self.unchanged_windows, is_unchanged);
-        let within = sum.clamp(
-            WINDOW_TICKS * u32::from(LOWEST),
-            WINDOW_TICKS * u32::from(HIGHEST),
-        );
+        let within = sum.clamp(WINDOW_TICKS * u32::from(LOWEST), WINDOW_TICKS * u32::from(HIGHEST));
         self.at_rail_windows = counted(self.at_rail_windows, within != sum);
         let is_at_rail = self.is_saturated()
             && (self.at_rail_windows >= AT_RAIL_WINDOWS_MAX_IF_LIKELY || !is_beyond_likely());

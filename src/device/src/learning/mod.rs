@@ -221,8 +221,7 @@ impl FingerLearning {
             (None, None) => self.knowledge,
         };
         let flux = flux_w_m2.filter(|_| self.knowledge.is_of_sound_sensor());
-        self.beyond_model
-            .end_window(flux, modelled_flux, &self.parameters, state);
+        self.beyond_model.end_window(flux, modelled_flux, &self.parameters, state);
         if let Some(trust) = answer {
             let learnt = self.learnt.as_ref();
             (self.person).note(trust, learnt.and_then(|learnt| learnt.person.as_ref()));
@@ -273,23 +272,13 @@ impl FingerLearning {
             modelled.saturating_mul_int(2).abs() >= measured.abs()
                 && modelled.is_negative() == measured.is_negative()
         };
-        let codes = (self.faults).judge(
-            sums.codes(),
-            self.code,
-            sums.is_code_missing,
-            is_beyond_likely,
-        );
+        let codes =
+            (self.faults).judge(sums.codes(), self.code, sums.is_code_missing, is_beyond_likely);
         let is_valid = self.faults.present().is_none();
         let counts = self.counting_windows != 0;
         let is_resting = is_valid && !counts && is_display_at_room;
         self.resting.add(is_resting.then_some(codes));
-        is_valid.then(|| {
-            if counts {
-                self.parameters.mean_flux(codes)
-            } else {
-                Flux::ZERO
-            }
-        })
+        is_valid.then(|| if counts { self.parameters.mean_flux(codes) } else { Flux::ZERO })
     }
 
     /// Whether there is an input that the learner has not taken.

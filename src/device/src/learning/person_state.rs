@@ -16,10 +16,7 @@ pub struct PersonState {
 impl PersonState {
     /// Before the first contact.
     pub const fn new(chosen: Option<Person>) -> Self {
-        Self {
-            chosen,
-            learnt: None,
-        }
+        Self { chosen, learnt: None }
     }
 
     /// The finger with which the learner begins.

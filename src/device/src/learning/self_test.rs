@@ -29,13 +29,8 @@ pub enum FluxSensorTest {
 
 impl FluxSensorTest {
     /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Passed,
-        Self::NoCode,
-        Self::Range,
-        Self::Zero,
-        Self::NotAtRest,
-    ];
+    pub const ALL: [Self; 5] =
+        [Self::Passed, Self::NoCode, Self::Range, Self::Zero, Self::NotAtRest];
 
     /// Its word in lines to the host.
     pub const fn name(self) -> &'static str {

@@ -31,10 +31,7 @@ fn tick(number: u32, presses: bool) -> MeasuredTick {
 }
 
 fn learning() -> FingerLearning {
-    FingerLearning::new(
-        &FluxParameters::new(&FluxSensor::DESIGNED),
-        PlaceBeforeContact::Air,
-    )
+    FingerLearning::new(&FluxParameters::new(&FluxSensor::DESIGNED), PlaceBeforeContact::Air)
 }
 
 /// An answer to the last input with another finger than the mean one.
@@ -111,10 +108,7 @@ fn a_landing_may_be_in_any_tick_of_a_window() {
         assert_eq!(touching, 32);
         assert!((above_k - 5.0 * 32.0).abs() < 1e-3, "{above_k}");
         let last = (landing + 31) / WINDOW_TICKS + 1;
-        assert!(
-            with_flux.into_iter().eq(2..=last + 2),
-            "landing in {landing}"
-        );
+        assert!(with_flux.into_iter().eq(2..=last + 2), "landing in {landing}");
     }
 }
 
@@ -176,18 +170,11 @@ fn a_missing_answer_and_one_for_another_window_end_in_the_mean_finger() {
             assert_eq!(learning.knowledge(), FingerKnowledge::Late);
             let now = last.expect("a finger nearer to the mean one");
             let share = |now: f64, before: f64| now / before;
-            let left = share(
-                now.air_flux_deviation.to_num(),
-                before.air_flux_deviation.to_num(),
-            );
+            let left = share(now.air_flux_deviation.to_num(), before.air_flux_deviation.to_num());
             assert!((left - 0.75f64.powi(number + 1)).abs() < 1e-6, "{left}");
         }
         let last = last.expect("a finger");
-        assert!(
-            last.weights
-                .iter()
-                .all(|weight| weight.abs_diff(I2F30::ONE) < 4)
-        );
+        assert!(last.weights.iter().all(|weight| weight.abs_diff(I2F30::ONE) < 4));
         assert!(last.resistance_factor.abs_diff(I4F28::ONE) < 4);
         assert!(last.skin_offset_k.unsigned_abs() < 4);
         // After the contact the learner is believed again.
@@ -213,10 +200,7 @@ fn an_answer_from_before_a_restart_is_void_and_nothing_is_late() {
         ..answer(&input)
     });
     assert_eq!(window(&mut learning, true), None);
-    assert_eq!(
-        learning.knowledge(),
-        FingerKnowledge::Learnt(Trust::Learning)
-    );
+    assert_eq!(learning.knowledge(), FingerKnowledge::Learnt(Trust::Learning));
     let input = learning.take_input().expect("an input");
     let place = input.restart.map(|restart| restart.place);
     assert_eq!(place, Some(PlaceBeforeContact::Pad));
@@ -231,10 +215,7 @@ fn a_restart_stays_until_the_learner_has_taken_it() {
         window(&mut learning, false);
     }
     let restart = |learning: &mut FingerLearning| learning.take_input().expect("an input").restart;
-    assert_eq!(
-        restart(&mut learning).map(|restart| restart.place),
-        Some(PlaceBeforeContact::Pad)
-    );
+    assert_eq!(restart(&mut learning).map(|restart| restart.place), Some(PlaceBeforeContact::Pad));
     window(&mut learning, false);
     assert_eq!(restart(&mut learning), None);
 }
@@ -244,10 +225,7 @@ fn a_restart_stays_until_the_learner_has_taken_it() {
 fn nothing_is_learnt_from_a_finger_that_rests_during_a_restart() {
     let mut learning = taught();
     learning.restart(PlaceBeforeContact::Air, None);
-    let state = StateAtEnd {
-        resistance: Some(U16F16::ONE),
-        ..STATE
-    };
+    let state = StateAtEnd { resistance: Some(U16F16::ONE), ..STATE };
     let mut is_steady = |presses| {
         window_to(&mut learning, presses, &state);
         let contact = learning.take_input().expect("an input").contact;
@@ -263,18 +241,11 @@ fn nothing_is_learnt_from_a_finger_that_rests_during_a_restart() {
 /// Its steps are those of the learner, a quarter of the way in each window; several at once would be felt.
 #[test]
 fn the_way_to_the_mean_finger_is_applied_in_each_window_however_long_the_contact_is() {
-    for (trust, applied) in [
-        (Trust::Trusted, 2),
-        (
-            Trust::Mean(Distrust::Contact),
-            2 * u32::from(SELDOM_WINDOWS),
-        ),
-    ] {
+    for (trust, applied) in
+        [(Trust::Trusted, 2), (Trust::Mean(Distrust::Contact), 2 * u32::from(SELDOM_WINDOWS))]
+    {
         let mut learning = taught();
-        let state = StateAtEnd {
-            ticks_since_landing: APPLIED_SELDOM_FROM_TICKS,
-            ..STATE
-        };
+        let state = StateAtEnd { ticks_since_landing: APPLIED_SELDOM_FROM_TICKS, ..STATE };
         let mut count = 0;
         for number in 1..=2 * SELDOM_WINDOWS {
             let input = learning.take_input().expect("an input");
@@ -304,18 +275,11 @@ fn codes_that_cannot_be_right_give_no_flux_and_a_word() {
                 // One missing code is enough.
                 let code = code.or_else(|| (number != 3).then_some(2048 + number as u16));
                 let code = learning.note_code(code);
-                learning.add_tick(&MeasuredTick {
-                    code,
-                    ..tick(number, true)
-                });
+                learning.add_tick(&MeasuredTick { code, ..tick(number, true) });
             }
             learning.end_window(&STATE);
             let is_fault = window >= windows;
-            assert_eq!(
-                learning.knowledge() == knowledge,
-                is_fault,
-                "{code:?}: {window}"
-            );
+            assert_eq!(learning.knowledge() == knowledge, is_fault, "{code:?}: {window}");
             assert_eq!(learning.flux().is_none(), is_fault);
             let input = learning.take_input().expect("an input");
             assert_eq!(input.flux_w_m2.is_none(), is_fault);

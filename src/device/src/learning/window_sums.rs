@@ -119,9 +119,9 @@ impl WindowSums {
         let of_tick = Celsius::from_bits(above.to_bits() / WINDOW_TICKS as i32);
         let air_bits = i64::from(state.scaled_air_flux.to_bits()) * W_M2_PER_SCALED_K;
         let air_bits = air_bits >> (I10F22::FRAC_NBITS - I20F12::FRAC_NBITS);
-        let resistance = state.resistance.map_or(Resistance::ZERO, |scaled| {
-            scaled.saturating_mul(MM2K_W_PER_SCALED)
-        });
+        let resistance = state
+            .resistance
+            .map_or(Resistance::ZERO, |scaled| scaled.saturating_mul(MM2K_W_PER_SCALED));
         Some(ContactInput {
             touching_ticks: self.touching_ticks as u8,
             skin_above_display_k: of_tick.saturating_mul_int(self.touching_ticks as i32),
@@ -235,10 +235,7 @@ mod tests {
         let air_w_m2 = -0.003 * SKIN.effusivity() / tick_s.sqrt();
         let apart = found.air_flux_w_m2.to_num::<f64>() - air_w_m2;
         assert!(apart.abs() < 1e-2, "{apart} of {air_w_m2}");
-        let undetected = StateAtEnd {
-            resistance: None,
-            ..state
-        };
+        let undetected = StateAtEnd { resistance: None, ..state };
         let found = sums.contact(&undetected).expect("a contact");
         assert!(!found.is_steady);
     }

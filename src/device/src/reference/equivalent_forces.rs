@@ -22,10 +22,7 @@ pub fn equivalent_forces(force: Force, amplitude: Celsius) -> RangeInclusive<For
         (((EQUIVALENT_SETPOINT_TOLERANCE.to_bits() as u64 * 64) << (29 - AMPLITUDE_SHIFT)) / 17)
             as u32;
     const AMPLITUDE_SHIFT: u32 = 8;
-    let amplitude = amplitude
-        .to_bits()
-        .unsigned_abs()
-        .div_ceil(1 << AMPLITUDE_SHIFT);
+    let amplitude = amplitude.to_bits().unsigned_abs().div_ceil(1 << AMPLITUDE_SHIFT);
     let allowed = RELATIVE_FORCE_CHANGE_TIMES_AMPLITUDE
         .checked_div(amplitude)
         .and_then(|relative| {

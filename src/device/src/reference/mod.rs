@@ -95,11 +95,7 @@ impl Reference {
     pub fn limited_to_safe_range(setpoint: Celsius, target: Celsius) -> Self {
         let (setpoint, limited) = Setpoint::clamp_celsius_with_flag(setpoint);
         let (target, _) = Setpoint::clamp_celsius_with_flag(target);
-        Self {
-            setpoint,
-            limited,
-            target,
-        }
+        Self { setpoint, limited, target }
     }
 
     /// A reference whose set-point and target are the same temperature, °C, limited to 15 to 42 °C. Used while no
@@ -143,11 +139,7 @@ impl ContactSetpoints {
     fn new_since_landing_or_now(finger: &FingerContact) -> Self {
         let has_just_landed = finger.force_change() == ForceChange::New;
         Self {
-            elapsed: if has_just_landed {
-                finger.ticks_since_landing()
-            } else {
-                0
-            },
+            elapsed: if has_just_landed { finger.ticks_since_landing() } else { 0 },
             equivalent_forces: Force::ZERO..=Force::ZERO,
             interpolation: None,
             interpolation_due: false,
@@ -275,10 +267,7 @@ impl ReferenceGenerator {
     /// is kept. Called in a tick with invalid readings or a detected fault, because the finger may have landed or
     /// lifted unnoticed in it.
     pub fn discard_contact_and_skin_simulation(&mut self) {
-        *self = Self {
-            evaluations: self.evaluations,
-            ..Self::default()
-        };
+        *self = Self { evaluations: self.evaluations, ..Self::default() };
     }
 
     /// Number of evaluations since start-up of `erfcx`, the scaled complementary error function, which is the costly
@@ -293,8 +282,7 @@ impl ReferenceGenerator {
     pub fn restart_contact(&mut self, finger: &mut FingerEstimator, bodies: &Bodies) {
         self.contact = None;
         self.lead = SetpointLead::default();
-        self.skin_on_object
-            .start_from_skin_on_display(finger.skin_state_on_display(), bodies);
+        self.skin_on_object.start_from_skin_on_display(finger.skin_state_on_display(), bodies);
         finger.forget_conductances();
     }
 
@@ -340,9 +328,7 @@ impl ReferenceGenerator {
         let object = object_presented.object.unwrap_or(room);
         if object_presented.mode == ContactModel::SemiInfinite {
             self.contact = None;
-            return Some(Reference::at(
-                object_presented.pair.interface_temperature(skin, object),
-            ));
+            return Some(Reference::at(object_presented.pair.interface_temperature(skin, object)));
         }
         if !self.factors.were_computed_for(object_presented.pair) {
             self.factors = ContactPairFactors::new(

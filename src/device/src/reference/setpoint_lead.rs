@@ -50,10 +50,7 @@ mod tests {
             for (tick, lead_k) in (0..).zip(leads(ramp)) {
                 let exact_k = 24.0 * slope_k * (1.0 - libm::exp(-f64::from(tick) / 64.0));
                 let error_k = (lead_k - exact_k).abs();
-                assert!(
-                    error_k < 0.01 * 24.0 * SLOPE_K,
-                    "{tick}: {lead_k}, {exact_k}"
-                );
+                assert!(error_k < 0.01 * 24.0 * SLOPE_K, "{tick}: {lead_k}, {exact_k}");
             }
         }
     }

@@ -41,10 +41,7 @@ impl ContactPairFactors {
     pub fn new(pair: &ContactPair, resistances: &OwnResistances) -> Self {
         // With a gap the set-point begins near the object's temperature, and has left it after some milliseconds: a display that
         // waited there would be late for all that follows.
-        let without_law = OwnResistances {
-            law: None,
-            ..*resistances
-        };
+        let without_law = OwnResistances { law: None, ..*resistances };
         // 1 in 2^-48 over the weight in 2^-32.
         let inverse = (1u64 << 48) / u64::from(pair.weight().to_bits().max(1));
         Self {
@@ -93,13 +90,10 @@ impl SurfaceChanges {
         skin_before_contact: Celsius,
         skin_above_object: Celsius,
     ) -> Celsius {
-        let step_at_object = skin_above_object
-            .saturating_sub(self.cooling)
-            .saturating_sub(self.warming);
+        let step_at_object =
+            skin_above_object.saturating_sub(self.cooling).saturating_sub(self.warming);
         let step_at_display: Celsius = saturating_product(step_at_object, ratio);
-        skin_before_contact
-            .saturating_sub(self.cooling)
-            .saturating_sub(step_at_display)
+        skin_before_contact.saturating_sub(self.cooling).saturating_sub(step_at_display)
     }
 }
 
@@ -173,12 +167,8 @@ impl SkinOnObject {
                 .saturating_sub(self.object.free_response());
             conductance.scaled_flux_by(difference)
         });
-        let into_skin = flux_beyond_air(
-            finger,
-            into_object,
-            skin.free_response(),
-            before.skin_above_room,
-        );
+        let into_skin =
+            flux_beyond_air(finger, into_object, skin.free_response(), before.skin_above_room);
         skin.step(into_skin, &finger.tissue.relaxations());
         self.scaled_flux = into_object.unwrap_or(Celsius::ZERO);
         let flux = object.scaled(self.scaled_flux);

@@ -54,23 +54,15 @@ fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f6
             .expect("observed");
         let setpoint_c = reference.setpoint.celsius().to_num::<f64>();
         let finger = (&SKIN, SKIN_C);
-        let exact = Contact::new(
-            finger,
-            (object, OBJECT_C),
-            &REFERENCE_DISPLAY,
-            pressure_pa(force_n(t_s)),
-        );
+        let exact =
+            Contact::new(finger, (object, OBJECT_C), &REFERENCE_DISPLAY, pressure_pa(force_n(t_s)));
         if t_s >= from_s {
             worst_k = worst_k.max((setpoint_c - exact.at(t_s).display_c).abs());
             step_k = step_k.max(before.map_or(0.0, |before: f64| (setpoint_c - before).abs()));
         }
         before = Some(setpoint_c);
     }
-    Seen {
-        worst_k,
-        step_k,
-        evaluations: generator.erfcx_evaluations(),
-    }
+    Seen { worst_k, step_k, evaluations: generator.erfcx_evaluations() }
 }
 
 /// From 0.1 s on: before, the mean has not seen enough of the noise.
@@ -80,11 +72,7 @@ fn steady_force_is_within_half_a_millikelvin_in_few_evaluations() {
     for (material, (name, _)) in MATERIALS.iter().enumerate() {
         for force_n in [0.1, 0.25, 0.5, 1.0, 2.0] {
             let seen = contact(material, 10_000, 0.1, |_| force_n);
-            println!(
-                "{name} {force_n} N: {:.3} mK, {}",
-                seen.worst_k * 1e3,
-                seen.evaluations
-            );
+            println!("{name} {force_n} N: {:.3} mK, {}", seen.worst_k * 1e3, seen.evaluations);
             worst_k = worst_k.max(seen.worst_k);
             evaluations = evaluations.max(seen.evaluations);
         }
@@ -131,11 +119,7 @@ fn last_leads(follows: impl Fn(u32) -> bool) -> Vec<Celsius> {
     let granite = &MATERIALS[3].1;
     let pair = ContactPair::new(&SKIN, granite, &REFERENCE_DISPLAY, TICK_S).expect("pair");
     let (skin, object) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
-    let bodies = Bodies {
-        finger: FingerBody::MEAN,
-        are_half_spaces: false,
-        ..Bodies::HALF_SPACES
-    };
+    let bodies = Bodies { finger: FingerBody::MEAN, are_half_spaces: false, ..Bodies::HALF_SPACES };
     let scene = PresentedObject {
         bodies: &bodies,
         pair: &pair,
@@ -171,11 +155,8 @@ fn another_tissue_in_a_steady_contact_asks_for_no_correction() {
     let granite = &MATERIALS[3].1;
     let pair = ContactPair::new(&SKIN, granite, &REFERENCE_DISPLAY, TICK_S).expect("pair");
     let (skin, object) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
-    let mut bodies = Bodies {
-        finger: FingerBody::MEAN,
-        are_half_spaces: false,
-        ..Bodies::HALF_SPACES
-    };
+    let mut bodies =
+        Bodies { finger: FingerBody::MEAN, are_half_spaces: false, ..Bodies::HALF_SPACES };
     let (mut finger, mut generator) = (FingerEstimator::default(), ReferenceGenerator::default());
     finger.update_by_readings(skin, object, None, 0);
     let mut surface = Celsius::from_num(28);
@@ -198,9 +179,7 @@ fn another_tissue_in_a_steady_contact_asks_for_no_correction() {
         let correction = |generator: &ReferenceGenerator,
                           finger: &FingerEstimator,
                           bodies: &Bodies| {
-            let contact = finger
-                .contact()
-                .and_then(FingerContact::stored_conductances);
+            let contact = finger.contact().and_then(FingerContact::stored_conductances);
             let display = &contact.expect("a contact").display;
             let on_display = finger.skin_state_on_display();
             (generator.skin_on_object).skin_matching_correction(on_display, display, Some(bodies))

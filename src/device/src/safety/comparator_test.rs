@@ -61,19 +61,11 @@ pub fn run_tick(
     let is_on = (tick / PHASE_TICKS).is_multiple_of(2);
     let elapsed = tick % PHASE_TICKS;
     let responded = samples.bridge_fault == is_on;
-    let delay = if is_on {
-        &mut side.cut_ms
-    } else {
-        &mut side.release_ms
-    };
+    let delay = if is_on { &mut side.cut_ms } else { &mut side.release_ms };
     // The readings of the first tick are those before the change.
     if is_on && elapsed > 0 {
         if samples.comparator_side_differs {
-            report.side_line = Some(if is_hot {
-                SideLine::StuckHigh
-            } else {
-                SideLine::StuckLow
-            });
+            report.side_line = Some(if is_hot { SideLine::StuckHigh } else { SideLine::StuckLow });
             return Err(Fault::Comparator);
         }
         report.side_line = Some(SideLine::Follows);

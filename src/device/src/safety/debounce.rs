@@ -12,11 +12,7 @@ impl UpDownDebounceCounter {
     /// least. Returns whether the count is now `limit`.
     pub fn count(&mut self, condition: bool, limit: u8) -> bool {
         let limit = i32::from(limit);
-        self.0 = if condition {
-            (self.0 + 1).min(limit)
-        } else {
-            (self.0 - 1).max(0)
-        };
+        self.0 = if condition { (self.0 + 1).min(limit) } else { (self.0 - 1).max(0) };
         self.0 == limit
     }
 }

@@ -130,8 +130,7 @@ impl FaultDetectors {
     /// [`Fault::Dose`]: the dose has reached 30 s at 43 °C.
     pub fn update_and_check_dose(&mut self, readings: &Readings) -> Result<(), Fault> {
         let display = [readings.display, readings.display_check];
-        self.dose
-            .count_tick_and_evaluate_if_due(|| display.into_iter().flatten().max())
+        self.dose.count_tick_and_evaluate_if_due(|| display.into_iter().flatten().max())
     }
 
     /// Runs the detectors that compare several ticks and need valid readings, once per tick: those of jumps and of the
@@ -192,9 +191,9 @@ impl FaultDetectors {
         previous: &PreviousDemandAndResidual,
         streams: bool,
     ) -> Result<(), Fault> {
-        let above_setpoint = previous.setpoint.map_or(Celsius::ZERO, |setpoint| {
-            readings.display.saturating_sub(setpoint.celsius())
-        });
+        let above_setpoint = previous
+            .setpoint
+            .map_or(Celsius::ZERO, |setpoint| readings.display.saturating_sub(setpoint.celsius()));
         let room_above_skin = self.room_above_skin.count(
             readings.room.saturating_sub(readings.skin) > ROOM_ABOVE_SKIN_MAX,
             ROOM_ABOVE_SKIN_TRIP_NET_TICKS / EVALUATION_INTERVAL_TICKS,

@@ -226,9 +226,7 @@ mod tests {
     fn every_fault_has_its_own_number_and_word() {
         for (number, fault) in Fault::ALL.iter().enumerate() {
             assert_eq!(*fault as usize, number);
-            let same = Fault::ALL
-                .iter()
-                .filter(|other| other.name() == fault.name());
+            let same = Fault::ALL.iter().filter(|other| other.name() == fault.name());
             assert_eq!(same.count(), 1, "{}", fault.name());
         }
     }

@@ -112,11 +112,7 @@ impl FrozenSampleDetector {
         if changed != 0 {
             // After a tick without a change the history begins anew: a single disturbance of all channels of a quiet
             // converter does not count as its noise.
-            let before = if self.nothing_changed {
-                0
-            } else {
-                self.changes << 8
-            };
+            let before = if self.nothing_changed { 0 } else { self.changes << 8 };
             self.changes = before | u64::from(changed);
         }
         self.nothing_changed = changed == 0;

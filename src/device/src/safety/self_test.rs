@@ -139,11 +139,7 @@ impl SelfTest {
     ) -> Result<SelfTestStep, Fault> {
         const BRIDGE_OFF_WITHOUT_COMPARATOR_TEST: SelfTestStep =
             SelfTestStep::Off(ComparatorTest::None);
-        self.untouched_ticks = if touched {
-            0
-        } else {
-            self.untouched_ticks.saturating_add(1)
-        };
+        self.untouched_ticks = if touched { 0 } else { self.untouched_ticks.saturating_add(1) };
         if touched != self.touched && (touched || self.untouched_ticks >= LIFTED_AFTER_TICKS) {
             self.restart_baseline(touched);
         }
@@ -167,11 +163,7 @@ impl SelfTest {
         }
         if tick < BASELINE_END_TICK {
             let is_first = tick < COMPARATOR_TEST_TICKS + TICKS_PER_BASELINE_HALF;
-            let half = if is_first {
-                &mut self.first_half
-            } else {
-                &mut self.second_half
-            };
+            let half = if is_first { &mut self.first_half } else { &mut self.second_half };
             for (sum, reading) in half.iter_mut().zip(display) {
                 *sum += reading;
             }

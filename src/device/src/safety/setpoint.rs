@@ -40,18 +40,9 @@ mod tests {
         {
             let (setpoint, was_limited) =
                 Setpoint::clamp_celsius_with_flag(Celsius::from_num(demanded));
-            assert_eq!(
-                (setpoint.celsius().to_num::<f64>(), was_limited),
-                (allowed, limited)
-            );
+            assert_eq!((setpoint.celsius().to_num::<f64>(), was_limited), (allowed, limited));
         }
-        assert_eq!(
-            Setpoint::clamp_celsius_with_flag(Celsius::MAX).0,
-            Setpoint::MAX
-        );
-        assert_eq!(
-            Setpoint::clamp_celsius_with_flag(Celsius::MIN).0,
-            Setpoint::MIN
-        );
+        assert_eq!(Setpoint::clamp_celsius_with_flag(Celsius::MAX).0, Setpoint::MAX);
+        assert_eq!(Setpoint::clamp_celsius_with_flag(Celsius::MIN).0, Setpoint::MIN);
     }
 }

@@ -51,11 +51,7 @@ impl PredictedDose {
 
     /// This dose several times, on top of one that was taken before.
     pub const fn repeated_on_top_of(self, times: u16, before: &ThermalDose) -> Self {
-        Self(
-            self.0
-                .saturating_mul(times as u32)
-                .saturating_add(before.sum),
-        )
+        Self(self.0.saturating_mul(times as u32).saturating_add(before.sum))
     }
 
     /// Whether the station would trip by [`Fault::Dose`].
@@ -109,11 +105,7 @@ impl ThermalDose {
             }
             .min(ACCUMULATED_DOSE_CLAMP);
         }
-        if self.sum >> 8 >= DOSE_LIMIT_TICKS {
-            Err(Fault::Dose)
-        } else {
-            Ok(())
-        }
+        if self.sum >> 8 >= DOSE_LIMIT_TICKS { Err(Fault::Dose) } else { Ok(()) }
     }
 }
 
@@ -155,15 +147,9 @@ mod tests {
             let mut dose = ThermalDose::default();
             let display = Celsius::from_num(t_c);
             let ticks = (1..)
-                .find(|_| {
-                    dose.count_tick_and_evaluate_if_due(|| Some(display))
-                        .is_err()
-                })
+                .find(|_| dose.count_tick_and_evaluate_if_due(|| Some(display)).is_err())
                 .expect("a tick");
-            assert!(
-                (f64::from(ticks) - 1e3 * seconds).abs() < 300.0,
-                "{t_c}: {ticks}"
-            );
+            assert!((f64::from(ticks) - 1e3 * seconds).abs() < 300.0, "{t_c}: {ticks}");
         }
         let mut dose = ThermalDose::default();
         let cool = Celsius::lit("38.9");

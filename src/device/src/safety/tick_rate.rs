@@ -27,10 +27,7 @@ impl TickRateMonitor {
     /// A monitor for ticks that are `period` counts of SysTick apart (below 2^24; 180 000 for 1 ms at 180 MHz). Created
     /// before the first tick.
     pub const fn new(period: u32) -> Self {
-        Self {
-            period: period << (u32::BITS - SYSTICK_BITS),
-            due: None,
-        }
+        Self { period: period << (u32::BITS - SYSTICK_BITS), due: None }
     }
 
     /// Returns whether this tick has come within a quarter of a period of the time at which it was due: the time of the
@@ -66,15 +63,9 @@ mod tests {
     fn ticks_with_jitter_pass_for_an_hour() {
         let period = u64::from(PERIOD);
         assert_eq!(first_off(3_600_000, |n| n * period), None);
-        assert_eq!(
-            first_off(3_600_000, |n| n * period + n * 7919 % 44_000),
-            None
-        );
+        assert_eq!(first_off(3_600_000, |n| n * period + n * 7919 % 44_000), None);
         // A first tick that is late makes the others early.
-        assert_eq!(
-            first_off(1000, |n| n * period + if n == 0 { 44_000 } else { 0 }),
-            None
-        );
+        assert_eq!(first_off(1000, |n| n * period + if n == 0 { 44_000 } else { 0 }), None);
     }
 
     #[test]
@@ -109,10 +100,7 @@ mod tests {
         assert!(of(5624).is_some_and(|ms| ms < 1500.0));
         // Prescaler: half the rate and less, up to where the window watchdog is first.
         for divider in [2, 3, 5, 9, 17, 33] {
-            assert!(
-                of(5625 * divider).is_some_and(|ms| ms <= 50.0),
-                "1/{divider}"
-            );
+            assert!(of(5625 * divider).is_some_and(|ms| ms <= 50.0), "1/{divider}");
         }
         assert!(of(5625 * 102 / 100).is_some_and(|ms| ms < 14.0), "2 %");
     }

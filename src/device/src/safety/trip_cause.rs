@@ -39,11 +39,8 @@ impl TripCause {
     /// Hash of the meaning of the stored words: their number, their order, and the numbers and names of the faults. The
     /// board includes it in the checksum of a stored trip cause, so that one stored by firmware with another layout
     /// counts as invalid.
-    pub const LAYOUT_HASH: u32 = layout_hash(
-        "fault tick display check sink current asked",
-        Self::WORD_COUNT,
-        Fault::ALL,
-    );
+    pub const LAYOUT_HASH: u32 =
+        layout_hash("fault tick display check sink current asked", Self::WORD_COUNT, Fault::ALL);
 
     /// The cause of a trip by `fault`, which tick number `tick` has detected with `readings`. `demanded` is the current
     /// that the tick before demanded of the bridge, A; positive cools.

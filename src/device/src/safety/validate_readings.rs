@@ -129,9 +129,7 @@ mod tests {
     fn fault_of(change: impl Fn(&mut Readings)) -> Option<&'static str> {
         let mut readings = valid();
         change(&mut readings);
-        validate_readings(&readings, Current::lit("6"))
-            .err()
-            .map(Fault::name)
+        validate_readings(&readings, Current::lit("6")).err().map(Fault::name)
     }
 
     #[test]
@@ -139,20 +137,11 @@ mod tests {
         let t = |t: f64| Ok(Celsius::from_num(t));
         let short = Err(ThermistorFault::Short);
         assert_eq!(fault_of(|_| ()), None);
-        assert_eq!(
-            fault_of(|r| r.display = Err(ThermistorFault::Open)),
-            Some("display-open")
-        );
+        assert_eq!(fault_of(|r| r.display = Err(ThermistorFault::Open)), Some("display-open"));
         assert_eq!(fault_of(|r| r.display_check = short), Some("check-short"));
-        assert_eq!(
-            fault_of(|r| r.sink = Err(ThermistorFault::Open)),
-            Some("sink-open")
-        );
+        assert_eq!(fault_of(|r| r.sink = Err(ThermistorFault::Open)), Some("sink-open"));
         assert_eq!(fault_of(|r| r.skin = short), Some("skin-short"));
-        assert_eq!(
-            fault_of(|r| r.room = Err(ThermistorFault::Open)),
-            Some("room-open")
-        );
+        assert_eq!(fault_of(|r| r.room = Err(ThermistorFault::Open)), Some("room-open"));
         let all = |r: &mut Readings| {
             (r.display, r.display_check, r.sink, r.skin, r.room) =
                 (short, short, short, short, short);
@@ -164,19 +153,10 @@ mod tests {
         );
         assert_eq!(fault_of(|r| r.force = None), Some("force-sensor"));
         assert_eq!(fault_of(|r| r.display = t(43.01)), Some("display-hot"));
-        assert_eq!(
-            fault_of(|r| r.display_check = t(43.01)),
-            Some("display-hot")
-        );
+        assert_eq!(fault_of(|r| r.display_check = t(43.01)), Some("display-hot"));
         assert_eq!(fault_of(|r| r.display = t(42.99)), None);
-        assert_eq!(
-            fault_of(|r| r.display_check = t(13.49)),
-            Some("display-cold")
-        );
+        assert_eq!(fault_of(|r| r.display_check = t(13.49)), Some("display-cold"));
         assert_eq!(fault_of(|r| r.sink = t(42.1)), Some("sink-hot"));
-        assert_eq!(
-            fault_of(|r| r.current = Current::lit("9.1")),
-            Some("over-current")
-        );
+        assert_eq!(fault_of(|r| r.current = Current::lit("9.1")), Some("over-current"));
     }
 }

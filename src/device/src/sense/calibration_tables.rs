@@ -82,10 +82,8 @@ impl AdcErrorTable {
                 {
                     error += step;
                 }
-                let error = error.clamp(
-                    -ADC_SEGMENT_ERROR_CLAMP_COUNTS,
-                    ADC_SEGMENT_ERROR_CLAMP_COUNTS,
-                );
+                let error =
+                    error.clamp(-ADC_SEGMENT_ERROR_CLAMP_COUNTS, ADC_SEGMENT_ERROR_CLAMP_COUNTS);
                 libm::round(error * units_per_count) as i16
             }),
         }
@@ -153,9 +151,7 @@ impl ThermistorCorrection {
             .clamp(-Self::POLYNOMIAL_HALF_RANGE, Self::POLYNOMIAL_HALF_RANGE);
         let square: Celsius = product(u, u);
         let change = self.slope.wide_mul(u) + self.curvature.wide_mul(square);
-        uncorrected
-            .saturating_add(self.offset)
-            .saturating_add(Celsius::wrapping_from_num(change))
+        uncorrected.saturating_add(self.offset).saturating_add(Celsius::wrapping_from_num(change))
     }
 }
 

@@ -185,19 +185,11 @@ mod tests {
     fn force_is_linear_above_the_live_zero_and_none_with_a_broken_wire() {
         let channel = ForceChannel::new(&Settings::default().force);
         for (counts, newton) in [(410.0, 0.0), (440.0, 0.1), (1010.0, 2.0), (3410.0, 10.0)] {
-            let force = channel
-                .force_of_sum((counts * 16.0) as u16)
-                .expect("in range")
-                .to_num::<f64>();
-            assert!(
-                (force - newton).abs() < 1e-5 * newton.max(1e-3),
-                "{newton}: {force}"
-            );
+            let force =
+                channel.force_of_sum((counts * 16.0) as u16).expect("in range").to_num::<f64>();
+            assert!((force - newton).abs() < 1e-5 * newton.max(1e-3), "{newton}: {force}");
         }
-        assert_eq!(
-            channel.force_of_sum(300 * 16).expect("in range"),
-            Force::ZERO
-        );
+        assert_eq!(channel.force_of_sum(300 * 16).expect("in range"), Force::ZERO);
         assert_eq!(channel.force_of_sum(100 * 16), None);
         assert_eq!(channel.force_of_sum(4095 * 16), None);
     }
@@ -220,10 +212,7 @@ mod tests {
                 channel.track_zero(sum(418.0 - 0.03 * f64::from(second)), false);
             }
         }
-        let force = channel
-            .force_of_sum(sum(400.0 + 30.0))
-            .expect("in range")
-            .to_num::<f64>();
+        let force = channel.force_of_sum(sum(400.0 + 30.0)).expect("in range").to_num::<f64>();
         assert!((force - 0.1).abs() < 5e-4, "{force}");
     }
 
@@ -237,15 +226,9 @@ mod tests {
         for _ in 0..2000 {
             channel.track_zero(sum(413.0), true);
         }
-        let force = channel
-            .force_of_sum(sum(413.0))
-            .expect("in range")
-            .to_num::<f64>();
+        let force = channel.force_of_sum(sum(413.0)).expect("in range").to_num::<f64>();
         let expected = 0.01 * (-2000.0 / 16384.0f64).exp();
-        assert!(
-            (force - expected).abs() < 1e-4,
-            "{force}, expected {expected}"
-        );
+        assert!((force - expected).abs() < 1e-4, "{force}, expected {expected}");
     }
 
     #[test]
@@ -254,10 +237,7 @@ mod tests {
         for _ in 0..10_000 {
             channel.track_zero(sum(431.0), false);
         }
-        let force = channel
-            .force_of_sum(sum(431.0))
-            .expect("in range")
-            .to_num::<f64>();
+        let force = channel.force_of_sum(sum(431.0)).expect("in range").to_num::<f64>();
         assert!((force - 0.07).abs() < 1e-5, "{force}");
     }
 

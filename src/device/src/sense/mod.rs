@@ -94,13 +94,7 @@ impl Samples {
     /// Sums of 16 conversions, 0 to 65520, of the five thermistors, in the order display, second display, sink, skin,
     /// room.
     pub const fn thermistor_sums(&self) -> [u16; THERMISTOR_COUNT] {
-        [
-            self.display,
-            self.display_check,
-            self.sink,
-            self.skin,
-            self.room,
-        ]
+        [self.display, self.display_check, self.sink, self.skin, self.room]
     }
 
     /// Adds up the 16 scans of one tick, channel by channel. Looks at the scatter only if `needs_scatter`, as it takes
@@ -124,21 +118,8 @@ impl Samples {
         if !are_all_codes_of_connected_thermistors(last) {
             replace_sums_of_open_or_shorted_wires(&mut sums, last);
         }
-        let [
-            display,
-            display_check,
-            sink,
-            skin,
-            room,
-            force,
-            current,
-            supply,
-        ] = sums;
-        let DigitalInputs {
-            bridge_fault,
-            emergency_stop,
-            comparator_side_differs,
-        } = inputs;
+        let [display, display_check, sink, skin, room, force, current, supply] = sums;
+        let DigitalInputs { bridge_fault, emergency_stop, comparator_side_differs } = inputs;
         Self {
             display,
             display_check,
@@ -198,9 +179,7 @@ fn scattering_thermistors(scans: &[Scan; SCANS_PER_TICK]) -> u8 {
         }
     }
     let ranges = lowest.iter().zip(&highest).take(THERMISTOR_COUNT);
-    ranges
-        .map(|(low, high)| u8::from(high.abs_diff(*low) >= 2))
-        .sum()
+    ranges.map(|(low, high)| u8::from(high.abs_diff(*low) >= 2)).sum()
 }
 
 /// Sum of each channel over the 16 scans of a tick. One addition of 32-bit words adds two codes at once: a sum of 16
@@ -326,8 +305,7 @@ impl SampleConverter {
         contact: &ContactDetector,
     ) {
         if !contact.touching() {
-            self.force
-                .track_zero(samples.force, contact.is_force_nonzero());
+            self.force.track_zero(samples.force, contact.is_force_nonzero());
         }
     }
 
@@ -369,13 +347,9 @@ impl SampleConverter {
     ) -> [Result<Celsius, ThermistorFault>; THERMISTORS_CONVERTED_IN_TURN] {
         let turn = self.next_in_turn % THERMISTORS_CONVERTED_IN_TURN;
         self.next_in_turn = turn + 1;
-        let are_connected = sums
-            .iter()
-            .all(|sum| thermistor::check_wiring(*sum).is_ok());
-        let mut with_limit = sums
-            .iter()
-            .zip(&self.last_sums)
-            .take(THERMISTORS_IN_TURN_WITH_LIMIT_COUNT);
+        let are_connected = sums.iter().all(|sum| thermistor::check_wiring(*sum).is_ok());
+        let mut with_limit =
+            sums.iter().zip(&self.last_sums).take(THERMISTORS_IN_TURN_WITH_LIMIT_COUNT);
         let have_moved = with_limit.any(|(now, last)| {
             (u32::from(*now) + CONVERT_OUT_OF_TURN_ABOVE).wrapping_sub(*last)
                 > 2 * CONVERT_OUT_OF_TURN_ABOVE
@@ -412,10 +386,7 @@ impl SampleConverter {
 
     /// Temperature, °C, of the thermistor with this number, by its sum.
     fn temperature(&self, sum: u16, thermistor: usize) -> Result<Celsius, ThermistorFault> {
-        let CalibrationTables {
-            converter,
-            thermistors,
-        } = &self.calibration;
+        let CalibrationTables { converter, thermistors } = &self.calibration;
         let uncorrected = (self.thermistor).temperature_of_sum(sum, converter.correct_sum(sum))?;
         Ok(thermistors[thermistor % THERMISTOR_COUNT].corrected_temperature(uncorrected))
     }
@@ -443,13 +414,8 @@ mod tests {
 
     /// Readings of second display, sink, skin and room, °C.
     fn taking_turns(readings: &Readings) -> [f64; THERMISTORS_CONVERTED_IN_TURN] {
-        [
-            readings.display_check,
-            readings.sink,
-            readings.skin,
-            readings.room,
-        ]
-        .map(|reading| reading.expect("connected").to_num())
+        [readings.display_check, readings.sink, readings.skin, readings.room]
+            .map(|reading| reading.expect("connected").to_num())
     }
 
     /// A converter that has seen [`AT_25_C`] once and whose next turn is that of the second display.
@@ -478,10 +444,7 @@ mod tests {
             for (thermistor, (now, before)) in now.iter().zip(before).enumerate() {
                 let expected = if thermistor <= tick { 0.08 } else { 0.0 };
                 let change = now - before;
-                assert!(
-                    (change - expected).abs() < 0.01,
-                    "{tick}: {thermistor} by {change}"
-                );
+                assert!((change - expected).abs() < 0.01, "{tick}: {thermistor} by {change}");
             }
         }
     }
@@ -491,20 +454,14 @@ mod tests {
     fn the_first_display_thermistor_is_converted_in_every_tick() {
         let mut converter = started();
         let mut display = |units| {
-            let samples = Samples {
-                display: AT_25_C.display - units,
-                ..AT_25_C
-            };
+            let samples = Samples { display: AT_25_C.display - units, ..AT_25_C };
             let reading = converter.convert_samples(&samples).display;
             reading.expect("connected").to_num::<f64>()
         };
         let mut before = display(0);
         for tick in 1..20 {
             let now = display(60 * tick);
-            assert!(
-                (now - before - 0.082).abs() < 0.003,
-                "{tick}: {before} {now}"
-            );
+            assert!((now - before - 0.082).abs() < 0.003, "{tick}: {before} {now}");
             before = now;
         }
     }
@@ -535,22 +492,13 @@ mod tests {
         for sign in [-1i16, 1] {
             for (units, is_converted) in [(64, false), (65, true)] {
                 let moved = 32_768u16.wrapping_add_signed(sign * units);
-                let check = Samples {
-                    display_check: moved,
-                    ..AT_25_C
-                };
-                let sink = Samples {
-                    sink: moved,
-                    ..AT_25_C
-                };
+                let check = Samples { display_check: moved, ..AT_25_C };
+                let sink = Samples { sink: moved, ..AT_25_C };
                 for (thermistor, samples) in [check, sink].iter().enumerate() {
                     let now = taking_turns(&converter.clone().convert_samples(samples));
                     let change = (now[thermistor] - before[thermistor]) * f64::from(-sign);
                     let expected = if is_converted { 0.088 } else { 0.0 };
-                    assert!(
-                        (change - expected).abs() < 0.012,
-                        "{thermistor} by {units}: {change}"
-                    );
+                    assert!((change - expected).abs() < 0.012, "{thermistor} by {units}: {change}");
                 }
             }
         }

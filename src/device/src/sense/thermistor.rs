@@ -148,10 +148,7 @@ mod tests {
             // The temperature of exactly this sum, by the equation solved for T.
             let r = 10e3 * sum / (65536.0 - sum);
             let exact = 1.0 / (1.0 / 298.15 + (r / 10e3).ln() / 3950.0) - 273.15;
-            let error = temperature(&table, sum as u16)
-                .expect("in range")
-                .to_num::<f64>()
-                - exact;
+            let error = temperature(&table, sum as u16).expect("in range").to_num::<f64>() - exact;
             assert!(error.abs() < 1e-4, "{exact}: {error:e}");
         }
     }
@@ -159,15 +156,9 @@ mod tests {
     /// A published set of coefficients of a 10 k thermistor: 25 °C at 10 kohm, 0 °C at 32.65 kohm, 50 °C at 3.603 kohm.
     #[test]
     fn the_table_agrees_with_a_published_steinhart_hart_thermistor() {
-        let curve = ThermistorCurve::SteinhartHart {
-            a: 1.129_148e-3,
-            b: 2.341_25e-4,
-            c: 8.767_41e-8,
-        };
-        let table = ThermistorTable::new(&settings::ThermistorDivider {
-            pull_up_ohm: 10e3,
-            curve,
-        });
+        let curve =
+            ThermistorCurve::SteinhartHart { a: 1.129_148e-3, b: 2.341_25e-4, c: 8.767_41e-8 };
+        let table = ThermistorTable::new(&settings::ThermistorDivider { pull_up_ohm: 10e3, curve });
         for (t_c, ohm) in [(0.0, 32_650.0), (25.0, 10_000.0), (50.0, 3_603.0)] {
             let sum = (ohm / (ohm + 10e3) * 65536.0f64).round() as u16;
             let t = temperature(&table, sum).expect("in range").to_num::<f64>();

@@ -88,12 +88,7 @@ impl ChosenObject {
         let body = body.relaxations();
         let object = &mut self.bodies.object;
         match (body, &self.material) {
-            (Some(body), _) => {
-                *object = ScaledBody {
-                    body: *body,
-                    factor: U16F16::ONE,
-                }
-            }
+            (Some(body), _) => *object = ScaledBody { body: *body, factor: U16F16::ONE },
             // The half-spaces differ by their factor only; the body is not copied again, to save time.
             (None, Some(material)) if self.is_half_space => {
                 object.factor = material.impedance_ratio
@@ -148,9 +143,7 @@ impl ChosenObject {
     /// took from it, and the factor on its contact resistance.
     pub fn learn_finger(&mut self, tissue: &Body, air_flux_deviation: I4F28, skin_factor: I4F28) {
         let air = u64::from(self.finger.body().air.to_bits());
-        let factor = air_flux_deviation
-            .saturating_add(I4F28::ONE)
-            .max(I4F28::ZERO);
+        let factor = air_flux_deviation.saturating_add(I4F28::ONE).max(I4F28::ZERO);
         let air = (air * u64::from(factor.to_bits().unsigned_abs())) >> I4F28::FRAC_NBITS;
         // Each by itself, so that the tissue is copied once.
         self.bodies.finger.tissue = *tissue;

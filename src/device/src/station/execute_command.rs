@@ -27,18 +27,13 @@ impl Station {
             Command::Law(Some(law)) => self.controller.select_law(law),
             Command::ReportEvents(on) => self.events.switch_reports(on),
             Command::TriggerOutput(kinds) => self.events.marked = kinds,
-            Command::Stream {
-                interval_ms,
-                fields,
-            } => {
+            Command::Stream { interval_ms, fields } => {
                 self.telemetry_fields = fields;
                 self.telemetry_ticks = interval_ms * (TICK_HZ / 1000);
             }
             Command::MaterialProperties => {
                 let material = self.object.material.as_ref();
-                return Ok(Reply::Material(
-                    material.map(|material| material.properties),
-                ));
+                return Ok(Reply::Material(material.map(|material| material.properties)));
             }
             Command::Finger(None) => return Ok(Reply::Finger(self.object.assumed_finger().name())),
             Command::Finger(Some(finger)) => {
@@ -183,11 +178,7 @@ impl Station {
     /// the test current.
     fn require_no_object_and_no_self_test(&self) -> Result<(), Refused> {
         self.require_no_object_presented()?;
-        if matches!(self.state, State::SelfTest(_)) {
-            Err(Refused::Testing)
-        } else {
-            Ok(())
-        }
+        if matches!(self.state, State::SelfTest(_)) { Err(Refused::Testing) } else { Ok(()) }
     }
 
     fn thermistor_average(&self, thermistor: usize) -> Result<Reply, Refused> {
@@ -206,8 +197,7 @@ impl Station {
             (_, Some(Err(reason))) => Err(Refused::TuneAborted(reason)),
             (_, Some(Ok(()))) => {
                 let row = self.identified.equations.rows_and_statistics().get(row);
-                row.map(|row| Reply::NormalEquation(*row))
-                    .ok_or(Refused::NotTuned)
+                row.map(|row| Reply::NormalEquation(*row)).ok_or(Refused::NotTuned)
             }
         }
     }
@@ -222,10 +212,8 @@ impl Station {
             // zero; the self-test gives it 0.7 s before a set-point is followed and the residual can trip.
             State::Off => {
                 self.estimator.plate.invalidate();
-                self.self_test_report = SelfTestReport {
-                    result: SelfTestResult::Running,
-                    ..SelfTestReport::default()
-                };
+                self.self_test_report =
+                    SelfTestReport { result: SelfTestResult::Running, ..SelfTestReport::default() };
             }
             _ => {}
         }
@@ -275,15 +263,10 @@ impl Station {
         if self.contact.touching() {
             return Err(Refused::Touched("tune"));
         }
-        let sink = self
-            .last
-            .readings
-            .sink
-            .map_err(|_| Refused::TuneNeedsArmed)?;
+        let sink = self.last.readings.sink.map_err(|_| Refused::TuneNeedsArmed)?;
         self.identified.outcome = None;
-        self.state = State::Armed(ArmedTask::Identify(
-            Identification::begin_at_sink_temperature(sink),
-        ));
+        self.state =
+            State::Armed(ArmedTask::Identify(Identification::begin_at_sink_temperature(sink)));
         Ok(())
     }
 }

@@ -77,9 +77,7 @@ impl Station {
                 return Err(Refused::CourseOutOfRange(celsius));
             }
         }
-        let dose = course
-            .dose(base)
-            .repeated_on_top_of(order.play_count, self.detectors.dose());
+        let dose = course.dose(base).repeated_on_top_of(order.play_count, self.detectors.dose());
         if dose.reaches_limit() {
             return Err(Refused::CourseDose(dose));
         }

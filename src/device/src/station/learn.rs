@@ -65,10 +65,7 @@ impl Station {
 
     /// Mean code of the heat-flux sensor, at a time at which no flux is expected.
     pub(super) fn flux_zero(&self) -> Result<NoContactCodeSum, Refused> {
-        let learning = self
-            .learning
-            .as_ref()
-            .ok_or(Refused::NoFluxSensor("flux zero"))?;
+        let learning = self.learning.as_ref().ok_or(Refused::NoFluxSensor("flux zero"))?;
         if self.contact.touching() {
             return Err(Refused::Touched("flux zero"));
         }
@@ -169,9 +166,8 @@ impl Station {
         let finger = &self.estimator.finger;
         let skin = finger.skin_before_contact_by_thermistor();
         let above_room = skin.zip(finger.temperatures_before_contact());
-        let above_room = above_room.map_or(Celsius::ZERO, |(skin, before)| {
-            skin.saturating_sub(before.room)
-        });
+        let above_room =
+            above_room.map_or(Celsius::ZERO, |(skin, before)| skin.saturating_sub(before.room));
         let contact = finger.contact();
         let assumed = self.object.assumed_finger();
         let resistances = &self.object.bodies().resistances;
@@ -197,8 +193,7 @@ impl Station {
             let finger = &mut self.estimator.finger;
             finger.change_tissue(&factors, &to);
             self.reference.change_finger(&factors, &to);
-            self.object
-                .learn_finger(&to, learnt.air_flux_deviation, learnt.resistance_factor);
+            self.object.learn_finger(&to, learnt.air_flux_deviation, learnt.resistance_factor);
             finger.forget_conductances();
             finger.set_skin_offset(learnt.skin_offset_k);
         }

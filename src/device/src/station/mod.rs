@@ -134,10 +134,7 @@ enum BridgeDemand {
     Off(ComparatorTest),
     /// Drive `current`, A; positive cools. The bridge voltage for it is computed from `previous_legs`, the temperatures
     /// of the module's legs by the plate's model before this tick's reading has corrected the model.
-    Drive {
-        current: Current,
-        previous_legs: LegTemperatures,
-    },
+    Drive { current: Current, previous_legs: LegTemperatures },
 }
 
 impl BridgeDemand {
@@ -204,8 +201,7 @@ impl Station {
     /// converted from `f64`; everything else stays as [`Station::new`] has made it. Called at the start, with the finger's stored
     /// settings.
     pub(crate) fn apply_settings(&mut self, settings: &Settings) {
-        self.sensors
-            .replace_calibration_tables(&CalibrationTables::new(settings));
+        self.sensors.replace_calibration_tables(&CalibrationTables::new(settings));
         self.set_control_parameters(&ControlParameters::new(settings));
         self.object.set_display_surface(settings.display.surface());
         let flux_sensor = settings.flux_sensor.as_ref().map(FluxParameters::new);
@@ -299,16 +295,14 @@ impl Station {
             residual_is_large: self.estimator.plate.residual_is_large(),
             supply_should_be_on: !self.comparator_may_keep_the_supply_off(),
         };
-        let frozen = self
-            .detectors
-            .check_frozen_samples(samples, self.last.demanded != Current::ZERO);
+        let frozen =
+            self.detectors.check_frozen_samples(samples, self.last.demanded != Current::ZERO);
         let dose = self.detectors.update_and_check_dose(readings);
         let valid = safety::validate_readings(readings, self.controller.current_limit());
         let over_ticks = match &valid {
             Ok(valid) => {
                 let streams = self.telemetry_ticks != 0;
-                self.detectors
-                    .run_detectors_of_valid_readings(valid, &previous, streams)
+                self.detectors.run_detectors_of_valid_readings(valid, &previous, streams)
             }
             Err(_) => {
                 self.detectors.note_invalid_readings();
@@ -356,8 +350,7 @@ impl Station {
     ) -> PlateEstimateBeforeReading {
         let previously_touching = self.contact.touching();
         self.contact.update_contact(valid.force);
-        self.sensors
-            .track_force_zero_unless_touching(samples, &self.contact);
+        self.sensors.track_force_zero_unless_touching(samples, &self.contact);
         let touching = self.contact.touching();
         // The table is asked only in the states in which a touch changes something, which saves 30 instructions a tick.
         match (&self.state, touching) {
@@ -369,19 +362,15 @@ impl Station {
             }
             _ => {}
         }
-        let landed_ticks = if previously_touching {
-            0
-        } else {
-            self.contact.detection_delay_ticks()
-        };
+        let landed_ticks =
+            if previously_touching { 0 } else { self.contact.detection_delay_ticks() };
         if touching != previously_touching {
             self.note_touch_change(touching, landed_ticks);
         }
         let force = touching.then_some(valid.force);
         let pair = self.object.contact_pair();
         let bodies = self.object.bodies();
-        self.estimator
-            .update_estimates(valid, force, landed_ticks, pair, bodies)
+        self.estimator.update_estimates(valid, force, landed_ticks, pair, bodies)
     }
 
     /// Set-point and target temperature that the display must follow in this tick. `None` in off, ready and tripped,
@@ -400,9 +389,7 @@ impl Station {
                 let scene = self.object.presented_object_if_chosen()?;
                 let surface = estimate.previous_surface;
                 let follow_skin = self.controller.law() == Law::Model;
-                return self
-                    .reference
-                    .next_reference(&scene, finger, surface, follow_skin);
+                return self.reference.next_reference(&scene, finger, surface, follow_skin);
             }
         };
         Some(Reference::at(setpoint))
@@ -422,31 +409,26 @@ impl Station {
         estimate: &PlateEstimateBeforeReading,
         reference: Option<&Reference>,
     ) -> Result<BridgeDemand, Fault> {
-        let drive = |current| BridgeDemand::Drive {
-            current,
-            previous_legs: estimate.previous_legs,
-        };
+        let drive =
+            |current| BridgeDemand::Drive { current, previous_legs: estimate.previous_legs };
         if let State::SelfTest(test) = &mut self.state {
             let touched = self.contact.is_force_nonzero_debounced() || self.contact.touching();
             let report = &mut self.self_test_report;
-            return Ok(
-                match test.step(report, self.tick, valid, samples, touched)? {
-                    SelfTestStep::Off(comparator_test) => BridgeDemand::Off(comparator_test),
-                    SelfTestStep::Drive(current) => {
-                        self.controller.track_current(current);
-                        drive(current)
-                    }
-                    SelfTestStep::Passed => {
-                        report.result = SelfTestResult::Passed;
-                        let above_room = valid.display.saturating_sub(valid.room);
-                        let learning = self.learning.as_ref();
-                        report.flux_sensor =
-                            learning.map(|learning| learning.test_sensor(above_room));
-                        self.apply_event(Event::Pass);
-                        BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST
-                    }
-                },
-            );
+            return Ok(match test.step(report, self.tick, valid, samples, touched)? {
+                SelfTestStep::Off(comparator_test) => BridgeDemand::Off(comparator_test),
+                SelfTestStep::Drive(current) => {
+                    self.controller.track_current(current);
+                    drive(current)
+                }
+                SelfTestStep::Passed => {
+                    report.result = SelfTestResult::Passed;
+                    let above_room = valid.display.saturating_sub(valid.room);
+                    let learning = self.learning.as_ref();
+                    report.flux_sensor = learning.map(|learning| learning.test_sensor(above_room));
+                    self.apply_event(Event::Pass);
+                    BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST
+                }
+            });
         }
         let Some(reference) = reference else {
             return Ok(BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST);
@@ -486,16 +468,10 @@ impl Station {
     /// cases the fault latch stores which fault is present now, if any, because `clear` is refused while a fault is
     /// present.
     fn trip_on_fault(&mut self, demand: Result<BridgeDemand, Fault>) -> BridgeDemand {
-        self.latch
-            .set_present_to_detected_else_external(demand.err());
+        self.latch.set_present_to_detected_else_external(demand.err());
         demand.unwrap_or_else(|fault| {
             let previously_demanded = self.last.demanded;
-            self.trip(TripCause::new(
-                fault,
-                self.tick,
-                &self.last.readings,
-                previously_demanded,
-            ));
+            self.trip(TripCause::new(fault, self.tick, &self.last.readings, previously_demanded));
             BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST
         })
     }
@@ -507,10 +483,7 @@ impl Station {
     #[inline(always)]
     fn apply_demand(&mut self, demand: BridgeDemand) -> (BoardOutputs, Current) {
         match demand {
-            BridgeDemand::Drive {
-                current,
-                previous_legs,
-            } => {
+            BridgeDemand::Drive { current, previous_legs } => {
                 self.estimator.plate.advance_model(current);
                 let current = SafeCurrent::saturating(current);
                 let outputs = BoardOutputs {
@@ -575,16 +548,12 @@ impl Station {
     /// such as an overrun stack. If a different fault has already tripped the station, that fault stays latched; this
     /// one is stored, unless one is stored already, and trips the station when `clear` has cleared the latched one.
     pub fn trip_or_store_external_fault(&mut self, fault: Fault) {
-        self.latch
-            .raise_external_fault(fault, self.state.latched_fault());
+        self.latch.raise_external_fault(fault, self.state.latched_fault());
         self.trip_without_readings(fault);
     }
 
     fn trip_without_readings(&mut self, fault: Fault) {
-        self.trip(TripCause {
-            tick: self.tick,
-            ..TripCause::without_readings(fault)
-        });
+        self.trip(TripCause { tick: self.tick, ..TripCause::without_readings(fault) });
     }
 
     /// Trips the station with this cause. The bridge is off from the tick on that has detected the fault or, if the
@@ -640,12 +609,7 @@ impl Station {
         if self.telemetry_ticks == 0 || !self.tick.is_multiple_of(self.telemetry_ticks) {
             return None;
         }
-        let LastTickValues {
-            samples: _,
-            readings,
-            reference,
-            demanded,
-        } = &self.last;
+        let LastTickValues { samples: _, readings, reference, demanded } = &self.last;
         Some(Telemetry {
             tick: self.tick,
             state: self.state.state_name(),

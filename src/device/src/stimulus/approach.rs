@@ -34,14 +34,9 @@ impl Approach {
         };
         let moved = last.saturating_add(end.saturating_sub(last) / APPROACH_TICKS);
         // Not `clamp`, which panics if its limits are in the wrong order.
-        let target = moved
-            .max(surface.saturating_sub(AHEAD_MAX))
-            .min(surface.saturating_add(AHEAD_MAX));
-        *self = if target.abs_diff(end) <= NEAR {
-            Self::Over
-        } else {
-            Self::Underway(target)
-        };
+        let target =
+            moved.max(surface.saturating_sub(AHEAD_MAX)).min(surface.saturating_add(AHEAD_MAX));
+        *self = if target.abs_diff(end) <= NEAR { Self::Over } else { Self::Underway(target) };
         target
     }
 }

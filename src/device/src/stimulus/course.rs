@@ -123,10 +123,7 @@ impl Course {
 
     /// The course in chunks, for [`Self::copy_chunk`].
     pub fn chunks(&self) -> impl Iterator<Item = CourseChunk<'_>> {
-        let chunk = |first| CourseChunk {
-            course: self,
-            first,
-        };
+        let chunk = |first| CourseChunk { course: self, first };
         (0..self.points.len()).step_by(CHUNK_POINTS).map(chunk)
     }
 
@@ -168,9 +165,7 @@ impl Course {
             if u64::from(way) > (RATE_MAX + 1) * u64::from(duration_ms) {
                 let rate = u64::from(way) * 1000 / u64::from(duration_ms);
                 let half = 1 << (Celsius::FRAC_NBITS - 1);
-                return Err(CourseError::TooFast(
-                    ((rate + half) >> Celsius::FRAC_NBITS) as u32,
-                ));
+                return Err(CourseError::TooFast(((rate + half) >> Celsius::FRAC_NBITS) as u32));
             }
         }
         (self.points.push(point)).map_err(|_| CourseError::TooManyPoints)?;
@@ -191,9 +186,9 @@ impl Course {
         let counted_from = match self.kind {
             TemperatureKind::Absolute => DOSE_COUNTED_FROM,
             // No set-point is above 42 °C, so what is 3 K below the largest temperature is never counted.
-            TemperatureKind::AboveSkin => self
-                .largest
-                .saturating_sub(SETPOINT_MAX.saturating_sub(DOSE_COUNTED_FROM)),
+            TemperatureKind::AboveSkin => {
+                self.largest.saturating_sub(SETPOINT_MAX.saturating_sub(DOSE_COUNTED_FROM))
+            }
         };
         self.equivalent = time_equivalent_to_largest(&self.points, self.largest, counted_from);
         if self.kind == TemperatureKind::Absolute {

@@ -24,8 +24,7 @@ impl CourseMemory {
 
     /// The course that was loaded last.
     pub fn loaded(&self) -> Option<&Course> {
-        self.loaded
-            .then(|| &self.courses[usize::from(self.loaded_second)])
+        self.loaded.then(|| &self.courses[usize::from(self.loaded_second)])
     }
 
     /// Makes the course that was loaded last the one that plays.

@@ -50,11 +50,7 @@ pub fn time_equivalent_to_largest(
     }
     for pair in points.windows(2) {
         if let [from, to] = pair {
-            add(
-                from.temperature,
-                to.temperature,
-                to.time_ms.saturating_sub(from.time_ms),
-            );
+            add(from.temperature, to.temperature, to.time_ms.saturating_sub(from.time_ms));
         }
     }
     EquivalentTime(u32::try_from(sum).unwrap_or(u32::MAX))
@@ -84,9 +80,7 @@ fn equivalent_time_of_segment(
         let at = high.saturating_sub(Celsius::from_bits(below_high));
         weight_below(largest.saturating_sub(at))
     };
-    let doubled: u64 = (0..parts)
-        .map(|part| weight_at(part) + weight_at(part + 1))
-        .sum();
+    let doubled: u64 = (0..parts).map(|part| weight_at(part) + weight_at(part + 1)).sum();
     // The mean weight is below 2^33, and the duration below 2^31.
     ((doubled / (2 * parts)) * duration_q8).div_ceil(1 << 32)
 }
@@ -96,10 +90,7 @@ mod tests {
     use super::*;
 
     fn point(time_s: f64, celsius: f64) -> CoursePoint {
-        CoursePoint {
-            time_ms: (1e3 * time_s) as u32,
-            temperature: Celsius::from_num(celsius),
-        }
+        CoursePoint { time_ms: (1e3 * time_s) as u32, temperature: Celsius::from_num(celsius) }
     }
 
     /// CEM43 of a line from `a` to `b`, °C, above 39 °C and below 43 °C, in seconds: the integral of `4^(T - 43)`.
@@ -152,10 +143,7 @@ mod tests {
         for below_k in [0.0, 0.5, 1.0, 2.3, 4.0, 30.0] {
             let weight = weight_below(Celsius::from_num(below_k)) as f64 / 4_294_967_296.0;
             let exact = libm::exp2(-2.0 * below_k);
-            assert!(
-                (weight / exact - 1.0).abs() < 1e-5 || weight < 1e-9,
-                "{below_k}: {weight}"
-            );
+            assert!((weight / exact - 1.0).abs() < 1e-5 || weight < 1e-9, "{below_k}: {weight}");
         }
     }
 }

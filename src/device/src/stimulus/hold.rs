@@ -31,13 +31,7 @@ impl Hold {
         let target = target.celsius();
         let way = u64::from(target.abs_diff(start).to_bits()) * u64::from(TICK_HZ);
         let ticks = way.div_ceil(u64::from(rate_k_s.to_bits().max(1).unsigned_abs()));
-        Self {
-            start,
-            target,
-            ticks: ticks as u32,
-            passed: 0,
-            approach: Approach::to(target),
-        }
+        Self { start, target, ticks: ticks as u32, passed: 0, approach: Approach::to(target) }
     }
 
     /// Stays at this temperature, °C, which a display that is off it approaches.
@@ -109,10 +103,7 @@ mod tests {
         let end = Celsius::lit("31");
         for (surface, target) in [("24", "24.5"), ("30.8", "31"), ("31", "31"), ("33", "32.5")] {
             let temperatures = Hold::at(end).next_temperatures(Celsius::lit(surface));
-            let expected = StimulusTemperatures {
-                now: end,
-                target: Celsius::lit(target),
-            };
+            let expected = StimulusTemperatures { now: end, target: Celsius::lit(target) };
             assert_eq!(temperatures, expected);
         }
     }

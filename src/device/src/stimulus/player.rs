@@ -18,11 +18,8 @@ pub enum CourseStart {
 
 impl CourseStart {
     /// All, with their words in the protocol.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 3] = [
-        ("now", Self::Now),
-        ("trigger", Self::Trigger),
-        ("landing", Self::Landing),
-    ];
+    pub const PROTOCOL_WORDS: [(&'static str, Self); 3] =
+        [("now", Self::Now), ("trigger", Self::Trigger), ("landing", Self::Landing)];
 
     /// Its word in the protocol.
     pub const fn name(self) -> &'static str {
@@ -78,14 +75,10 @@ impl Place {
         // Every course has a duration, because it has two points; without one no time is behind it.
         let ended = (time_ms.saturating_sub(1).checked_div(duration_ms)).unwrap_or(0);
         match u32::from(self.times_left).checked_sub(ended) {
-            Some(times_left) => Self {
-                time_ms: time_ms - ended * duration_ms,
-                times_left: times_left as u16,
-            },
-            None => Self {
-                time_ms: duration_ms,
-                times_left: 0,
-            },
+            Some(times_left) => {
+                Self { time_ms: time_ms - ended * duration_ms, times_left: times_left as u16 }
+            }
+            None => Self { time_ms: duration_ms, times_left: 0 },
         }
     }
 
@@ -120,15 +113,8 @@ pub struct Player {
 impl Player {
     /// Plays a course that has `elapsed` ticks behind it in the first tick.
     pub fn new(points: &[CoursePoint], base: Celsius, order: &PlayOrder, elapsed: u32) -> Self {
-        let start = Place {
-            time_ms: 0,
-            times_left: order.play_count.saturating_sub(1),
-        };
-        Self {
-            place: start.later(elapsed, duration_ms(points)),
-            base,
-            end: order.end,
-        }
+        let start = Place { time_ms: 0, times_left: order.play_count.saturating_sub(1) };
+        Self { place: start.later(elapsed, duration_ms(points)), base, end: order.end }
     }
 
     /// The set-points of this tick, with what follows if the course ends in it. Moves on by one tick.

@@ -22,14 +22,8 @@ fn covariance_stays_positive_over_a_million_updates() {
     let mut measurements = Vec::new();
     for object in OBJECTS {
         let errors = Errors::drawn(&mut random);
-        let scene = Scene {
-            finger: &finger,
-            object,
-            force_n,
-            ticks: 1000,
-            errors,
-            reported: &sound,
-        };
+        let scene =
+            Scene { finger: &finger, object, force_n, ticks: 1000, errors, reported: &sound };
         let mut signals = Signals::NEW;
         for input in scene.inputs(&mut random, 0) {
             let drive = signals.drive(&input, &sensor);
@@ -47,9 +41,7 @@ fn covariance_stays_positive_over_a_million_updates() {
     let mut estimate = Estimate::PRIOR;
     let mut least = f64::INFINITY;
     for (update, measurement) in measurements.iter().cycle().take(UPDATES).enumerate() {
-        estimate
-            .update(measurement, 4e-4, &scale)
-            .expect("sound arithmetic");
+        estimate.update(measurement, 4e-4, &scale).expect("sound arithmetic");
         if update % 97 == 0 {
             least = least.min(least_pivot(&estimate.covariance));
             assert!(least > 0.0, "{update}: {estimate:?}");

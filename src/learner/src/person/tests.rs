@@ -11,12 +11,8 @@ use crate::tests::random::Random;
 use crate::tests::simulation::{Errors, Finger, OBJECTS, Object, Scene, sound};
 use crate::{Distrust, Flux, Learner, LearnerInput, LearnerOutput, Trust};
 
-const LIFTED: LearnerInput = LearnerInput {
-    sequence: 0,
-    restart: None,
-    flux_w_m2: Some(Flux::ZERO),
-    contact: None,
-};
+const LIFTED: LearnerInput =
+    LearnerInput { sequence: 0, restart: None, flux_w_m2: Some(Flux::ZERO), contact: None };
 
 /// Windows between contacts, 1000 s, after which the simulated finger is in equilibrium again.
 const REST_WINDOWS: usize = 100_000;
@@ -32,14 +28,7 @@ fn touch(
     for _ in 0..REST_WINDOWS {
         assert_eq!(learner.advance(&LIFTED).person, None);
     }
-    let scene = Scene {
-        finger,
-        object,
-        force_n: 2.0,
-        ticks,
-        errors,
-        reported: &sound,
-    };
+    let scene = Scene { finger, object, force_n: 2.0, ticks, errors, reported: &sound };
     let inputs = scene.inputs(random, 0).into_iter().chain([LIFTED]);
     inputs.map(|input| *learner.advance(&input)).collect()
 }
@@ -75,15 +64,10 @@ fn the_record_has_the_documented_layout() {
     let between = 0.025_47;
     (estimate.covariance[0][1], estimate.covariance[1][0]) = (between, between);
     let person = PersonPrior::new(&estimate, 3, PlaceBeforeContact::Pad);
-    let expected = [
-        0, 8, 0, 0xf0, 0, 4, 1, 0, 32, 108, 139, 6, 64, 0, 0, 0, 0, 0, 3, 1,
-    ];
+    let expected = [0, 8, 0, 0xf0, 0, 4, 1, 0, 32, 108, 139, 6, 64, 0, 0, 0, 0, 0, 3, 1];
     assert_eq!(person.0, expected);
     assert_eq!(person.parameters(), [0.5, -1.0, 0.25, 1.0 / 4096.0]);
-    assert_eq!(
-        (person.contacts(), person.place()),
-        (3, PlaceBeforeContact::Pad)
-    );
+    assert_eq!((person.contacts(), person.place()), (3, PlaceBeforeContact::Pad));
 }
 
 #[test]
@@ -121,10 +105,9 @@ fn the_finger_that_was_learnt_is_adopted_within_the_rounding_of_the_record() {
         for (ours, theirs) in adopted.weights.iter().zip(learnt.weights) {
             worst_weight = worst_weight.max((ours - theirs).abs().to_num());
         }
-        assert!(adopted.is_nearly(&LearnerOutput {
-            skin_offset_k: adopted.skin_offset_k,
-            ..learnt
-        }));
+        assert!(
+            adopted.is_nearly(&LearnerOutput { skin_offset_k: adopted.skin_offset_k, ..learnt })
+        );
     }
     println!("largest differences {worst_parameter:.1e} deviations, weights {worst_weight:.1e}");
     // Half a unit of a parameter; times the sum of both relative components of a weight.
@@ -142,10 +125,7 @@ fn the_covariance_that_was_learnt_is_adopted() {
     let [copper, ..] = OBJECTS;
     let outputs = touch(&mut learner, &finger, (copper, 8000), errors, &mut random);
     let person = stored(&outputs).expect("a trusted finger");
-    let (learnt, adopted) = (
-        &learner.estimate,
-        &learner_of(finger.place, Some(person)).estimate,
-    );
+    let (learnt, adopted) = (&learner.estimate, &learner_of(finger.place, Some(person)).estimate);
     let mut largest = 0.0f32;
     for i in STORED {
         for j in STORED.into_iter().filter(|j| *j != i) {
@@ -199,13 +179,7 @@ fn only_trusted_contacts_of_eight_seconds_are_stored() {
     let mut learner = learner_of(PlaceBeforeContact::Air, None);
     let [copper, granite, ..] = OBJECTS;
     let mut last = |object, ticks, finger: &Finger| {
-        let outputs = touch(
-            &mut learner,
-            finger,
-            (object, ticks),
-            Errors::NONE,
-            &mut random,
-        );
+        let outputs = touch(&mut learner, finger, (object, ticks), Errors::NONE, &mut random);
         stored(&outputs).map(|person| person.contacts())
     };
     // Windows end 8 s and 7.99 s after landing.
@@ -222,10 +196,7 @@ fn only_trusted_contacts_of_eight_seconds_are_stored() {
 #[test]
 fn a_distrusted_finger_is_the_enrolled_one_again_at_the_next_landing() {
     let person = PersonPrior::new(
-        &Estimate {
-            parameters: [1.0, 0.0, 0.0, 0.0, 0.5, 0.0],
-            ..Estimate::PRIOR
-        },
+        &Estimate { parameters: [1.0, 0.0, 0.0, 0.0, 0.5, 0.0], ..Estimate::PRIOR },
         2,
         PlaceBeforeContact::Air,
     );

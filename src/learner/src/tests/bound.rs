@@ -31,14 +31,7 @@ fn change(finger: &mut Finger, parameter: usize, by: f64) {
 }
 
 fn scene(finger: &Finger, object: Object, ticks: usize, errors: Errors) -> Scene<'_> {
-    Scene {
-        finger,
-        object,
-        force_n: FORCE_N,
-        ticks,
-        errors,
-        reported: &sound,
-    }
+    Scene { finger, object, force_n: FORCE_N, ticks, errors, reported: &sound }
 }
 
 /// Least deviations of resistance and impedance, relative, by the sensor's noise alone.
@@ -53,10 +46,7 @@ fn bound(object: Object, ticks: usize) -> [f64; 2] {
         .map(|(parameter, deviation)| {
             let step = 0.02 * deviation;
             let [up, down] = [step, -step].map(|by| flux(parameter, by));
-            up.iter()
-                .zip(down)
-                .map(|(up, down)| (up - down) / (2.0 * step))
-                .collect()
+            up.iter().zip(down).map(|(up, down)| (up - down) / (2.0 * step)).collect()
         })
         .collect();
     let mut information = [[0.0; 4]; 4];
@@ -90,11 +80,7 @@ const DRAWS: u64 = 20;
 fn drawn(random: &mut Random) -> Finger {
     let mut finger = Finger::mean(PlaceBeforeContact::Air);
     for (parameter, deviation) in PRIOR.iter().enumerate() {
-        change(
-            &mut finger,
-            parameter,
-            deviation * random.normal().clamp(-1.5, 1.5),
-        );
+        change(&mut finger, parameter, deviation * random.normal().clamp(-1.5, 1.5));
     }
     finger.resistance_factor = finger.resistance_factor.max(0.5);
     finger
@@ -102,11 +88,7 @@ fn drawn(random: &mut Random) -> Finger {
 
 #[test]
 fn stated_deviations_are_above_the_cramer_rao_bound_and_cover_the_errors() {
-    let errors = Errors {
-        noise_w_m2: NOISE_W_M2,
-        surface_noise_k: 0.8e-3,
-        ..Errors::NONE
-    };
+    let errors = Errors { noise_w_m2: NOISE_W_M2, surface_noise_k: 0.8e-3, ..Errors::NONE };
     for object in &OBJECTS[..3] {
         for ticks in [100, 500, 1500] {
             let [resistance, impedance] = bound(*object, ticks);

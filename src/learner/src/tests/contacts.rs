@@ -18,10 +18,7 @@ use crate::{
 const FINGERS: u64 = 40;
 
 pub fn sensor() -> FluxSensor {
-    FluxSensor::new(
-        (LAG_S * 1e6) as u32,
-        Resistance::from_num(SENSOR_M2K_W * 1e6),
-    )
+    FluxSensor::new((LAG_S * 1e6) as u32, Resistance::from_num(SENSOR_M2K_W * 1e6))
 }
 
 /// A learner with that sensor of a finger at this place.
@@ -32,11 +29,7 @@ pub fn new_learner(place: PlaceBeforeContact) -> Learner {
 /// A learner with that sensor of a finger at this place, of which this is known.
 pub fn learner_of(place: PlaceBeforeContact, person: Option<PersonPrior>) -> Learner {
     let mut learner = Learner::new();
-    learner.restart(Restart {
-        place,
-        sensor: sensor(),
-        person,
-    });
+    learner.restart(Restart { place, sensor: sensor(), person });
     learner
 }
 
@@ -62,11 +55,7 @@ pub fn first_component(finger: &Finger) -> f64 {
             let terms = MEAN.impedance.relaxations[1..].iter();
             let terms = terms.map(|one| one.gain_m2k_j / (s_1_s + one.rate_1_s));
             let terms = terms.chain([MEAN.impedance.direct_m2k_w]);
-            terms
-                .zip(component)
-                .map(|(term, part)| term * part)
-                .sum::<f64>()
-                / mean
+            terms.zip(component).map(|(term, part)| term * part).sum::<f64>() / mean
         });
         let y = impedance(&layers, Back::Held, s_1_s) / mean - 1.0;
         (aa, ab, bb) = (aa + a * a, ab + a * b, bb + b * b);
@@ -90,14 +79,8 @@ fn errors(force_n: f64, fingers: u64, with: fn(&mut Random) -> Errors) -> [[f64;
         let component = first_component(&finger);
         let errors = with(&mut random);
         for object in OBJECTS {
-            let scene = Scene {
-                finger: &finger,
-                object,
-                force_n,
-                ticks: 1500,
-                errors,
-                reported: &sound,
-            };
+            let scene =
+                Scene { finger: &finger, object, force_n, ticks: 1500, errors, reported: &sound };
             let outputs = learnt(&scene, &mut random, (seed % 10) as usize);
             for output in &outputs {
                 assert!(
@@ -107,10 +90,7 @@ fn errors(force_n: f64, fingers: u64, with: fn(&mut Random) -> Errors) -> [[f64;
             }
             let last = outputs.last().expect("an output");
             // 480 ms and 1.5 s after landing.
-            assert_eq!(
-                [outputs[49].trust, last.trust],
-                [Trust::Learning, Trust::Trusted]
-            );
+            assert_eq!([outputs[49].trust, last.trust], [Trust::Learning, Trust::Trusted]);
             resistances
                 .push(last.resistance_factor.to_num::<f64>() / finger.resistance_factor - 1.0);
             if object.name != "foam" {
@@ -135,10 +115,7 @@ fn finger_and_contact_are_learnt_and_no_finger_is_distrusted() {
         (0.1, 10, Errors::drawn, [[0.029, 0.11], [0.38, 0.83]]),
     ] {
         let found = errors(force_n, fingers, with);
-        println!(
-            "{force_n} N: resistance {:.4?}, component {:.3?}",
-            found[0], found[1]
-        );
+        println!("{force_n} N: resistance {:.4?}, component {:.3?}", found[0], found[1]);
         for (found, limit) in found.iter().flatten().zip(limits.iter().flatten()) {
             assert!(found <= limit, "{force_n} N: {found}, at most {limit}");
         }
@@ -315,11 +292,7 @@ impl Fault {
                 ticks = ticks.max(tick);
                 *reasons.entry(format!("{distrust:?}")).or_insert(0) += 1;
                 if let Some(expected) = self.distrust {
-                    assert_eq!(
-                        distrust, expected,
-                        "{}, finger {seed}, {object:?}",
-                        self.name
-                    );
+                    assert_eq!(distrust, expected, "{}, finger {seed}, {object:?}", self.name);
                 }
             }
         }
@@ -337,11 +310,7 @@ fn what_is_no_finger_on_the_display_is_distrusted() {
         let (contacts, ticks, on_foam) = fault.distrusted();
         assert!(contacts >= fault.contacts, "{}: {contacts}", fault.name);
         assert!(ticks <= fault.within_ticks, "{}: {ticks} ms", fault.name);
-        assert!(
-            on_foam >= fault.on_foam,
-            "{}: {on_foam} on foam",
-            fault.name
-        );
+        assert!(on_foam >= fault.on_foam, "{}: {on_foam} on foam", fault.name);
     }
 }
 
@@ -353,10 +322,9 @@ fn small_flux_that_becomes_wrong_late_in_a_contact_is_distrusted() {
     let reversed: Reported = |flux, tick| if tick < 2000 { flux } else { -flux };
     let missing: Reported = |flux, tick| if tick < 2000 { flux } else { 0.0 };
     let foam = OBJECTS.into_iter().find(|object| object.name == "foam");
-    for (name, reported, contacts, within_ticks) in [
-        ("reversed", reversed, 8, 4_500),
-        ("missing", missing, 5, 18_000),
-    ] {
+    for (name, reported, contacts, within_ticks) in
+        [("reversed", reversed, 8, 4_500), ("missing", missing, 5, 18_000)]
+    {
         let fault = Fault {
             name,
             change: NO_CHANGE,
@@ -388,10 +356,9 @@ fn small_flux_that_becomes_wrong_late_in_a_contact_is_distrusted() {
 #[test]
 fn a_wrong_gain_or_zero_is_hardly_distrusted() {
     let gain: fn(f64, usize) -> f64 = |flux, _| 0.8 * flux;
-    for (name, reported, most) in [
-        ("gain of 0.8", gain, 3),
-        ("zero of 50 W/m2", |flux, _| flux + 50.0, 0),
-    ] {
+    for (name, reported, most) in
+        [("gain of 0.8", gain, 3), ("zero of 50 W/m2", |flux, _| flux + 50.0, 0)]
+    {
         let fault = Fault {
             name,
             change: NO_CHANGE,
@@ -403,26 +370,17 @@ fn a_wrong_gain_or_zero_is_hardly_distrusted() {
             on_foam: 0,
         };
         let (contacts, _, on_foam) = fault.distrusted();
-        assert!(
-            contacts <= most && on_foam == 0,
-            "{name}: {contacts}, {on_foam}"
-        );
+        assert!(contacts <= most && on_foam == 0, "{name}: {contacts}, {on_foam}");
     }
 }
 
 /// A light force, under which the contact resistance hides much of what is wrong.
 #[test]
 fn wrong_flux_is_distrusted_under_light_force() {
-    for (name, within_ticks) in [
-        ("dead sensor", 60),
-        ("sensor that dies", 60),
-        ("reversed sensor", 60),
-        ("paper", 200),
-    ] {
-        let fault = FAULTS
-            .iter()
-            .find(|fault| fault.name == name)
-            .expect("a fault");
+    for (name, within_ticks) in
+        [("dead sensor", 60), ("sensor that dies", 60), ("reversed sensor", 60), ("paper", 200)]
+    {
+        let fault = FAULTS.iter().find(|fault| fault.name == name).expect("a fault");
         let mut ticks = 0;
         for seed in 0..FOOLED {
             let mut random = Random(2000 + seed);

@@ -27,11 +27,8 @@ fn learner_follows_the_independent_estimator() {
     for row in rows.records() {
         let row = row.expect("golden row");
         let number = |column: usize| row[column].parse::<f64>().expect("a number");
-        let place = if &row[1] == "air" {
-            PlaceBeforeContact::Air
-        } else {
-            PlaceBeforeContact::Pad
-        };
+        let place =
+            if &row[1] == "air" { PlaceBeforeContact::Air } else { PlaceBeforeContact::Pad };
         if finger != row[0] {
             finger = row[0].into();
             learner = new_learner(place);
@@ -52,10 +49,7 @@ fn learner_follows_the_independent_estimator() {
         };
         let output = learner.advance(&input);
         assert_eq!(output.sequence, windows);
-        assert!(
-            !matches!(output.trust, Trust::Mean(_)),
-            "{row:?}: {output:?}"
-        );
+        assert!(!matches!(output.trust, Trust::Mean(_)), "{row:?}: {output:?}");
         let parameters = output.parameters.map(|one| one.to_num::<f64>());
         let variances = output.variances.map(|one| one.to_num::<f64>());
         for (column, ours) in parameters.into_iter().chain(variances).enumerate() {

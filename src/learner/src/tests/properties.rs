@@ -24,44 +24,26 @@ fn person() -> impl Strategy<Value = Option<PersonPrior>> {
 
 /// Any bits, and values near those of contacts.
 fn bits() -> impl Strategy<Value = i32> {
-    prop_oneof![
-        any::<i32>(),
-        -0x400_0000..0x400_0000,
-        Just(0),
-        Just(i32::MIN),
-        Just(i32::MAX)
-    ]
+    prop_oneof![any::<i32>(), -0x400_0000..0x400_0000, Just(0), Just(i32::MIN), Just(i32::MAX)]
 }
 
 fn contact() -> impl Strategy<Value = ContactInput> {
-    (
-        any::<u8>(),
-        bits(),
-        bits(),
-        bits(),
-        prop_oneof![any::<u32>(), 0..2000u32],
-        any::<bool>(),
-    )
-        .prop_map(
-            |(touching_ticks, above, air, resistance, ticks_since_landing, is_steady)| {
-                ContactInput {
-                    touching_ticks,
-                    skin_above_display_k: Celsius::from_bits(above),
-                    air_flux_w_m2: Flux::from_bits(air),
-                    resistance_mm2k_w: Resistance::from_bits(resistance as u32),
-                    ticks_since_landing,
-                    is_steady,
-                }
-            },
-        )
+    (any::<u8>(), bits(), bits(), bits(), prop_oneof![any::<u32>(), 0..2000u32], any::<bool>())
+        .prop_map(|(touching_ticks, above, air, resistance, ticks_since_landing, is_steady)| {
+            ContactInput {
+                touching_ticks,
+                skin_above_display_k: Celsius::from_bits(above),
+                air_flux_w_m2: Flux::from_bits(air),
+                resistance_mm2k_w: Resistance::from_bits(resistance as u32),
+                ticks_since_landing,
+                is_steady,
+            }
+        })
 }
 
 fn input() -> impl Strategy<Value = LearnerInput> {
-    let restart = (place(), person()).prop_map(|(place, person)| Restart {
-        place,
-        sensor: sensor(),
-        person,
-    });
+    let restart =
+        (place(), person()).prop_map(|(place, person)| Restart { place, sensor: sensor(), person });
     let restart = prop::option::weighted(0.02, restart);
     (
         any::<u16>(),
@@ -129,39 +111,23 @@ fn inputs(is_sound: bool) -> Vec<LearnerInput> {
     scene.inputs(&mut Random(0), 0)
 }
 
-const LIFTED: LearnerInput = LearnerInput {
-    sequence: 0,
-    restart: None,
-    flux_w_m2: Some(Flux::ZERO),
-    contact: None,
-};
+const LIFTED: LearnerInput =
+    LearnerInput { sequence: 0, restart: None, flux_w_m2: Some(Flux::ZERO), contact: None };
 
 #[test]
 fn distrusted_finger_becomes_the_mean_one_until_the_next_landing() {
     let mut learner = new_learner(PlaceBeforeContact::Air);
-    let outputs: Vec<_> = inputs(false)
-        .iter()
-        .map(|input| *learner.advance(input))
-        .collect();
-    let at = outputs
-        .iter()
-        .position(|output| output.trust == Trust::Mean(Distrust::Sensor));
+    let outputs: Vec<_> = inputs(false).iter().map(|input| *learner.advance(input)).collect();
+    let at = outputs.iter().position(|output| output.trust == Trust::Mean(Distrust::Sensor));
     let at = at.expect("a distrust");
     // A tenth of a second later little is left, after a second nothing.
     for (after, left) in [(10, 0.06), (70, 1e-8)] {
         let weights = outputs[at + after].weights;
-        assert!(
-            weights
-                .iter()
-                .all(|weight| (weight.to_num::<f64>() - 1.0).abs() < left)
-        );
+        assert!(weights.iter().all(|weight| (weight.to_num::<f64>() - 1.0).abs() < left));
         let factor: f64 = outputs[at + after].resistance_factor.to_num();
         assert!((factor - 1.0).abs() < left);
     }
-    assert_eq!(
-        learner.advance(&LIFTED).trust,
-        Trust::Mean(Distrust::Sensor)
-    );
+    assert_eq!(learner.advance(&LIFTED).trust, Trust::Mean(Distrust::Sensor));
     let mut again = inputs(true);
     // The first window of the contact is not learnt from.
     again[2].contact.as_mut().expect("a contact").is_steady = false;
@@ -169,14 +135,8 @@ fn distrusted_finger_becomes_the_mean_one_until_the_next_landing() {
     // So all is as before the first contact.
     let new = *new_learner(PlaceBeforeContact::Air).advance(&LIFTED);
     assert_eq!(again[2].trust, Trust::Learning);
-    assert_eq!(
-        (again[2].parameters, again[2].variances),
-        (new.parameters, new.variances)
-    );
-    assert_eq!(
-        again.last().map(|output| output.trust),
-        Some(Trust::Trusted)
-    );
+    assert_eq!((again[2].parameters, again[2].variances), (new.parameters, new.variances));
+    assert_eq!(again.last().map(|output| output.trust), Some(Trust::Trusted));
 }
 
 #[test]
@@ -185,53 +145,23 @@ fn finger_is_kept_between_contacts_with_wider_deviations_until_a_restart() {
     let new = *learner.clone().advance(&LIFTED);
     let last = (inputs(true).iter()).fold(new, |_, input| *learner.advance(input));
     let lifted = *learner.advance(&LIFTED);
-    assert_eq!(
-        (lifted.parameters, lifted.trust),
-        (last.parameters, Trust::Trusted)
-    );
-    assert!(
-        lifted
-            .variances
-            .iter()
-            .zip(last.variances)
-            .all(|(wider, before)| *wider > before)
-    );
+    assert_eq!((lifted.parameters, lifted.trust), (last.parameters, Trust::Trusted));
+    assert!(lifted.variances.iter().zip(last.variances).all(|(wider, before)| *wider > before));
     assert_eq!(learner.advance(&LIFTED).variances, lifted.variances);
     let restart = LearnerInput {
-        restart: Some(Restart {
-            place: PlaceBeforeContact::Air,
-            sensor: sensor(),
-            person: None,
-        }),
+        restart: Some(Restart { place: PlaceBeforeContact::Air, sensor: sensor(), person: None }),
         ..LIFTED
     };
     let restarted = *learner.advance(&restart);
     assert!(restarted.revision > lifted.revision);
-    assert_eq!(
-        restarted,
-        LearnerOutput {
-            revision: restarted.revision,
-            ..new
-        }
-    );
+    assert_eq!(restarted, LearnerOutput { revision: restarted.revision, ..new });
 }
 
 #[test]
 fn a_restart_brings_place_sensor_and_person() {
-    let (place, sensor, person) = (
-        PlaceBeforeContact::Pad,
-        sensor(),
-        Some(PersonPrior([77; 20])),
-    );
+    let (place, sensor, person) = (PlaceBeforeContact::Pad, sensor(), Some(PersonPrior([77; 20])));
     let (mut restarted, mut begun) = (Learner::new(), learner_of(place, person));
-    let first = LearnerInput {
-        restart: Some(Restart {
-            place,
-            sensor,
-            person,
-        }),
-        ..LIFTED
-    };
+    let first = LearnerInput { restart: Some(Restart { place, sensor, person }), ..LIFTED };
     assert_eq!(restarted.advance(&first), begun.advance(&LIFTED));
     for input in inputs(true) {
         assert_eq!(restarted.advance(&input), begun.advance(&input));
@@ -247,10 +177,7 @@ fn windows_that_are_not_steady_change_nothing_that_is_learnt() {
             contact.is_steady = false;
         }
         let output = learner.advance(&input);
-        assert_eq!(
-            (output.parameters, output.trust),
-            (first.parameters, Trust::Learning)
-        );
+        assert_eq!((output.parameters, output.trust), (first.parameters, Trust::Learning));
     }
     assert_eq!(first.weights.len(), WEIGHTS);
 }
@@ -261,12 +188,7 @@ fn contact_with_an_unknown_flux_ends_in_the_mean_finger() {
     let mut learner = new_learner(PlaceBeforeContact::Air);
     for (window, input) in inputs(true).iter().enumerate() {
         let flux_w_m2 = input.flux_w_m2.filter(|_| window != 40);
-        let trust = learner
-            .advance(&LearnerInput {
-                flux_w_m2,
-                ..*input
-            })
-            .trust;
+        let trust = learner.advance(&LearnerInput { flux_w_m2, ..*input }).trust;
         let is_distrusted = trust == Trust::Mean(Distrust::Sensor);
         assert_eq!(is_distrusted, window >= 40, "{window}: {trust:?}");
     }
@@ -291,11 +213,7 @@ fn wet_finger_ends_in_the_mean_finger() {
             assert_eq!(why, Distrust::Wet, "{object:?}");
             seen += 1;
             assert!((last.resistance_factor.to_num::<f64>() - 1.0).abs() < 1e-6);
-            assert!(
-                last.weights
-                    .iter()
-                    .all(|weight| (weight.to_num::<f64>() - 1.0).abs() < 1e-6)
-            );
+            assert!(last.weights.iter().all(|weight| (weight.to_num::<f64>() - 1.0).abs() < 1e-6));
         }
     }
     assert!(seen > 0);

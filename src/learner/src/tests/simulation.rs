@@ -100,11 +100,7 @@ impl Slab {
                 right += to_next * self.back_c;
             }
             // What the cell above sees, if there is one.
-            let above = if i > 0 {
-                self.conductance_w_m2k[i - 1]
-            } else {
-                0.0
-            };
+            let above = if i > 0 { self.conductance_w_m2k[i - 1] } else { 0.0 };
             self.upper[i] = 1.0 / (pivot + above);
             self.right[i] = right / (pivot + above);
             below_g = above * pivot / (pivot + above);
@@ -232,11 +228,7 @@ impl Finger {
         };
         Self {
             layers,
-            flow: if random.between(0.0, 1.0) < 0.5 {
-                0.0
-            } else {
-                1.0
-            },
+            flow: if random.between(0.0, 1.0) < 0.5 { 0.0 } else { 1.0 },
             film_w_m2k: match place {
                 PlaceBeforeContact::Air => random.between(5.0, 15.0),
                 PlaceBeforeContact::Pad => random.between(0.5, 3.0),
@@ -275,30 +267,12 @@ pub struct Object {
 }
 
 pub const OBJECTS: [Object; 6] = [
-    Object {
-        name: "copper",
-        thickness_m: f64::INFINITY,
-    },
-    Object {
-        name: "granite",
-        thickness_m: f64::INFINITY,
-    },
-    Object {
-        name: "abs",
-        thickness_m: f64::INFINITY,
-    },
-    Object {
-        name: "foam",
-        thickness_m: f64::INFINITY,
-    },
-    Object {
-        name: "granite",
-        thickness_m: 3e-3,
-    },
-    Object {
-        name: "copper",
-        thickness_m: 3e-3,
-    },
+    Object { name: "copper", thickness_m: f64::INFINITY },
+    Object { name: "granite", thickness_m: f64::INFINITY },
+    Object { name: "abs", thickness_m: f64::INFINITY },
+    Object { name: "foam", thickness_m: f64::INFINITY },
+    Object { name: "granite", thickness_m: 3e-3 },
+    Object { name: "copper", thickness_m: 3e-3 },
 ];
 
 fn resistance_m2k_w(other: &Surface, force_n: f64) -> f64 {
@@ -401,15 +375,8 @@ impl Scene<'_> {
 
     /// The learner's inputs: three windows without contact, a landing in the last one's `phase`, then the contact.
     pub fn inputs(&self, random: &mut Random, phase: usize) -> Vec<LearnerInput> {
-        let Errors {
-            gain,
-            zero_w_m2,
-            noise_w_m2,
-            lag_s,
-            surface_k,
-            surface_noise_k,
-            ..
-        } = self.errors;
+        let Errors { gain, zero_w_m2, noise_w_m2, lag_s, surface_k, surface_noise_k, .. } =
+            self.errors;
         let mut reported = 0.0;
         let air_w_m2 = Finger::mean(self.finger.place).film_w_m2k * (SKIN_C - ROOM_C);
         let lifted = 20 + phase;
@@ -422,9 +389,8 @@ impl Scene<'_> {
                 (reported * (1.0 + gain) + noise, SKIN_C - surface_c)
             })
             .collect();
-        let all: Vec<_> = (vec![None; lifted].into_iter())
-            .chain(ticks.into_iter().map(Some))
-            .collect();
+        let all: Vec<_> =
+            (vec![None; lifted].into_iter()).chain(ticks.into_iter().map(Some)).collect();
         (all.chunks_exact(10).enumerate())
             .map(|(window, ticks)| {
                 let touching: Vec<_> = ticks.iter().flatten().collect();

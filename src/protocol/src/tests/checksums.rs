@@ -19,16 +19,12 @@ struct Line<const FINGERS: usize> {
 impl<const FINGERS: usize> Line<FINGERS> {
     fn new() -> Self {
         let settings = Settings::default();
-        Self {
-            device: Device::new(&settings),
-            handler: CommandHandler::new(settings),
-        }
+        Self { device: Device::new(&settings), handler: CommandHandler::new(settings) }
     }
 
     fn send(&mut self, line: &str) -> String {
-        let answer = self
-            .handler
-            .answer(line, |finger, command| self.device.execute(finger, command));
+        let answer =
+            self.handler.answer(line, |finger, command| self.device.execute(finger, command));
         match answer {
             Ok(reply) => self.written(&reply),
             Err(error) => self.written(&error),
@@ -69,10 +65,7 @@ fn every_line_to_the_host_has_a_checksum_from_the_answer_to_on_until_the_answer_
             "err checksum missing, the line has 3E; send the line again with it*74"
         );
         assert_eq!(line.send("@2 abort*38"), "@2 ok*56");
-        assert_eq!(
-            line.send("law x*22"),
-            "err unknown law 'x'; known: pi-10hz pi model*0C"
-        );
+        assert_eq!(line.send("law x*22"), "err unknown law 'x'; known: pi-10hz pi model*0C");
         assert_eq!(line.written(&telemetry), "T 5 off - 24.0000*0B");
         assert_eq!(line.send("checksum off*42"), "ok");
     }
@@ -104,30 +97,12 @@ fn a_line_with_a_wrong_checksum_is_not_executed() {
     let mut line = Line::<1>::new();
     assert_eq!(line.send("law pi*43"), "ok");
     for (sent, answer) in [
-        (
-            "law pi-10hz*43",
-            "err checksum 43 is wrong, the line has 7D; send the line again",
-        ),
-        (
-            "law*43",
-            "err checksum 43 is wrong, the line has 7A; send the line again",
-        ),
-        (
-            "law model*3",
-            "err checksum '3' is not 2 hexadecimal digits",
-        ),
-        (
-            "law model*+5",
-            "err checksum '+5' is not 2 hexadecimal digits",
-        ),
-        (
-            "law model*035",
-            "err checksum '035' is not 2 hexadecimal digits",
-        ),
-        (
-            "law model*35 ",
-            "err checksum '35 ' is not 2 hexadecimal digits",
-        ),
+        ("law pi-10hz*43", "err checksum 43 is wrong, the line has 7D; send the line again"),
+        ("law*43", "err checksum 43 is wrong, the line has 7A; send the line again"),
+        ("law model*3", "err checksum '3' is not 2 hexadecimal digits"),
+        ("law model*+5", "err checksum '+5' is not 2 hexadecimal digits"),
+        ("law model*035", "err checksum '035' is not 2 hexadecimal digits"),
+        ("law model*35 ", "err checksum '35 ' is not 2 hexadecimal digits"),
         ("law model*", "err checksum '' is not 2 hexadecimal digits"),
     ] {
         assert_eq!(line.send(sent), answer);
@@ -139,27 +114,12 @@ fn a_line_with_a_wrong_checksum_is_not_executed() {
 fn the_refusal_of_a_damaged_line_has_the_address_that_has_arrived() {
     let mut line = Line::<5>::new();
     for (sent, answer) in [
-        (
-            "@2 law*00",
-            "@2 err checksum 00 is wrong, the line has 28; send the line again",
-        ),
-        (
-            "@2 law*4",
-            "@2 err checksum '4' is not 2 hexadecimal digits",
-        ),
+        ("@2 law*00", "@2 err checksum 00 is wrong, the line has 28; send the line again"),
+        ("@2 law*4", "@2 err checksum '4' is not 2 hexadecimal digits"),
         // Damaged addresses: of a finger that the device does not have, and none.
-        (
-            "@7 law*28",
-            "err checksum 28 is wrong, the line has 2D; send the line again",
-        ),
-        (
-            "R2 law*28",
-            "err checksum 28 is wrong, the line has 3A; send the line again",
-        ),
-        (
-            "law*28",
-            "err checksum 28 is wrong, the line has 7A; send the line again",
-        ),
+        ("@7 law*28", "err checksum 28 is wrong, the line has 2D; send the line again"),
+        ("R2 law*28", "err checksum 28 is wrong, the line has 3A; send the line again"),
+        ("law*28", "err checksum 28 is wrong, the line has 7A; send the line again"),
     ] {
         assert_eq!(line.send(sent), answer);
     }
@@ -173,10 +133,7 @@ fn checksums_are_switched_for_the_whole_device_by_on_and_off() {
         ("checksum", "err checksum missing; known: on off"),
         ("checksum 1", "err unknown checksum '1'; known: on off"),
         ("checksum on now", "err unexpected 'now' after the command"),
-        (
-            "@2 checksum on",
-            "@2 err checksum is for all fingers at once",
-        ),
+        ("@2 checksum on", "@2 err checksum is for all fingers at once"),
         ("id*0D", "ok thermal-display 0.2.0 fingers=5"),
     ] {
         assert!(line.send(sent).starts_with(answer), "{}", line.send(sent));

@@ -47,15 +47,10 @@ fn upload(direct: f64, rows: &[(f64, f64)]) -> Vec<String> {
 
 /// The body of such an upload. The numbers of the tests are exact in the fixed point of the lines.
 fn body(direct: f64, rows: &[(f64, f64)]) -> Result<Body, BodyError> {
-    let row = |(rate_1_s, gain): &(f64, f64)| Relaxation {
-        rate_1_s: *rate_1_s,
-        gain_m2k_j: 1e-6 * gain,
-    };
+    let row =
+        |(rate_1_s, gain): &(f64, f64)| Relaxation { rate_1_s: *rate_1_s, gain_m2k_j: 1e-6 * gain };
     let relaxations: Vec<_> = rows.iter().map(row).collect();
-    let impedance = Impedance {
-        direct_m2k_w: 1e-6 * direct,
-        relaxations: &relaxations,
-    };
+    let impedance = Impedance { direct_m2k_w: 1e-6 * direct, relaxations: &relaxations };
     Body::new(&impedance, SKIN.effusivity(), TICK_S)
 }
 
@@ -75,11 +70,7 @@ struct Host<const FINGERS: usize> {
 
 impl<const FINGERS: usize> Host<FINGERS> {
     fn new(materials: [Option<Material>; FINGERS]) -> Self {
-        Self {
-            handler: CommandHandler::new(Settings::default()),
-            materials,
-            bodies: Vec::new(),
-        }
+        Self { handler: CommandHandler::new(Settings::default()), materials, bodies: Vec::new() }
     }
 
     fn send(&mut self, line: &str) -> String {
@@ -98,10 +89,7 @@ impl<const FINGERS: usize> Host<FINGERS> {
                 }
                 other => panic!("{line}: {other:?}"),
             };
-            Ok(WithSourceFinger {
-                finger: address,
-                content,
-            })
+            Ok(WithSourceFinger { finger: address, content })
         });
         let answer = answer.map_or_else(|error| error.to_string(), |reply| reply.to_string());
         assert!(answer.len() <= ANSWER_MAX_BYTES, "{answer}");
@@ -137,20 +125,13 @@ fn finger_chooses_the_assumed_finger_or_asks_for_it() {
         ("finger mean-on-pad", Some(AssumedFinger::MeanOnPad)),
         ("finger thesis", Some(AssumedFinger::Thesis)),
     ] {
-        assert_eq!(
-            parse(line),
-            Ok(Request::Station(Command::Finger(finger))),
-            "{line}"
-        );
+        assert_eq!(parse(line), Ok(Request::Station(Command::Finger(finger))), "{line}");
     }
     assert_eq!(
         refusal("finger thumb"),
         "err unknown finger 'thumb'; known: mean mean-on-pad thesis"
     );
-    assert_eq!(
-        refusal("finger mean thesis"),
-        "err unexpected 'thesis' after the command"
-    );
+    assert_eq!(refusal("finger mean thesis"), "err unexpected 'thesis' after the command");
 }
 
 #[test]
@@ -161,36 +142,18 @@ fn a_slab_is_a_thickness_and_what_is_behind_it() {
         ("object slab 3 mm insulated", slab(3.0, Back::Insulated)),
         ("object slab 3 insulated", slab(3.0, Back::Insulated)),
         (" object  slab  0.5mm  held ", slab(0.5, Back::Held)),
-        (
-            "object slab 1000 mm film 12.5",
-            slab(1000.0, Back::Film(12.5)),
-        ),
+        ("object slab 1000 mm film 12.5", slab(1000.0, Back::Film(12.5))),
         ("object slab 4 film 100000", slab(4.0, Back::Film(1e5))),
     ] {
         assert_eq!(parse(line), request, "{line}");
     }
     for (line, answer) in [
         ("object slab", "err thickness missing; 0.1 to 1000 mm"),
-        (
-            "object slab mm",
-            "err thickness 'mm': a number of mm, such as 3 or 3mm; 0.1 to 1000",
-        ),
-        (
-            "object slab 3",
-            "err back missing; known: insulated held film",
-        ),
-        (
-            "object slab 3mm",
-            "err back missing; known: insulated held film",
-        ),
-        (
-            "object slab 3 mm",
-            "err back missing; known: insulated held film",
-        ),
-        (
-            "object slab 3mm film",
-            "err film missing; 0.1 to 100000 W/m2K",
-        ),
+        ("object slab mm", "err thickness 'mm': a number of mm, such as 3 or 3mm; 0.1 to 1000"),
+        ("object slab 3", "err back missing; known: insulated held film"),
+        ("object slab 3mm", "err back missing; known: insulated held film"),
+        ("object slab 3 mm", "err back missing; known: insulated held film"),
+        ("object slab 3mm film", "err film missing; 0.1 to 100000 W/m2K"),
         (
             "object slab 3cm held",
             "err thickness '3cm': a number of mm, such as 3 or 3mm; 0.1 to 1000",
@@ -199,38 +162,14 @@ fn a_slab_is_a_thickness_and_what_is_behind_it() {
             "object slab insulated",
             "err thickness 'insulated': a number of mm, such as 3 or 3mm; 0.1 to 1000",
         ),
-        (
-            "object slab 0.09mm held",
-            "err thickness '0.09' out of range; 0.1 to 1000 mm",
-        ),
-        (
-            "object slab 1001 held",
-            "err thickness '1001' out of range; 0.1 to 1000 mm",
-        ),
-        (
-            "object slab 3mm mm held",
-            "err unknown back 'mm'; known: insulated held film",
-        ),
-        (
-            "object slab 3mm open",
-            "err unknown back 'open'; known: insulated held film",
-        ),
-        (
-            "object slab 3mm film 0",
-            "err film '0' out of range; 0.1 to 100000 W/m2K",
-        ),
-        (
-            "object slab 3mm film -5",
-            "err film '-5' out of range; 0.1 to 100000 W/m2K",
-        ),
-        (
-            "object slab 3mm held 5",
-            "err unexpected '5' after the command",
-        ),
-        (
-            "object half-space 3",
-            "err unexpected '3' after the command",
-        ),
+        ("object slab 0.09mm held", "err thickness '0.09' out of range; 0.1 to 1000 mm"),
+        ("object slab 1001 held", "err thickness '1001' out of range; 0.1 to 1000 mm"),
+        ("object slab 3mm mm held", "err unknown back 'mm'; known: insulated held film"),
+        ("object slab 3mm open", "err unknown back 'open'; known: insulated held film"),
+        ("object slab 3mm film 0", "err film '0' out of range; 0.1 to 100000 W/m2K"),
+        ("object slab 3mm film -5", "err film '-5' out of range; 0.1 to 100000 W/m2K"),
+        ("object slab 3mm held 5", "err unexpected '5' after the command"),
+        ("object half-space 3", "err unexpected '3' after the command"),
     ] {
         assert_eq!(refusal(line), answer, "{line}");
     }
@@ -257,10 +196,7 @@ fn a_slab_is_of_the_material_that_its_finger_presents() {
     assert_eq!(host.send(&format!("@2 {line}")), "@2 ok");
     // Slabs of two materials are two bodies.
     assert_eq!(host.send(line), "err finger (as @0) missing");
-    assert_eq!(
-        host.bodies,
-        [(Some(1), slab_of(&copper)), (Some(2), slab_of(&bronze))]
-    );
+    assert_eq!(host.bodies, [(Some(1), slab_of(&copper)), (Some(2), slab_of(&bronze))]);
     host.materials[2] = None;
     assert_eq!(host.send(line), "err a slab needs a material first");
     host.materials[2] = Some(copper);
@@ -273,18 +209,8 @@ fn slabs_of_the_known_and_three_custom_materials_are_accepted() {
     let mut host = one_finger();
     // Heat spreads in them as fast as in the thesis's materials, faster, and more slowly.
     let custom = |(name, k, rho, c)| {
-        let surface = Surface {
-            conductivity_w_mk: k,
-            ..SKIN.surface
-        };
-        (
-            name,
-            Material {
-                surface,
-                density_kg_m3: rho,
-                specific_heat_j_kgk: c,
-            },
-        )
+        let surface = Surface { conductivity_w_mk: k, ..SKIN.surface };
+        (name, Material { surface, density_kg_m3: rho, specific_heat_j_kgk: c })
     };
     let custom = [
         ("diamond", 2000.0, 3500.0, 500.0),
@@ -294,9 +220,9 @@ fn slabs_of_the_known_and_three_custom_materials_are_accepted() {
     .map(custom);
     for (name, material) in MATERIALS.into_iter().chain(custom) {
         host.materials = [Some(material)];
-        for thickness in [
-            "0.1", "0.3", "1", "3", "10", "20", "30", "50", "70", "100", "200", "1000",
-        ] {
+        for thickness in
+            ["0.1", "0.3", "1", "3", "10", "20", "30", "50", "70", "100", "200", "1000"]
+        {
             for back in ["insulated", "held", "film 0.1", "film 100", "film 100000"] {
                 let line = format!("object slab {thickness} {back}");
                 assert_eq!(host.send(&line), "ok", "{name}: {line}");
@@ -322,9 +248,8 @@ fn an_upload_makes_the_object_what_its_rows_say() {
     // Without a row the object is a thermal resistance.
     host.send_ok(&upload(5000.0, &[]));
     assert_eq!(host.bodies[2..], [(None, uploaded(5000.0, &[]))]);
-    let most: Vec<_> = (0..FAST_MAX + SLOW_MAX)
-        .map(|i| (if i < FAST_MAX { 690.0 } else { 0.0 }, 1.0))
-        .collect();
+    let most: Vec<_> =
+        (0..FAST_MAX + SLOW_MAX).map(|i| (if i < FAST_MAX { 690.0 } else { 0.0 }, 1.0)).collect();
     host.send_ok(&upload(0.0, &most));
     assert_eq!(host.bodies[3..], [(None, uploaded(0.0, &most))]);
 }
@@ -353,10 +278,9 @@ fn an_upload_is_for_the_address_that_began_it() {
 #[test]
 fn rows_and_commits_of_other_addresses_do_not_reach_an_upload() {
     let lines = upload(12.5, &ROWS);
-    for (address, others, whose) in [
-        ("@1 ", ["@0 ", "@2 ", ""], "@1"),
-        ("", ["@0 ", "@1 ", "@2 "], "all fingers"),
-    ] {
+    for (address, others, whose) in
+        [("@1 ", ["@0 ", "@2 ", ""], "@1"), ("", ["@0 ", "@1 ", "@2 "], "all fingers")]
+    {
         let mut host = Host::<3>::new([None; 3]);
         for line in &lines {
             for other in others.iter().filter(|_| !line.contains("begin")) {
@@ -365,19 +289,13 @@ fn rows_and_commits_of_other_addresses_do_not_reach_an_upload() {
                 );
                 assert_eq!(host.send(&format!("{other}{line}")), refused);
             }
-            assert_eq!(
-                host.send(&format!("{address}{line}")),
-                format!("{address}ok")
-            );
+            assert_eq!(host.send(&format!("{address}{line}")), format!("{address}ok"));
         }
         assert_eq!(host.bodies.len(), 1);
         // No address can keep the others from uploading.
         host.send(&format!("{address}{}", lines[0]));
         for line in &lines {
-            assert_eq!(
-                host.send(&format!("{}{line}", others[0])),
-                format!("{}ok", others[0])
-            );
+            assert_eq!(host.send(&format!("{}{line}", others[0])), format!("{}ok", others[0]));
         }
         assert_eq!(host.bodies[1..], [(Some(0), uploaded(12.5, &ROWS))]);
     }
@@ -391,48 +309,27 @@ fn an_error_before_the_commit_leaves_the_upload_as_it_was() {
     for (line, answers) in rows.iter().zip([
         &[
             ("upload", "err begin, row or commit missing"),
-            (
-                "upload end",
-                "err unknown upload 'end'; known: begin row commit object course",
-            ),
+            ("upload end", "err unknown upload 'end'; known: begin row commit object course"),
             ("upload row 1 2 3", "err not the next row, which is 0"),
         ][..],
         &[
             ("upload row", "err row missing; 0 to 21 "),
             ("upload row 1", "err rate missing; 0 to 690 1/s"),
-            (
-                "upload row 1 1",
-                "err gain missing; 0.000001 to 13000000 mm2K/J",
-            ),
+            ("upload row 1 1", "err gain missing; 0.000001 to 13000000 mm2K/J"),
             ("upload row 1 1 1 1", "err unexpected '1' after the command"),
             ("upload row 0 1 1", "err not the next row, which is 1"),
             ("upload row 2 1 1", "err not the next row, which is 1"),
             ("upload row 1.5 1 1", "err row '1.5' out of range; 0 to 21 "),
             ("upload row 22 1 1", "err row '22' out of range; 0 to 21 "),
-            (
-                "upload row 1 -1 1",
-                "err rate '-1' out of range; 0 to 690 1/s",
-            ),
-            (
-                "upload row 1 690.1 1",
-                "err rate '690.1' out of range; 0 to 690 1/s",
-            ),
-            (
-                "upload row 1 1 0",
-                "err gain '0' out of range; 0.000001 to 13000000 mm2K/J",
-            ),
-            (
-                "upload row 1 x 1",
-                "err rate 'x' is not a decimal number; 0 to 690 1/s",
-            ),
+            ("upload row 1 -1 1", "err rate '-1' out of range; 0 to 690 1/s"),
+            ("upload row 1 690.1 1", "err rate '690.1' out of range; 0 to 690 1/s"),
+            ("upload row 1 1 0", "err gain '0' out of range; 0.000001 to 13000000 mm2K/J"),
+            ("upload row 1 x 1", "err rate 'x' is not a decimal number; 0 to 690 1/s"),
             ("uplaod row 1 1 1", "err unknown command 'uplaod'; known: "),
         ],
         &[
             ("upload commit", "err checksum missing"),
-            (
-                "upload commit 12345678 9",
-                "err unexpected '9' after the command",
-            ),
+            ("upload commit 12345678 9", "err unexpected '9' after the command"),
         ],
         &[("upload row 3 1 1", "err not the next row, which is 3")],
     ]) {
@@ -455,34 +352,13 @@ fn begin_says_what_is_uploaded() {
             "upload begin finger 1 0",
             "err unknown upload 'finger'; known: begin row commit object course",
         ),
-        (
-            "upload begin object",
-            "err number of rows missing; 0 to 22 ",
-        ),
-        (
-            "upload begin object 1",
-            "err direct missing; 0 to 27000 mm2K/W",
-        ),
-        (
-            "upload begin object 23 0",
-            "err number of rows '23' out of range; 0 to 22 ",
-        ),
-        (
-            "upload begin object -1 0",
-            "err number of rows '-1' out of range; 0 to 22 ",
-        ),
-        (
-            "upload begin object 1 -1",
-            "err direct '-1' out of range; 0 to 27000 mm2K/W",
-        ),
-        (
-            "upload begin object 1 27001",
-            "err direct '27001' out of range; 0 to 27000 mm2K/W",
-        ),
-        (
-            "upload begin object 1 1 1",
-            "err unexpected '1' after the command",
-        ),
+        ("upload begin object", "err number of rows missing; 0 to 22 "),
+        ("upload begin object 1", "err direct missing; 0 to 27000 mm2K/W"),
+        ("upload begin object 23 0", "err number of rows '23' out of range; 0 to 22 "),
+        ("upload begin object -1 0", "err number of rows '-1' out of range; 0 to 22 "),
+        ("upload begin object 1 -1", "err direct '-1' out of range; 0 to 27000 mm2K/W"),
+        ("upload begin object 1 27001", "err direct '27001' out of range; 0 to 27000 mm2K/W"),
+        ("upload begin object 1 1 1", "err unexpected '1' after the command"),
     ] {
         let mut host = one_finger();
         assert_eq!(host.send(line).trim_end(), answer.trim_end());
@@ -519,17 +395,9 @@ fn a_refused_commit_changes_nothing_and_ends_the_upload() {
             format!("upload commit {wrong}"),
             format!("err checksum is {digits}; nothing is changed, upload again"),
         ),
-        (
-            3,
-            commit.clone(),
-            "err 2 of 3 rows; nothing is changed, upload again".into(),
-        ),
+        (3, commit.clone(), "err 2 of 3 rows; nothing is changed, upload again".into()),
         (4, format!("upload commit 0{digits}"), not_a_checksum.into()),
-        (
-            4,
-            format!("upload commit {}", &digits[1..]),
-            not_a_checksum.into(),
-        ),
+        (4, format!("upload commit {}", &digits[1..]), not_a_checksum.into()),
         (4, "upload commit 0x123456".into(), not_a_checksum.into()),
         (4, "upload commit +1234567".into(), not_a_checksum.into()),
         (4, "upload commit -1234567".into(), not_a_checksum.into()),
@@ -553,11 +421,7 @@ fn an_object_that_cannot_be_followed_is_refused_at_the_commit() {
             &[(100.0, 1.0); FAST_MAX + 1][..],
             "9 rates of 12.5 1/s or more; at most 8 are allowed",
         ),
-        (
-            0.0,
-            &[(1.0, 1.0); SLOW_MAX + 1],
-            "15 rates below 12.5 1/s; at most 14 are allowed",
-        ),
+        (0.0, &[(1.0, 1.0); SLOW_MAX + 1], "15 rates below 12.5 1/s; at most 14 are allowed"),
         (
             0.0,
             &[(1.0, 6.5e6), (0.0, 8_000_000.25)],

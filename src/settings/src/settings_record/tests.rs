@@ -6,18 +6,8 @@ use super::*;
 
 /// Any settings within their ranges, in units of their last decimals.
 fn stored_settings() -> impl Strategy<Value = StoredSettings> {
-    let correction = (
-        -1_200_000..=1_200_000,
-        -500_000..=500_000,
-        -200_000..=200_000,
-    );
-    let tile = (
-        100_000..=15_000_000,
-        0..=500_000,
-        0..=5_000_000,
-        1000..=5_000_000,
-        0..=1_000_000,
-    );
+    let correction = (-1_200_000..=1_200_000, -500_000..=500_000, -200_000..=200_000);
+    let tile = (100_000..=15_000_000, 0..=500_000, 0..=5_000_000, 1000..=5_000_000, 0..=1_000_000);
     let flux_sensor = proptest::option::of((
         10_000..=1_000_000,
         64_000..=4_031_000,
@@ -26,13 +16,7 @@ fn stored_settings() -> impl Strategy<Value = StoredSettings> {
     ));
     let display = proptest::option::of((100..=500_000, 100..=300_000, 100..=150_000));
     let steps = proptest::array::uniform13(-4000..=4000);
-    let all = (
-        steps,
-        proptest::array::uniform5(correction),
-        tile,
-        flux_sensor,
-        display,
-    );
+    let all = (steps, proptest::array::uniform5(correction), tile, flux_sensor, display);
     all.prop_map(|(steps, corrections, tile, flux_sensor, display)| {
         let scaled = |units: i32, per: f64| f64::from(units) / per;
         StoredSettings {
@@ -53,16 +37,13 @@ fn stored_settings() -> impl Strategy<Value = StoredSettings> {
                 lag_ms: scaled(lag, 1e3),
                 resistance_mm2k_w: scaled(resistance, 1e3),
             }),
-            display: display.map_or(
-                DisplaySurface::NOMINAL,
-                |(conductivity, roughness, slope)| {
-                    DisplaySurface::from_array_rounded([
-                        scaled(conductivity, 1e3),
-                        scaled(roughness, 1e4),
-                        scaled(slope, 1e5),
-                    ])
-                },
-            ),
+            display: display.map_or(DisplaySurface::NOMINAL, |(conductivity, roughness, slope)| {
+                DisplaySurface::from_array_rounded([
+                    scaled(conductivity, 1e3),
+                    scaled(roughness, 1e4),
+                    scaled(slope, 1e5),
+                ])
+            }),
         }
     })
 }
@@ -137,18 +118,10 @@ fn the_record_has_the_documented_layout() {
     assert_eq!(bytes.len(), 140);
     assert_eq!(bytes[..4], [1, 0, 1, 1]);
     // 28 zeros, then the nominal tile in millionths.
-    let tile = [2_957_000, 58_500, 103_000, 100_000, 16_000]
-        .map(i32::to_le_bytes)
-        .concat();
-    assert_eq!(
-        (&bytes[4..116], &bytes[116..136]),
-        (&[0; 112][..], &tile[..])
-    );
+    let tile = [2_957_000, 58_500, 103_000, 100_000, 16_000].map(i32::to_le_bytes).concat();
+    assert_eq!((&bytes[4..116], &bytes[116..136]), (&[0; 112][..], &tile[..]));
     assert_eq!(with_checksum(&bytes[..136]), bytes[..]);
-    assert_eq!(
-        encode_settings_record::<1>(None)[..],
-        with_checksum(&[1, 0, 0, 0])[..]
-    );
+    assert_eq!(encode_settings_record::<1>(None)[..], with_checksum(&[1, 0, 0, 0])[..]);
     for version in [1, 2] {
         let defaults = with_checksum(&[version, 0, 0, 0]);
         assert_eq!(decode_settings_record::<1>(&defaults), Ok(None));
@@ -158,22 +131,12 @@ fn the_record_has_the_documented_layout() {
 #[test]
 fn the_record_of_a_device_with_a_heat_flux_sensor_has_the_documented_layout() {
     let without = StoredSettings::from_settings(&Settings::default());
-    let with = StoredSettings {
-        flux_sensor: Some(FluxSensor::DESIGNED),
-        ..without
-    };
+    let with = StoredSettings { flux_sensor: Some(FluxSensor::DESIGNED), ..without };
     let tile = [2_957_000, 58_500, 103_000, 100_000, 16_000].map(i32::to_le_bytes);
     let finger = [&[0; 112][..], &tile.concat()].concat();
     let sensor = [119_200, 2_048_000, 5000, 30_000].map(i32::to_le_bytes);
-    let content = [
-        &[2, 0, 1, 2],
-        &finger[..],
-        &sensor.concat(),
-        &[0; 12],
-        &finger,
-        &[0; 28],
-    ]
-    .concat();
+    let content =
+        [&[2, 0, 1, 2], &finger[..], &sensor.concat(), &[0; 12], &finger, &[0; 28]].concat();
     let bytes = encode_settings_record(Some(&[with, without].into()));
     assert_eq!(bytes[..], with_checksum(&content)[..]);
     assert_eq!(bytes.len(), 4 + 2 * 160 + 4);
@@ -197,14 +160,9 @@ fn the_record_of_a_display_with_another_surface_has_the_documented_layout() {
     };
     let tile = [2_957_000, 58_500, 103_000, 100_000, 16_000].map(i32::to_le_bytes);
     let surface = [1200, 4500, 6100].map(i32::to_le_bytes);
-    let content = [
-        &[2, 0, 1, 1, 0, 0, 0, 0][..],
-        &[0; 108],
-        &tile.concat(),
-        &[0; 16],
-        &surface.concat(),
-    ]
-    .concat();
+    let content =
+        [&[2, 0, 1, 1, 0, 0, 0, 0][..], &[0; 108], &tile.concat(), &[0; 16], &surface.concat()]
+            .concat();
     let bytes = encode_settings_record(Some(&[stored].into()));
     assert_eq!(bytes[..], with_checksum(&content)[..]);
     assert_eq!(decode_settings_record(&bytes), Ok(Some([stored].into())));
@@ -213,10 +171,7 @@ fn the_record_of_a_display_with_another_surface_has_the_documented_layout() {
 #[test]
 fn the_nominal_surface_is_a_rounded_one_within_its_ranges() {
     let nominal = DisplaySurface::NOMINAL;
-    assert_eq!(
-        DisplaySurface::from_array_rounded(nominal.to_array()),
-        nominal
-    );
+    assert_eq!(DisplaySurface::from_array_rounded(nominal.to_array()), nominal);
     assert_eq!(nominal.first_value_out_of_range(), None);
 }
 
@@ -247,10 +202,7 @@ fn the_record_of_a_device_with_persons_has_the_documented_layout() {
     assert_eq!(decode_settings_record::<1>(&bytes), Ok(Some(stored)));
     // The same without persons, as it is stored for a finger with a sensor.
     let bytes = with_checksum(&content[..4 + 160]);
-    assert_eq!(
-        decode_settings_record::<1>(&bytes),
-        Ok(Some([finger].into()))
-    );
+    assert_eq!(decode_settings_record::<1>(&bytes), Ok(Some([finger].into())));
 
     let changed = |at: usize, value: u8| {
         let mut content = content.clone();
@@ -267,15 +219,9 @@ fn the_record_of_a_device_with_persons_has_the_documented_layout() {
     for (at, value) in [(165 + 29, b'b'), (165 + 30, 0), (165 + 28, 0)] {
         let error = changed(at, value);
         assert_eq!(error, RecordError::PersonCode(1));
-        assert_eq!(
-            error.to_string(),
-            "stored person 1 has no code of 1 to 8 of A-Z, 0-9"
-        );
+        assert_eq!(error.to_string(), "stored person 1 has no code of 1 to 8 of A-Z, 0-9");
     }
-    assert_eq!(
-        changed(164, 17).to_string(),
-        "stored settings are of 17 persons; 1 to 16"
-    );
+    assert_eq!(changed(164, 17).to_string(), "stored settings are of 17 persons; 1 to 16");
     // Version 1 and factory defaults have none.
     for content in [
         [&[1, 0, 1, 1], &without[4..136], &content[164..]].concat(),
@@ -296,33 +242,18 @@ fn the_longest_record_fits_twice_into_a_sector() {
     let mut stored = StoredDevice::from([finger; FINGERS_MAX]);
     let code = |number: usize| PersonCode::new(&std::format!("P{number}")).expect("a code");
     for number in 0..16 {
-        assert!(stored.persons.insert(Person {
-            code: code(number),
-            finger: [1; 20]
-        }));
+        assert!(stored.persons.insert(Person { code: code(number), finger: [1; 20] }));
     }
     // One more has no room, but may replace another one.
-    assert!(!stored.persons.insert(Person {
-        code: code(16),
-        finger: [2; 20]
-    }));
-    assert!(stored.persons.insert(Person {
-        code: code(15),
-        finger: [2; 20]
-    }));
+    assert!(!stored.persons.insert(Person { code: code(16), finger: [2; 20] }));
+    assert!(stored.persons.insert(Person { code: code(15), finger: [2; 20] }));
     let length = encode_settings_record(Some(&stored)).len();
-    assert!(
-        (RECORD_MAX_BYTES - 3..=RECORD_MAX_BYTES).contains(&length),
-        "{length}"
-    );
+    assert!((RECORD_MAX_BYTES - 3..=RECORD_MAX_BYTES).contains(&length), "{length}");
     // A third of 16 KiB, less the seal.
     const { assert!(2 * RECORD_MAX_BYTES < 16 * 1024 / 3 - 8 - 100) };
     assert!(stored.persons.remove(code(3)) && !stored.persons.remove(code(3)));
     assert_eq!(stored.persons.get(code(3)), None);
-    assert_eq!(
-        stored.persons.get(code(15)).map(|person| person.finger),
-        Some([2; 20])
-    );
+    assert_eq!(stored.persons.get(code(15)).map(|person| person.finger), Some([2; 20]));
 }
 
 #[test]
@@ -331,16 +262,7 @@ fn codes_are_one_to_eight_capitals_and_digits() {
         let code = PersonCode::new(word).expect("a code");
         assert_eq!(code.to_string(), word);
     }
-    for word in [
-        "",
-        "ABCDEFGHI",
-        "p07",
-        "P 7",
-        "P-7",
-        "\0",
-        "A\0B",
-        "P\u{e9}",
-    ] {
+    for word in ["", "ABCDEFGHI", "p07", "P 7", "P-7", "\0", "A\0B", "P\u{e9}"] {
         assert_eq!(PersonCode::new(word), None, "{word:?}");
     }
 }
@@ -356,18 +278,10 @@ fn each_invalid_record_has_its_error_message() {
     let changed = |at: usize, value: &[u8]| {
         let mut content = content.to_vec();
         content[at..at + value.len()].copy_from_slice(value);
-        decode_settings_record::<1>(&with_checksum(&content))
-            .expect_err("changed")
-            .to_string()
+        decode_settings_record::<1>(&with_checksum(&content)).expect_err("changed").to_string()
     };
-    assert_eq!(
-        changed(0, &[3]),
-        "stored settings have the unknown version 3; known: 1 2"
-    );
-    assert_eq!(
-        changed(2, &[9]),
-        "stored settings have the unknown kind 9; known: 0 1"
-    );
+    assert_eq!(changed(0, &[3]), "stored settings have the unknown version 3; known: 1 2");
+    assert_eq!(changed(2, &[9]), "stored settings have the unknown kind 9; known: 0 1");
     assert_eq!(changed(3, &[5]), "stored settings are those of 5 fingers");
     // The first step, counts; the third value of the first correction, 1/K; the tile's gain, K/s/A.
     assert_eq!(
@@ -400,14 +314,8 @@ fn each_invalid_record_has_its_error_message() {
         decode_settings_record::<1>(&with_checksum(&content[..100])),
         Err(RecordError::Length(104))
     );
-    assert_eq!(
-        decode_settings_record::<1>(&[]),
-        Err(RecordError::Length(0))
-    );
-    assert_eq!(
-        decode_settings_record::<5>(&good),
-        Err(RecordError::Fingers(1))
-    );
+    assert_eq!(decode_settings_record::<1>(&[]), Err(RecordError::Length(0)));
+    assert_eq!(decode_settings_record::<5>(&good), Err(RecordError::Fingers(1)));
 }
 
 #[test]

@@ -47,16 +47,10 @@ fn a_save_is_given_up_after_two_resets() {
     }
     let operations = device.0.flash().operations();
     device.run(START);
-    assert_eq!(
-        device.received(),
-        ["err not stored: interrupted by a reset, twice"]
-    );
+    assert_eq!(device.received(), ["err not stored: interrupted by a reset, twice"]);
     assert_eq!(device.0.flash().operations(), operations);
     let found = device.settings();
-    assert!(
-        found == lines(numbered(1).as_ref()) || found == new,
-        "{found:?}"
-    );
+    assert!(found == lines(numbered(1).as_ref()) || found == new, "{found:?}");
     // No save is pending any more.
     device.0.pull_reset_pin().expect("starts anew");
     device.run(START);
@@ -68,10 +62,7 @@ fn a_save_is_given_up_after_two_resets() {
 #[test]
 fn settings_are_saved_despite_a_pending_flash_error_flag() {
     let (mut device, new) = about_to_save(&after(2));
-    device
-        .0
-        .stray_store(0x0800_4000, 0)
-        .expect("refused by the flash, with a flag");
+    device.0.stray_store(0x0800_4000, 0).expect("refused by the flash, with a flag");
     device.run(START);
     assert_eq!(device.received(), ["ok"]);
     assert_eq!(device.settings(), new);

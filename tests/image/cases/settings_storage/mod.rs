@@ -15,10 +15,8 @@ use thermal_sim::processor::{ChipState, ResetCause};
 
 /// The answers to `settings 1` to `settings 8` of a device with these settings.
 pub fn lines(kept: Option<&StoredDevice<1>>) -> Vec<String> {
-    let mut handler: CommandHandler<1> = kept.map_or_else(
-        || CommandHandler::new(Default::default()),
-        CommandHandler::from_stored,
-    );
+    let mut handler: CommandHandler<1> =
+        kept.map_or_else(|| CommandHandler::new(Default::default()), CommandHandler::from_stored);
     (1..=9)
         .map(|line| {
             let answer = handler.answer(&format!("settings {line}"), |_, _| {
@@ -35,9 +33,7 @@ pub fn firmware() -> Firmware {
 
 /// The settings' sectors after a number of saves.
 pub fn after(saves: u32) -> FlashCells {
-    (0..saves).fold(erased(), |cells, number| {
-        saved::<1>(&cells, numbered(number).as_ref(), None)
-    })
+    (0..saves).fold(erased(), |cells, number| saved::<1>(&cells, numbered(number).as_ref(), None))
 }
 
 #[test]
@@ -51,19 +47,11 @@ fn saved_settings_survive_a_power_cycle_and_can_be_forgotten() {
     }
     assert_eq!(device.ask("save", START), ["ok"], "answered after the save");
     let stored = device.cells();
-    assert_eq!(
-        stored.bytes(),
-        saved::<1>(&after(0), kept.as_ref(), None).bytes(),
-        "as natively"
-    );
+    assert_eq!(stored.bytes(), saved::<1>(&after(0), kept.as_ref(), None).bytes(), "as natively");
     assert_eq!(device.settings(), lines(kept.as_ref()));
 
     let mut device = Bare::new(&firmware, &stored);
-    assert_eq!(
-        device.settings(),
-        lines(kept.as_ref()),
-        "after a power cycle"
-    );
+    assert_eq!(device.settings(), lines(kept.as_ref()), "after a power cycle");
     assert_eq!(device.ask("forget", START), ["ok"]);
     assert_eq!(device.settings(), lines(None));
     let mut device = Bare::new(&firmware, &device.cells());
@@ -74,9 +62,8 @@ fn saved_settings_survive_a_power_cycle_and_can_be_forgotten() {
 fn corrupt_settings_trip_the_device_until_others_are_saved() {
     let mut cells = after(1);
     // A record with the version of a future firmware and valid checksums.
-    let record = encode_settings_record(Some(
-        &[StoredSettings::from_settings(&Default::default())].into(),
-    ));
+    let record =
+        encode_settings_record(Some(&[StoredSettings::from_settings(&Default::default())].into()));
     assert!(record.len() < RECORD_MAX_BYTES);
     let mut content = record[..record.len() - 4].to_vec();
     content[0] = 3;
@@ -86,10 +73,7 @@ fn corrupt_settings_trip_the_device_until_others_are_saved() {
 
     let mut device = Bare::new(&firmware(), &cells);
     let state = device.answer("state");
-    assert!(
-        state.starts_with("ok state=tripped fault=settings-corrupt "),
-        "{state}"
-    );
+    assert!(state.starts_with("ok state=tripped fault=settings-corrupt "), "{state}");
     assert_eq!(device.settings(), lines(None));
     assert_eq!(device.ask("save", START), ["ok"]);
     let state = device.answer("state");
@@ -141,10 +125,7 @@ fn stored_records_delay_a_start_by_less_than_100_ms_and_a_save_takes_less_than_a
 #[test]
 fn settings_are_saved_with_the_slowest_flash() {
     let firmware = firmware();
-    let slow = ChipState {
-        slow_flash: true,
-        ..ChipState::default()
-    };
+    let slow = ChipState { slow_flash: true, ..ChipState::default() };
     for (saves, with_erase) in [(1, false), (37, true)] {
         let mut device = Bare::with_chip(&firmware, &after(saves), &slow);
         device.run(START);
@@ -153,9 +134,7 @@ fn settings_are_saved_with_the_slowest_flash() {
             assert_eq!(device.answer(line.trim_start_matches("ok ")), "ok");
         }
         assert_eq!(device.ask("save", 2 * START), ["ok"]);
-        let resets: Vec<_> = (device.0.resets().iter())
-            .map(|reset| reset.cause)
-            .collect();
+        let resets: Vec<_> = (device.0.resets().iter()).map(|reset| reset.cause).collect();
         assert_eq!(resets, [ResetCause::PowerOn, ResetCause::Software]);
         let took_ms = start_ms(device.0.wiring().sent_at - device.0.resets()[1].at);
         assert_eq!(took_ms > 500.0, with_erase, "{took_ms} ms");
@@ -179,23 +158,13 @@ fn count_after_power_cuts(
         for line in &new {
             assert_eq!(device.answer(line.trim_start_matches("ok ")), "ok");
         }
-        device
-            .0
-            .flash_mut()
-            .cut_power_at(*nth, nth ^ u64::from(number));
+        device.0.flash_mut().cut_power_at(*nth, nth ^ u64::from(number));
         device.ask("save", START + START);
         let causes: Vec<_> = device.0.resets().iter().map(|reset| reset.cause).collect();
-        let expected = [
-            ResetCause::PowerOn,
-            ResetCause::Software,
-            ResetCause::PowerOn,
-        ];
+        let expected = [ResetCause::PowerOn, ResetCause::Software, ResetCause::PowerOn];
         assert_eq!(causes, expected, "save {number}, cut in operation {nth}");
         let found = device.settings();
-        assert!(
-            found == old || found == new,
-            "save {number}, cut in operation {nth}: {found:?}"
-        );
+        assert!(found == old || found == new, "save {number}, cut in operation {nth}: {found:?}");
         found_old += u32::from(found == old);
         found_new += u32::from(found == new);
     }
@@ -213,9 +182,8 @@ fn a_power_cut_in_any_flash_operation_leaves_the_old_or_the_new_settings() {
         let new_page = changes_page(&cells, &next);
         if new_page || number == 3 {
             // The operations that change the page come first.
-            let chosen: Vec<_> = (1..=operations)
-                .filter(|nth| nth % 4 == 0 || new_page && *nth < 8)
-                .collect();
+            let chosen: Vec<_> =
+                (1..=operations).filter(|nth| nth % 4 == 0 || new_page && *nth < 8).collect();
             let (old, new) = count_after_power_cuts(&firmware, &cells, number, &chosen);
             println!(
                 "save {number} of {operations} operations: {old} times the old, {new} times the new settings"
@@ -226,8 +194,5 @@ fn a_power_cut_in_any_flash_operation_leaves_the_old_or_the_new_settings() {
         }
         cells = next;
     }
-    assert!(
-        cuts >= 40 && page_changes >= 3,
-        "{cuts} cuts, {page_changes} page changes"
-    );
+    assert!(cuts >= 40 && page_changes >= 3, "{cuts} cuts, {page_changes} page changes");
 }

@@ -34,17 +34,11 @@ pub struct Cut {
 
 impl Cut {
     /// The discretization of a simulated run.
-    pub const RUN: Self = Self {
-        grading: Grading::STANDARD,
-        step_s: STEP_S,
-    };
+    pub const RUN: Self = Self { grading: Grading::STANDARD, step_s: STEP_S };
 
     /// Number of cells of a half-space.
     pub fn cells(&self) -> usize {
-        let skin = Layer {
-            thickness_m: f64::INFINITY,
-            medium: Medium::without_blood(&SKIN),
-        };
+        let skin = Layer { thickness_m: f64::INFINITY, medium: Medium::without_blood(&SKIN) };
         Slab::new(&[skin], BackBoundary::Insulated, CONTACT_S, &self.grading).cells()
     }
 
@@ -52,13 +46,7 @@ impl Cut {
     fn landing(&self, object: &Material, touch: SkinContact) -> ReferenceSolution {
         let (skin_c, object_c) = START_C;
         let object = ObjectConfig::half_space(*object, object_c);
-        ReferenceSolution::on_mesh(
-            skin_c,
-            &object,
-            touch,
-            CONTACT_S,
-            (&self.grading, self.step_s),
-        )
+        ReferenceSolution::on_mesh(skin_c, &object, touch, CONTACT_S, (&self.grading, self.step_s))
     }
 
     /// A finger in contact, past its first steps.

@@ -118,15 +118,9 @@ impl Cost {
 pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures> {
     let cuts = cuts();
     progress("errors of meshes and steps");
-    let errors = cuts
-        .iter()
-        .map(Cut::errors)
-        .collect::<anyhow::Result<Vec<_>>>()?;
+    let errors = cuts.iter().map(Cut::errors).collect::<anyhow::Result<Vec<_>>>()?;
     progress("fingers into contact");
-    let mut banks = FINGERS
-        .map(bank)
-        .into_iter()
-        .collect::<anyhow::Result<Vec<_>>>()?;
+    let mut banks = FINGERS.map(bank).into_iter().collect::<anyhow::Result<Vec<_>>>()?;
     let mut parts = Parts::new(WORK)?;
     let bodies = cuts.iter().map(|cut| cut.in_contact(OBJECT, FORCE_N));
     let mut bodies = bodies.collect::<anyhow::Result<Vec<_>>>()?;
@@ -151,23 +145,14 @@ pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures
     let times = side_by_side(&mut candidates, 0, WORK, rounds);
     drop(candidates);
 
-    banks
-        .iter_mut()
-        .flatten()
-        .try_for_each(Finger::check_contact)?;
+    banks.iter_mut().flatten().try_for_each(Finger::check_contact)?;
     parts.check()?;
     let fingers: Vec<_> = FINGERS
         .iter()
         .zip(&times)
-        .map(|(&fingers, &time)| FingersFigures {
-            fingers,
-            cost: Cost::new(time, 1.0),
-        })
+        .map(|(&fingers, &time)| FingersFigures { fingers, cost: Cost::new(time, 1.0) })
         .collect();
-    let part = |(name, time): (_, &Time)| PartFigures {
-        name,
-        cost: Cost::new(*time, 1.0),
-    };
+    let part = |(name, time): (_, &Time)| PartFigures { name, cost: Cost::new(*time, 1.0) };
     let of_cuts: Vec<_> = (cuts.iter().zip(errors))
         .zip(&times[bodies_at..])
         .map(|((cut, errors), time)| CutFigures {
@@ -180,27 +165,18 @@ pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures
         })
         .collect();
     let (meshes, steps) = of_cuts.split_at(GROWTHS.len());
-    let by_cells: Vec<_> = meshes
-        .iter()
-        .map(|m| (m.cells as f64, m.cost.ratio))
-        .collect();
+    let by_cells: Vec<_> = meshes.iter().map(|m| (m.cells as f64, m.cost.ratio)).collect();
     let line = fit::line(&by_cells);
     let one_ns = times[0].ns;
-    let all: Vec<_> = fingers
-        .iter()
-        .map(|f| (f.fingers as f64, f.fingers as f64 * f.cost.ratio))
-        .collect();
+    let all: Vec<_> =
+        fingers.iter().map(|f| (f.fingers as f64, f.fingers as f64 * f.cost.ratio)).collect();
     Ok(Figures {
         host: host(),
         rounds,
         cells: Cut::RUN.cells(),
         fingers_power: fit::power(&all),
         fingers,
-        parts: names
-            .into_iter()
-            .zip(&times[parts_at..])
-            .map(part)
-            .collect(),
+        parts: names.into_iter().zip(&times[parts_at..]).map(part).collect(),
         meshes: meshes.to_vec(),
         cell_ns: line.slope * one_ns,
         no_cells_ns: line.start * one_ns,
@@ -211,17 +187,9 @@ pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures
 
 /// Figures over meshes, then over time steps.
 fn cuts() -> Vec<Cut> {
-    let meshes = GROWTHS.map(|growth| Cut {
-        grading: Grading {
-            growth,
-            ..Grading::STANDARD
-        },
-        ..Cut::RUN
-    });
-    let steps = STEPS_MS.map(|step_ms| Cut {
-        step_s: step_ms * 1e-3,
-        ..Cut::RUN
-    });
+    let meshes =
+        GROWTHS.map(|growth| Cut { grading: Grading { growth, ..Grading::STANDARD }, ..Cut::RUN });
+    let steps = STEPS_MS.map(|step_ms| Cut { step_s: step_ms * 1e-3, ..Cut::RUN });
     meshes.into_iter().chain(steps).collect()
 }
 

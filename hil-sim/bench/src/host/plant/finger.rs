@@ -69,11 +69,7 @@ impl Finger {
              [object]\nmaterial = \"{OBJECT}\"\n"
         );
         let scene = Scene::parse(&text, Path::new("the benchmark's scene"))?;
-        Ok(Self {
-            engine: NativeEngine::new(World::new(&scene)?),
-            received: Vec::new(),
-            ms: 0,
-        })
+        Ok(Self { engine: NativeEngine::new(World::new(&scene)?), received: Vec::new(), ms: 0 })
     }
 
     /// Sends the lines of a millisecond.
@@ -94,9 +90,7 @@ impl Finger {
             self.engine.send(b"\n");
         }
         self.ms += 1;
-        self.engine
-            .world()
-            .set_force_and_faults(force_n, std::iter::empty());
+        self.engine.world().set_force_and_faults(force_n, std::iter::empty());
         let legs = self.engine.legs();
         self.engine.world().step(legs);
         let Ok(()) = self.engine.run_half_ms();

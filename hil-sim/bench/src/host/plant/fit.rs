@@ -20,14 +20,8 @@ pub fn line(points: &[(f64, f64)]) -> Line {
     let across: f64 = points.iter().map(|p| (p.0 - x).powi(2)).sum();
     let slope = along / across;
     let start = y - slope * x;
-    let off = points
-        .iter()
-        .map(|p| (p.1 / (start + slope * p.0) - 1.0).abs());
-    Line {
-        start,
-        slope,
-        worst_off: off.fold(0.0, f64::max),
-    }
+    let off = points.iter().map(|p| (p.1 / (start + slope * p.0) - 1.0).abs());
+    Line { start, slope, worst_off: off.fold(0.0, f64::max) }
 }
 
 /// Exponent of the power law through positive points.
@@ -49,10 +43,7 @@ mod tests {
         let bent = line(&[(0.0, 0.0), (1.0, 0.0), (2.0, 3.0)]);
         assert!((bent.start + 0.5).abs() < 1e-12 && (bent.slope - 1.5).abs() < 1e-12);
         assert!((bent.worst_off - 1.0).abs() < 1e-12);
-        let cube: Vec<_> = [1.0f64, 2.0, 5.0]
-            .iter()
-            .map(|x| (*x, 7.0 * x.powi(3)))
-            .collect();
+        let cube: Vec<_> = [1.0f64, 2.0, 5.0].iter().map(|x| (*x, 7.0 * x.powi(3))).collect();
         assert!((power(&cube) - 3.0).abs() < 1e-12);
     }
 }

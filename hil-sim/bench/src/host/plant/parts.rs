@@ -38,14 +38,7 @@ impl Parts {
 
     /// The candidates.
     pub fn candidates(&mut self) -> Vec<(&'static str, Candidate<'_>)> {
-        let Self {
-            ticks,
-            still,
-            replay,
-            moving,
-            streaming,
-            heard,
-        } = self;
+        let Self { ticks, still, replay, moving, streaming, heard } = self;
         let ticks = *ticks;
         let legs = still.legs();
         let mut plant = still.plant();

@@ -75,18 +75,8 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
         let (left, right) = lower.split_horizontally(SIZE.0 / 2);
         let growth = |cut: &CutFigures| format!("{:.2}", cut.growth);
         let step = |cut: &CutFigures| format!("{} ms", cut.step_ms);
-        errors(
-            &left,
-            "The bodies on other meshes (growth of the cells)",
-            &figures.meshes,
-            growth,
-        )?;
-        errors(
-            &right,
-            "The bodies in other steps (step)",
-            &figures.steps,
-            step,
-        )?;
+        errors(&left, "The bodies on other meshes (growth of the cells)", &figures.meshes, growth)?;
+        errors(&right, "The bodies in other steps (step)", &figures.steps, step)?;
         root.present()?;
     }
     Ok(svg)
@@ -96,9 +86,7 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
 fn fingers(area: &Area<'_>, figures: &Figures) -> anyhow::Result<()> {
     let points = |of: fn(&Cost) -> f64| {
         let fingers = figures.fingers.iter();
-        fingers
-            .map(|f| (f.fingers as f64, of(&f.cost) * 1e-3))
-            .collect()
+        fingers.map(|f| (f.fingers as f64, of(&f.cost) * 1e-3)).collect()
     };
     let series = [
         Series {
@@ -127,10 +115,7 @@ fn fingers(area: &Area<'_>, figures: &Figures) -> anyhow::Result<()> {
         )
         .x_label_area_size(46)
         .y_label_area_size(70)
-        .build_cartesian_2d(
-            FINGERS.log_scale().with_key_points(numbers),
-            0.0..1.25 * top_us,
-        )?;
+        .build_cartesian_2d(FINGERS.log_scale().with_key_points(numbers), 0.0..1.25 * top_us)?;
     chart
         .configure_mesh()
         .x_desc("fingers on the core")
@@ -155,11 +140,8 @@ fn errors(
     cuts: &[CutFigures],
     name: impl Fn(&CutFigures) -> String,
 ) -> anyhow::Result<()> {
-    let points = |of: fn(&CutFigures) -> f64| {
-        cuts.iter()
-            .map(|cut| (cut.cost.ns * 1e-3, of(cut)))
-            .collect()
-    };
+    let points =
+        |of: fn(&CutFigures) -> f64| cuts.iter().map(|cut| (cut.cost.ns * 1e-3, of(cut))).collect();
     let series = [
         Series {
             name: "flux / (1e-4 dT/R)",
@@ -187,13 +169,7 @@ fn errors(
         },
     ];
     let x = range(series[0].points.iter().map(|p| p.0));
-    let y = range(
-        series
-            .iter()
-            .flat_map(|s| &s.points)
-            .map(|p| p.1)
-            .chain([1.0]),
-    );
+    let y = range(series.iter().flat_map(|s| &s.points).map(|p| p.1).chain([1.0]));
     let x = x.start / 1.4..x.end * 1.4;
     let mut chart = ChartBuilder::on(area)
         .margin(14)
@@ -217,16 +193,10 @@ fn errors(
         .draw()?;
     guide(&mut chart, (x.start, x.end), 1.0, "wanted".into())?;
     rows(&mut chart, &series)?;
-    let style = ("sans-serif", FONT)
-        .into_font()
-        .color(&BLACK)
-        .pos(Pos::new(HPos::Center, VPos::Bottom));
+    let style =
+        ("sans-serif", FONT).into_font().color(&BLACK).pos(Pos::new(HPos::Center, VPos::Bottom));
     chart.draw_series(cuts.iter().map(|cut| {
-        let Errors {
-            surface_mk,
-            inside_mk,
-            flux,
-        } = cut.errors.counted;
+        let Errors { surface_mk, inside_mk, flux } = cut.errors.counted;
         let top = [surface_mk, inside_mk, flux * 1e4]
             .into_iter()
             .fold(cut.errors.before.surface_mk, f64::max);
@@ -237,9 +207,7 @@ fn errors(
 
 /// Smallest and largest value.
 fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
-    values.fold(f64::INFINITY..0.0, |all, v| {
-        all.start.min(v)..all.end.max(v)
-    })
+    values.fold(f64::INFINITY..0.0, |all, v| all.start.min(v)..all.end.max(v))
 }
 
 /// 1, 2 and 5 times powers of ten in a range.
@@ -262,14 +230,9 @@ where
     X: Ranged<ValueType = f64>,
     Y: Ranged<ValueType = f64>,
 {
-    chart.draw_series([PathElement::new(
-        [(from, level), (to, level)],
-        GUIDE.stroke_width(2),
-    )])?;
-    let style = ("sans-serif", FONT)
-        .into_font()
-        .color(&GUIDE)
-        .pos(Pos::new(HPos::Right, VPos::Bottom));
+    chart.draw_series([PathElement::new([(from, level), (to, level)], GUIDE.stroke_width(2))])?;
+    let style =
+        ("sans-serif", FONT).into_font().color(&GUIDE).pos(Pos::new(HPos::Right, VPos::Bottom));
     chart.draw_series([EmptyElement::at((to, level)) + Text::new(name, (-8, -5), style)])?;
     Ok(())
 }
@@ -282,10 +245,7 @@ where
 {
     for one in series {
         let (style, radius) = (one.dots.style(one.color), one.dots.radius());
-        chart.draw_series([PathElement::new(
-            one.points.clone(),
-            one.color.stroke_width(2),
-        )])?;
+        chart.draw_series([PathElement::new(one.points.clone(), one.color.stroke_width(2))])?;
         chart
             .draw_series(one.points.iter().map(|p| Circle::new(*p, radius, style)))?
             .label(one.name)

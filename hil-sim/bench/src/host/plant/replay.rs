@@ -30,10 +30,7 @@ impl Replay {
         let mut samples = |ms: u64| {
             finger.send_lines_of(ms);
             finger.step(force_n(ms));
-            let inputs = DigitalInputs {
-                bridge_fault: finger.fault(),
-                ..DigitalInputs::default()
-            };
+            let inputs = DigitalInputs { bridge_fault: finger.fault(), ..DigitalInputs::default() };
             Samples::from_scans(&scans(&mut finger.plant()), inputs, false)
         };
         for ms in 0..READY_MS {
@@ -47,10 +44,7 @@ impl Replay {
             device.step_finger(FingerIndex::FIRST, &samples(ms));
         }
         let samples = (READY_MS..).take(ticks).map(samples).collect();
-        let replay = Self {
-            start: device,
-            samples,
-        };
+        let replay = Self { start: device, samples };
         match replay.run() {
             Drive::On(_) => Ok(replay),
             Drive::Off => bail!("the recorded device has switched its bridge off"),

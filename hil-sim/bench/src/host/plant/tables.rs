@@ -10,30 +10,12 @@ const SVG: &str = "plant-benchmark.svg";
 /// All tables with their explanations.
 pub fn tables(figures: &Figures) -> String {
     let fingers = grid(
-        &[
-            "fingers",
-            "us a finger and ms",
-            "(fastest)",
-            "x one finger",
-            "x real time",
-        ],
-        figures
-            .fingers
-            .iter()
-            .map(|f| row(f.fingers.to_string(), &f.cost)),
+        &["fingers", "us a finger and ms", "(fastest)", "x one finger", "x real time"],
+        figures.fingers.iter().map(|f| row(f.fingers.to_string(), &f.cost)),
     );
     let parts = grid(
-        &[
-            "of one finger",
-            "us a ms",
-            "(fastest)",
-            "x one finger",
-            "x real time",
-        ],
-        figures
-            .parts
-            .iter()
-            .map(|part| row(part.name.into(), &part.cost)),
+        &["of one finger", "us a ms", "(fastest)", "x one finger", "x real time"],
+        figures.parts.iter().map(|part| row(part.name.into(), &part.cost)),
     );
     let heads = [
         "growth",

@@ -41,19 +41,13 @@ impl BitFlip {
         let (from_s, to_s) = span(place);
         let ms = |t_s: f64| (t_s * 1e3).round() as u32;
         let whole_ms = draw.random_range(ms(from_s)..ms(to_s));
-        let us = if draw.random() {
-            draw.random_range(TICK_US)
-        } else {
-            draw.random_range(0..1000)
-        };
+        let us =
+            if draw.random() { draw.random_range(TICK_US) } else { draw.random_range(0..1000) };
         Self {
             number,
             region,
             fault,
-            point: InjectionPoint {
-                scene: place,
-                t_s: f64::from(whole_ms * 1000 + us) / 1e6,
-            },
+            point: InjectionPoint { scene: place, t_s: f64::from(whole_ms * 1000 + us) / 1e6 },
         }
     }
 
@@ -112,10 +106,7 @@ mod tests {
                     }
                 }
                 (FlipRegion::Float, MachineFault::CoreBit { register, .. }) => {
-                    assert!(matches!(
-                        register,
-                        CoreRegister::S(0..32) | CoreRegister::Fpscr
-                    ));
+                    assert!(matches!(register, CoreRegister::S(0..32) | CoreRegister::Fpscr));
                 }
                 (FlipRegion::Device, MachineFault::RegisterBit { .. }) => {}
                 other => panic!("{other:?}"),
@@ -123,10 +114,7 @@ mod tests {
             if number % 100 == 0 {
                 let scene = Scene::parse(&flip.text(), "flip".as_ref()).expect("a scene");
                 let injection = scene.injections.last().expect("an injection");
-                assert_eq!(
-                    (injection.fault, injection.t_s),
-                    (flip.fault, flip.point.t_s)
-                );
+                assert_eq!((injection.fault, injection.t_s), (flip.fault, flip.point.t_s));
             }
         }
         assert_eq!((scenes.len(), core.len()), (PLACES.len(), 17));

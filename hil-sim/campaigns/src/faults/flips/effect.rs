@@ -50,6 +50,5 @@ impl FlipEffect {
 /// Largest difference of the display temperature from the run without the flip, K.
 pub(super) fn deviation_k(outcome: &Outcome, reference: &Outcome) -> f64 {
     let rows = outcome.trace.rows().iter().zip(reference.trace.rows());
-    rows.map(|(row, reference)| (row.display_c - reference.display_c).abs())
-        .fold(0.0, f64::max)
+    rows.map(|(row, reference)| (row.display_c - reference.display_c).abs()).fold(0.0, f64::max)
 }

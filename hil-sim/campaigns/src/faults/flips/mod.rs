@@ -61,10 +61,7 @@ const SIGNS: &[Symptom] = &[
 
 fn text(place: FaultScene, flip: &[(InjectedFault, f64)]) -> String {
     let (_, to_s) = bit_flip::span(place);
-    let end = InjectionPoint {
-        scene: place,
-        t_s: to_s,
-    };
+    let end = InjectionPoint { scene: place, t_s: to_s };
     fault_run::scene_text(flip, end, WATCHED_S, CONVERTER, &[], &Touch::default())
 }
 
@@ -131,15 +128,9 @@ impl BitFlip {
                 let mut assessment =
                     RunAssessment::new(&fault_case, self.point, &outcome, rows, &figures, &[]);
                 // Any trip cause is correct.
-                assessment
-                    .breaches
-                    .retain(|breach| *breach != Breach::Reason);
+                assessment.breaches.retain(|breach| *breach != Breach::Reason);
                 let class = FlipEffect::of(&assessment, &outcome, &reference.outcome);
-                (
-                    class,
-                    assessment,
-                    Some(effect::deviation_k(&outcome, &reference.outcome)),
-                )
+                (class, assessment, Some(effect::deviation_k(&outcome, &reference.outcome)))
             }
             Err(error) => {
                 let class = match error.downcast_ref() {

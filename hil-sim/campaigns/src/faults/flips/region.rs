@@ -97,20 +97,14 @@ impl FlipRegion {
             },
             Self::Device => {
                 let Register { address, bits } = REGISTERS[draw.random_range(0..REGISTERS.len())];
-                MachineFault::RegisterBit {
-                    address,
-                    bit: one_of(bits, draw),
-                }
+                MachineFault::RegisterBit { address, bit: one_of(bits, draw) }
             }
         }
     }
 }
 
 fn core(register: CoreRegister, draw: &mut impl Rng) -> MachineFault {
-    MachineFault::CoreBit {
-        register,
-        bit: one_of(register.bits(), draw),
-    }
+    MachineFault::CoreBit { register, bit: one_of(register.bits(), draw) }
 }
 
 /// Draws one of the bits of a mask that is not 0.
@@ -137,11 +131,7 @@ impl FlippableMemory {
     /// # Errors
     /// The device has no RAM, or its image does not name its static data, has none, or uses no stack.
     pub fn new(device: &dyn SceneRunner, stack_bytes: u32) -> anyhow::Result<Self> {
-        let RamLayout {
-            ram,
-            statics,
-            stack_top,
-        } = device.ram_layout()?;
+        let RamLayout { ram, statics, stack_top } = device.ram_layout()?;
         let stack = stack_top.saturating_sub(stack_bytes)..stack_top;
         anyhow::ensure!(
             !statics.is_empty() && !stack.is_empty(),
@@ -149,11 +139,7 @@ impl FlippableMemory {
             statics.len(),
             stack.len()
         );
-        Ok(Self {
-            ram,
-            statics,
-            stack,
-        })
+        Ok(Self { ram, statics, stack })
     }
 }
 

@@ -51,23 +51,14 @@ pub fn flip_table(runs: &[FlipResult]) -> String {
         );
     }
     for run in runs {
-        let what = format!(
-            "number {}: {} ({})",
-            run.number,
-            run.flip,
-            run.region.name()
-        );
+        let what = format!("number {}: {} ({})", run.number, run.flip, run.region.name());
         let _ = match (run.class, &run.assessment.ended) {
-            (FlipEffect::Broken, _) => writeln!(
-                text,
-                "{what}: {}",
-                run.assessment.line(run.place, run.t_s, MICROSECONDS)
-            ),
-            (FlipEffect::Ended, Some(ended)) => writeln!(
-                text,
-                "{what}: ended in {} at {:.6} s: {ended}",
-                run.place, run.t_s
-            ),
+            (FlipEffect::Broken, _) => {
+                writeln!(text, "{what}: {}", run.assessment.line(run.place, run.t_s, MICROSECONDS))
+            }
+            (FlipEffect::Ended, Some(ended)) => {
+                writeln!(text, "{what}: ended in {} at {:.6} s: {ended}", run.place, run.t_s)
+            }
             _ => Ok(()),
         };
     }
@@ -77,10 +68,7 @@ pub fn flip_table(runs: &[FlipResult]) -> String {
 fn line(text: &mut String, name: &str, runs: &[FlipResult], is_so: impl Fn(&FlipResult) -> bool) {
     *text += &format!("{name:<24}");
     for region in FlipRegion::ALL {
-        let count = runs
-            .iter()
-            .filter(|run| run.region == region && is_so(run))
-            .count();
+        let count = runs.iter().filter(|run| run.region == region && is_so(run)).count();
         *text += &format!("{count:>9}");
     }
     *text += &format!("{:>9}\n", runs.iter().filter(|run| is_so(run)).count());

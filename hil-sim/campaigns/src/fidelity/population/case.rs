@@ -59,12 +59,7 @@ impl PopulationCase {
             }
             _ => "",
         };
-        let Self {
-            object: BodyObject { material, keys, .. },
-            seed,
-            tables,
-            ..
-        } = self;
+        let Self { object: BodyObject { material, keys, .. }, seed, tables, .. } = self;
         format!(
             "duration_s = 11.0\nskin_c = 34.0\nroom_c = {ROOM_C:?}\nseed = {seed}\n[object]\nmaterial = \
              \"{material}\"\nstart_c = {ROOM_C:?}\n{told}{keys}[device]\n{assumed}{sensor}{tables}[[force]]\nt_s = 1.0\nforce_n = {:?}\n",
@@ -99,11 +94,8 @@ impl PopulationCase {
             max_after_50ms_mk: skin.max_after_50ms.unwrap_or(f64::INFINITY),
             max_after_500ms_mk: late_mk.reduce(f64::max).unwrap_or(f64::INFINITY),
             rms_mk: skin.rms,
-            is_enrolled: (outcome.exchanges().iter()).any(|exchange| {
-                exchange
-                    .line
-                    .is_some_and(|line| line.starts_with("person "))
-            }),
+            is_enrolled: (outcome.exchanges().iter())
+                .any(|exchange| exchange.line.is_some_and(|line| line.starts_with("person "))),
             faults: figures.faults.into_iter().map(|trip| trip.fault).collect(),
         })
     }

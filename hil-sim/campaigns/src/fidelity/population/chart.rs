@@ -50,15 +50,8 @@ pub fn draw(results: &[PopulationResult]) -> anyhow::Result<Option<String>> {
                 .label_style(FONT)
                 .draw()?;
             let drawn = |aim: &&Aim| aim.since == Since::Ms50;
-            for Aim {
-                percent, aim_mk, ..
-            } in population.aims().iter().filter(drawn)
-            {
-                let line = [
-                    (*aim_mk, 0.0),
-                    (*aim_mk, *percent),
-                    (ERRORS_MK.start, *percent),
-                ];
+            for Aim { percent, aim_mk, .. } in population.aims().iter().filter(drawn) {
+                let line = [(*aim_mk, 0.0), (*aim_mk, *percent), (ERRORS_MK.start, *percent)];
                 chart.draw_series(DashedLineSeries::new(line, 6, 4, BOUND.stroke_width(1)))?;
             }
             for (way, color) in population.ways().iter().zip([COLORS[2], COLORS[0]]) {
@@ -68,10 +61,7 @@ pub fn draw(results: &[PopulationResult]) -> anyhow::Result<Option<String>> {
                 errors.sort_by(f64::total_cmp);
                 let share = SHARES.end / errors.len() as f64;
                 let points = errors.iter().enumerate().map(|(i, mk)| {
-                    (
-                        mk.clamp(ERRORS_MK.start, ERRORS_MK.end),
-                        (i + 1) as f64 * share,
-                    )
+                    (mk.clamp(ERRORS_MK.start, ERRORS_MK.end), (i + 1) as f64 * share)
                 });
                 chart
                     .draw_series(LineSeries::new(points, color.stroke_width(2)))?

@@ -34,19 +34,14 @@ pub fn measured_contact(seed: u64) -> anyhow::Result<ContactLaw> {
     for line in &settings_for_scene(&scene)? {
         client.command(line)?;
     }
-    let options = MeasurementOptions {
-        finger: None,
-        takes_zero: false,
-    };
+    let options = MeasurementOptions { finger: None, takes_zero: false };
     let measurement = measure(&mut client, &options, &mut |client, step| {
         let world = client.link().world();
         world.set_force_and_faults(step.target_n(), std::iter::empty());
     })
     .with_context(|| format!("measured contact.draw = {seed}"))?;
     let fit = fit(&measurement.recording);
-    Ok(fit
-        .with_context(|| format!("fitted contact.draw = {seed}"))?
-        .law)
+    Ok(fit.with_context(|| format!("fitted contact.draw = {seed}"))?.law)
 }
 
 /// The finger at the device on which it is measured.
@@ -57,10 +52,7 @@ fn scene(seed: u64) -> anyhow::Result<Scene> {
          start_c = {ROOM_C:?}\n[device]\nflux_sensor = true\n{tables}"
     );
     let mut scene = Scene::parse(&text, Path::new("measured contact law"))?;
-    let mut drawn = Params {
-        flux: Some(FluxParams::NOMINAL),
-        ..Params::nominal()
-    };
+    let mut drawn = Params { flux: Some(FluxParams::NOMINAL), ..Params::nominal() };
     parameters::draw(&mut drawn, seed);
     scene.params.flux = drawn.flux;
     Ok(scene)

@@ -96,11 +96,7 @@ pub struct Aim {
 }
 
 const fn aim(since: Since, percent: f64, aim_mk: f64) -> Aim {
-    Aim {
-        since,
-        percent,
-        aim_mk,
-    }
+    Aim { since, percent, aim_mk }
 }
 
 impl Population {
@@ -290,10 +286,7 @@ const HYPOTHETICAL_NOISE_W_M2: f64 = 22.0;
 
 /// Keys of `[plant]` by which the device of this seed has the hypothetical sensor in place of the designed one.
 fn hypothetical_sensor(seed: u64) -> String {
-    let mut params = Params {
-        flux: Some(FluxParams::NOMINAL),
-        ..Params::nominal()
-    };
+    let mut params = Params { flux: Some(FluxParams::NOMINAL), ..Params::nominal() };
     parameters::draw(&mut params, seed);
     let flux = params.flux.unwrap_or(FluxParams::NOMINAL);
     format!(
@@ -328,9 +321,7 @@ fn device(seed: u64) -> String {
     let (key, same) = SAME_VALUE;
     let drawn = parameters::all(&params).into_iter();
     let lags = drawn.filter(|parameter| parameter.key == key);
-    let lags: String = lags
-        .map(|lag| format!("{same} = {:?}\n", lag.value))
-        .collect();
+    let lags: String = lags.map(|lag| format!("{same} = {:?}\n", lag.value)).collect();
     format!("[plant]\ndraw = {seed}\n{lags}")
 }
 

@@ -29,26 +29,10 @@ type Layers = &'static [(&'static str, f64)];
 const ENDLESS: f64 = f64::INFINITY;
 /// Layered objects: name, layers, and what is behind them.
 const LAYERED: [(&str, Layers, &str); 9] = [
-    (
-        "1 mm copper on foam",
-        &[("copper", 1.0), ("foam", ENDLESS)],
-        "",
-    ),
-    (
-        "0.1 mm copper on foam",
-        &[("copper", 0.1), ("foam", ENDLESS)],
-        "",
-    ),
-    (
-        "1 mm ABS on copper",
-        &[("abs", 1.0), ("copper", ENDLESS)],
-        "",
-    ),
-    (
-        "foam, copper, foam",
-        &[("foam", 1.0), ("copper", 1.0), ("foam", ENDLESS)],
-        "",
-    ),
+    ("1 mm copper on foam", &[("copper", 1.0), ("foam", ENDLESS)], ""),
+    ("0.1 mm copper on foam", &[("copper", 0.1), ("foam", ENDLESS)], ""),
+    ("1 mm ABS on copper", &[("abs", 1.0), ("copper", ENDLESS)], ""),
+    ("foam, copper, foam", &[("foam", 1.0), ("copper", 1.0), ("foam", ENDLESS)], ""),
     (
         "5 x copper, foam",
         &[
@@ -65,26 +49,10 @@ const LAYERED: [(&str, Layers, &str); 9] = [
         ],
         BACKS[0].1,
     ),
-    (
-        "3 mm granite on foam",
-        &[("granite", 3.0), ("foam", ENDLESS)],
-        "",
-    ),
-    (
-        "0.5 mm foam on copper",
-        &[("foam", 0.5), ("copper", ENDLESS)],
-        "",
-    ),
-    (
-        "0.1 mm copper on ABS, film 10",
-        &[("copper", 0.1), ("abs", 2.0)],
-        BACKS[2].1,
-    ),
-    (
-        "0.3 mm ABS on steel, held",
-        &[("abs", 0.3), ("stainless-steel", 2.0)],
-        BACKS[1].1,
-    ),
+    ("3 mm granite on foam", &[("granite", 3.0), ("foam", ENDLESS)], ""),
+    ("0.5 mm foam on copper", &[("foam", 0.5), ("copper", ENDLESS)], ""),
+    ("0.1 mm copper on ABS, film 10", &[("copper", 0.1), ("abs", 2.0)], BACKS[2].1),
+    ("0.3 mm ABS on steel, held", &[("abs", 0.3), ("stainless-steel", 2.0)], BACKS[1].1),
 ];
 
 /// 216 slabs, nine half-spaces and nine layered objects.
@@ -113,11 +81,7 @@ pub fn six_objects() -> [BodyObject; 6] {
 }
 
 fn half_space(material: &'static str) -> BodyObject {
-    BodyObject {
-        name: material.into(),
-        material,
-        keys: String::new(),
-    }
+    BodyObject { name: material.into(), material, keys: String::new() }
 }
 
 fn slab(material: &'static str, thickness_mm: f64, (back, keys): (&str, &str)) -> BodyObject {
@@ -141,12 +105,7 @@ fn layered((name, layers, back): (&str, Layers, &str)) -> BodyObject {
 pub fn layer_keys(layers: &[(&str, f64)]) -> String {
     let mut keys = String::new();
     for (material, thickness_mm) in layers {
-        let Some(Material {
-            surface,
-            density_kg_m3,
-            specific_heat_j_kgk,
-        }) = find(material)
-        else {
+        let Some(Material { surface, density_kg_m3, specific_heat_j_kgk }) = find(material) else {
             continue;
         };
         keys += "[[object.layer]]\n";

@@ -110,9 +110,7 @@ impl PopulationReport {
         image: Option<ImageSample>,
     ) -> Option<Self> {
         let of = |way| -> Vec<&PopulationResult> {
-            (results.iter())
-                .filter(|one| (one.population, one.way) == (population, way))
-                .collect()
+            (results.iter()).filter(|one| (one.population, one.way) == (population, way)).collect()
         };
         let told = of(Way::AsItIs);
         let errors = |since| -> Vec<_> { told.iter().map(|one| one.largest_mk(since)).collect() };
@@ -123,21 +121,10 @@ impl PopulationReport {
             engine,
             cases: told.len(),
             aims: (population.aims().iter())
-                .map(
-                    |&Aim {
-                         since,
-                         percent,
-                         aim_mk,
-                     }| {
-                        let value_mk = percentile(&errors(since), percent)?;
-                        Some(AimedPercentile {
-                            since,
-                            percent,
-                            aim_mk,
-                            value_mk,
-                        })
-                    },
-                )
+                .map(|&Aim { since, percent, aim_mk }| {
+                    let value_mk = percentile(&errors(since), percent)?;
+                    Some(AimedPercentile { since, percent, aim_mk, value_mk })
+                })
                 .collect::<Option<_>>()?,
             image,
             ways: ways.flatten().collect(),
@@ -166,15 +153,7 @@ fn statistics(way: Way, mut own: Vec<&PopulationResult>) -> Option<WayStatistics
 pub fn table(reports: &[PopulationReport]) -> String {
     let mut text = String::new();
     for report in reports {
-        let PopulationReport {
-            population,
-            engine,
-            cases,
-            aims,
-            image,
-            ways,
-            bound,
-        } = report;
+        let PopulationReport { population, engine, cases, aims, image, ways, bound } = report;
         // Writing to a String cannot fail.
         let _ = write!(
             text,
@@ -183,10 +162,7 @@ pub fn table(reports: &[PopulationReport]) -> String {
             population.title()
         );
         if let Some(ImageSample { identical }) = image {
-            let _ = write!(
-                text,
-                "; {identical} runs repeated by the image, traces identical"
-            );
+            let _ = write!(text, "; {identical} runs repeated by the image, traces identical");
         }
         let _ = writeln!(
             text,
@@ -225,11 +201,7 @@ pub fn table(reports: &[PopulationReport]) -> String {
                 aim.percent,
                 aim.value_mk,
                 aim.aim_mk,
-                if aim.value_mk <= aim.aim_mk {
-                    "ok"
-                } else {
-                    "over"
-                }
+                if aim.value_mk <= aim.aim_mk { "ok" } else { "over" }
             );
         }
         for one in ways.iter().flat_map(|way| &way.worst) {

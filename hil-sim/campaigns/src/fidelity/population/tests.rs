@@ -49,14 +49,10 @@ fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
     ] {
         let cases = population.cases(1, 2).expect("cases");
         assert_eq!(cases.len(), 12);
-        let scenes: Vec<_> = (cases.iter())
-            .map(|case| case.scene(Way::AsItIs).expect("a scene"))
-            .collect();
+        let scenes: Vec<_> =
+            (cases.iter()).map(|case| case.scene(Way::AsItIs).expect("a scene")).collect();
         for pair in scenes[..6].windows(2) {
-            assert_eq!(
-                (&pair[0].params, pair[0].seed),
-                (&pair[1].params, pair[1].seed)
-            );
+            assert_eq!((&pair[0].params, pair[0].seed), (&pair[1].params, pair[1].seed));
         }
         assert_ne!(scenes[0].params, scenes[6].params);
         assert_ne!(scenes[0].params.tile, scenes[6].params.tile);
@@ -66,11 +62,7 @@ fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
         for scene in &scenes {
             let tissue = scene.draws.finger.and_then(|finger| finger.tissue);
             let on_pad = tissue.is_some_and(|tissue| tissue.before == PlaceBeforeContact::Pad);
-            let expected = if on_pad {
-                AssumedFinger::MeanOnPad
-            } else {
-                AssumedFinger::Mean
-            };
+            let expected = if on_pad { AssumedFinger::MeanOnPad } else { AssumedFinger::Mean };
             assert_eq!(scene.assumed_finger, expected);
         }
         if population.ways().contains(&Way::Version01) {
@@ -101,19 +93,10 @@ fn scenario_g_has_the_fingers_and_devices_of_f_and_sensors_of_two_classes() {
         let with = params(population);
         for (with, without) in with.iter().zip(&without) {
             let flux = None;
-            assert_eq!(
-                thermal_plant::Params {
-                    flux,
-                    ..with.clone()
-                },
-                *without
-            );
+            assert_eq!(thermal_plant::Params { flux, ..with.clone() }, *without);
         }
         let rms = |of: fn(&FluxParams) -> f64| {
-            let values = with
-                .iter()
-                .filter_map(|params| params.flux.as_ref())
-                .map(of);
+            let values = with.iter().filter_map(|params| params.flux.as_ref()).map(of);
             (values.map(|one| one * one).sum::<f64>() / with.len() as f64).sqrt()
         };
         assert!((rms(|flux| flux.gain_error) / (0.88 * gain) - 1.0).abs() < 0.1);
@@ -161,14 +144,9 @@ fn measured_contact_laws_are_near_those_of_the_plant() {
 
 /// The law of a line.
 fn law(line: &str) -> ContactLaw {
-    let words: Vec<f64> = (line.split(' ').skip(1))
-        .map(|word| word.parse().expect("a number"))
-        .collect();
-    ContactLaw {
-        exponent: words[0],
-        hardness_pa: words[1],
-        gap_w_m2k: words[2],
-    }
+    let words: Vec<f64> =
+        (line.split(' ').skip(1)).map(|word| word.parse().expect("a number")).collect();
+    ContactLaw { exponent: words[0], hardness_pa: words[1], gap_w_m2k: words[2] }
 }
 
 /// At the forces of the thesis, and the same otherwise.
@@ -178,20 +156,12 @@ fn told_contact_laws_are_those_of_the_plant() {
     let told = Population::ToldContactLaws.cases(1, 3).expect("cases");
     for (untold, told) in untold.iter().zip(&told) {
         let scene = told.scene(Way::AsItIs).expect("a scene");
-        assert_eq!(
-            untold.scene(Way::AsItIs).expect("a scene").params,
-            scene.params
-        );
+        assert_eq!(untold.scene(Way::AsItIs).expect("a scene").params, scene.params);
         let [line] = scene.host.as_slice() else {
             panic!("one line");
         };
         let law = law(&line.line);
-        let Params {
-            contact,
-            finger,
-            display,
-            ..
-        } = &scene.params;
+        let Params { contact, finger, display, .. } = &scene.params;
         for (force_n, pressure_pa) in THESIS_PRESSURES {
             let mean = conductance_at_hardness::<f64>(&finger.surface, display);
             let plant = contact.at_force(force_n, &finger.surface, display);
@@ -230,21 +200,13 @@ fn statistics_are_by_way_and_compare_with_the_aims() {
     ];
     let report =
         PopulationReport::new(Population::Objects, &results, "native", None).expect("a report");
-    let medians: Vec<_> = report
-        .ways
-        .iter()
-        .map(|way| way.max_after_50ms_mk.p50)
-        .collect();
+    let medians: Vec<_> = report.ways.iter().map(|way| way.max_after_50ms_mk.p50).collect();
     assert_eq!((report.cases, medians), (2, vec![2.0, 20.0]));
-    let aims: Vec<_> = (report.aims.iter())
-        .map(|aim| (aim.percent, aim.aim_mk, aim.value_mk))
-        .collect();
+    let aims: Vec<_> =
+        (report.aims.iter()).map(|aim| (aim.percent, aim.aim_mk, aim.value_mk)).collect();
     assert_eq!(aims, [(95.0, 10.0, 2.9), (100.0, 20.0, 3.0)]);
     assert_eq!(report.ways[1].worst[0].max_after_50ms_mk, 30.0);
-    assert_eq!(
-        PopulationReport::new(Population::ContactLaws, &results, "native", None),
-        None
-    );
+    assert_eq!(PopulationReport::new(Population::ContactLaws, &results, "native", None), None);
 }
 
 #[test]

@@ -269,13 +269,7 @@ fn priorities() {
                 interrupts(step, group, levels, action, 1 << FIRST);
                 step += 1;
             }
-            interrupts(
-                step,
-                group,
-                levels,
-                0,
-                1 << THIRD | 1 << SECOND | 1 << FIRST,
-            );
+            interrupts(step, group, levels, 0, 1 << THIRD | 1 << SECOND | 1 << FIRST);
             step += 1;
         }
     }
@@ -284,13 +278,7 @@ fn priorities() {
         // SAFETY: nothing depends on the mask.
         unsafe { cortex_m::register::basepri::write(mask) };
         log(special(BASEPRI) & 0xf0);
-        interrupts(
-            step,
-            5,
-            [0x40, 0x50, 0x60],
-            0,
-            1 << THIRD | 1 << SECOND | 1 << FIRST,
-        );
+        interrupts(step, 5, [0x40, 0x50, 0x60], 0, 1 << THIRD | 1 << SECOND | 1 << FIRST);
         // SAFETY: as above.
         unsafe { cortex_m::register::basepri::write(0) };
         isb();
@@ -427,14 +415,7 @@ fn faults() {
         // a vector without the Thumb bit
         write(ISER0, 1 << THIRD);
         VECTORS.0[16 + THIRD as usize].store(handler as *const () as u32 & !1, Relaxed);
-        faults!(
-            19,
-            "str {bit}, [{p}]",
-            "dsb",
-            "isb",
-            p = ISPR0,
-            bit = 1u32 << THIRD
-        );
+        faults!(19, "str {bit}, [{p}]", "dsb", "isb", p = ISPR0, bit = 1u32 << THIRD);
         VECTORS.0[16 + THIRD as usize].store(handler as *const () as u32, Relaxed);
     }
     log(read(SHCSR));
@@ -503,10 +484,9 @@ fn exclusive_monitor() {
         log(DATA.load(Relaxed));
     }
     let pend_sv = &VECTORS.0[14];
-    for (entered, loads) in [
-        (does_nothing as *const (), true),
-        (leaves_the_monitor_set as *const (), false),
-    ] {
+    for (entered, loads) in
+        [(does_nothing as *const (), true), (leaves_the_monitor_set as *const (), false)]
+    {
         pend_sv.store(entered as u32, Relaxed);
         let failed: u32;
         // SAFETY: as above; the handler reads the word at r1.

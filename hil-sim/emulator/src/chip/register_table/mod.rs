@@ -88,16 +88,9 @@ const ENABLES: [&str; 3] = ["RCC_AHB1ENR", "RCC_APB1ENR", "RCC_APB2ENR"];
 fn every_exception_concerns_a_register_of_the_table() {
     let (table, all) = (table(), exceptions());
     let lists = [all.not_modelled, all.reset, all.bits];
-    let patterns = lists
-        .iter()
-        .flatten()
-        .flat_map(|exception| &exception.registers);
+    let patterns = lists.iter().flatten().flat_map(|exception| &exception.registers);
     let unused: Vec<_> = patterns
-        .filter(|pattern| {
-            !table
-                .iter()
-                .any(|register| matches(pattern, &register.name))
-        })
+        .filter(|pattern| !table.iter().any(|register| matches(pattern, &register.name)))
         .collect();
     assert_eq!(unused, [""; 0]);
 }
@@ -170,17 +163,12 @@ fn bits_that_can_be_written_keep_what_is_written_and_others_do_not() {
         }
         let expected = find(&exceptions.bits, name).map_or(0, |exception| exception.bits);
         if deviating != expected {
-            found.push(format!(
-                "{name}: {deviating:#x}, excepted are {expected:#x}"
-            ));
+            found.push(format!("{name}: {deviating:#x}, excepted are {expected:#x}"));
         }
     }
     assert_eq!(found, [""; 0]);
     // Were all bits to end the run, the rest would show nothing.
-    assert!(
-        writable[&Outcome::Changes] > 8 * writable[&Outcome::EndsRun],
-        "{writable:?}"
-    );
+    assert!(writable[&Outcome::Changes] > 8 * writable[&Outcome::EndsRun], "{writable:?}");
 }
 
 /// Sets flags of a register, as far as the modelled functions of its peripheral do.
@@ -238,24 +226,13 @@ fn flags_are_cleared_one_by_one_as_the_table_says() {
         raise(&mut bench, &register);
         let raised = bench.read(register.address).expect("readable");
         assert_ne!(raised & flags, 0, "{name}");
-        for flag in (0..32)
-            .map(|bit| 1 << bit)
-            .filter(|bit| raised & flags & bit != 0)
-        {
+        for flag in (0..32).map(|bit| 1 << bit).filter(|bit| raised & flags & bit != 0) {
             raise(&mut bench, &register);
             let clears_none = register.zero_modifies;
-            bench
-                .write(register.address, clears_none)
-                .expect("no change");
+            bench.write(register.address, clears_none).expect("no change");
             assert_eq!(bench.read(register.address), Ok(raised), "{name} {flag:#x}");
-            bench
-                .write(register.address, clears_none ^ flag)
-                .expect("clears one");
-            assert_eq!(
-                bench.read(register.address),
-                Ok(raised & !flag),
-                "{name} {flag:#x}"
-            );
+            bench.write(register.address, clears_none ^ flag).expect("clears one");
+            assert_eq!(bench.read(register.address), Ok(raised & !flag), "{name} {flag:#x}");
             raised_flags += 1;
         }
     }
@@ -269,14 +246,8 @@ fn every_other_register_ends_the_run() {
     let known: BTreeSet<u32> = table().iter().map(|register| register.address).collect();
     let modelled = |address: u32| known.contains(&address);
     let mut answered = Vec::new();
-    for first in (0x4000_0000..0x4008_0000)
-        .step_by(0x400)
-        .chain([0x5000_0000, 0xa000_1000])
-    {
-        for address in (first..first + 0x400)
-            .step_by(4)
-            .filter(|address| !modelled(*address))
-        {
+    for first in (0x4000_0000..0x4008_0000).step_by(0x400).chain([0x5000_0000, 0xa000_1000]) {
+        for address in (first..first + 0x400).step_by(4).filter(|address| !modelled(*address)) {
             let expected = match names::peripheral(address) {
                 Some(_) => Refusal::Offset,
                 None => Refusal::BusError,

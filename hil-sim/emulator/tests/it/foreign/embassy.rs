@@ -9,9 +9,7 @@ const C: u8 = 2;
 /// Phases in ms during which a pin is at `level`: begin and length.
 fn phases(edges: &[(bool, f64)], level: bool) -> Vec<(f64, f64)> {
     let pairs = edges.windows(2).filter(|pair| pair[0].0 == level);
-    pairs
-        .map(|pair| (pair[0].1, pair[1].1 - pair[0].1))
-        .collect()
+    pairs.map(|pair| (pair[0].1, pair[1].1 - pair[0].1)).collect()
 }
 
 /// Tasks keep their times to 0.1 ms while those of lower priority are busy.
@@ -50,25 +48,13 @@ fn drivers_do_at_the_pins_what_the_program_asks() {
     run_until_ms(&mut machine, 10);
     assert_eq!(machine.clocks().hclk_hz, 180_000_000);
     // 20 kHz of a timer clock of 180 MHz, a quarter high.
-    assert_eq!(
-        machine.pwm(A, 8),
-        LegState::Duty {
-            high: 2250,
-            period: 9000
-        }
-    );
+    assert_eq!(machine.pwm(A, 8), LegState::Duty { high: 2250, period: 9000 });
     let sent = |from: usize, machine: &stm32_emulator::Machine<_>| {
         let wiring: &crate::probe::Bench = machine.wiring();
-        wiring.sent[from..]
-            .iter()
-            .map(|(byte, _)| *byte)
-            .collect::<Vec<u8>>()
+        wiring.sent[from..].iter().map(|(byte, _)| *byte).collect::<Vec<u8>>()
     };
     // Codes of PA1 and PA4, which the bench makes of their channels.
-    assert_eq!(
-        sent(0, &machine),
-        [107u16, 407].map(u16::to_be_bytes).concat()
-    );
+    assert_eq!(sent(0, &machine), [107u16, 407].map(u16::to_be_bytes).concat());
 
     for (ms, level) in [(20, true), (30, true), (40, false)] {
         machine.wiring_mut().case = u8::from(level);
@@ -80,8 +66,5 @@ fn drivers_do_at_the_pins_what_the_program_asks() {
     run_until_ms(&mut machine, 50);
     machine.uart_send(b"a longer message");
     run_until_ms(&mut machine, 60);
-    assert_eq!(
-        String::from_utf8_lossy(&sent(4, &machine)),
-        "enoegassem regnol a"
-    );
+    assert_eq!(String::from_utf8_lossy(&sent(4, &machine)), "enoegassem regnol a");
 }

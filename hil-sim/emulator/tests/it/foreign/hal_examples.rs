@@ -47,10 +47,7 @@ fn a_button_toggles_a_light_when_it_is_pressed() {
 fn pwm_has_half_the_period() {
     let mut machine = machine("pwm");
     run_until_ms(&mut machine, 1);
-    let half = LegState::Duty {
-        high: 50,
-        period: 100,
-    };
+    let half = LegState::Duty { high: 50, period: 100 };
     assert_eq!(machine.pwm(A, 8), half);
 }
 
@@ -71,14 +68,8 @@ fn pwm_follows_a_sine() {
         let angle = std::f64::consts::PI * step as f64 / 100.0;
         let [first, second] = duties[start + step - 1];
         let expected = angle.sin();
-        assert!(
-            (first - expected.max(0.0)).abs() < 0.02,
-            "step {step}: {first}, {expected}"
-        );
-        assert!(
-            (second - (-expected).max(0.0)).abs() < 0.02,
-            "step {step}: {second}, {expected}"
-        );
+        assert!((first - expected.max(0.0)).abs() < 0.02, "step {step}: {first}, {expected}");
+        assert!((second - (-expected).max(0.0)).abs() < 0.02, "step {step}: {second}, {expected}");
     }
 }
 
@@ -92,12 +83,7 @@ fn a_serial_port_echoes() {
     run_until_ms(&mut machine, 10);
     machine.uart_send(b"by CPU");
     run_until_ms(&mut machine, 15);
-    let sent: Vec<u8> = machine
-        .wiring()
-        .sent
-        .iter()
-        .map(|(byte, _)| *byte)
-        .collect();
+    let sent: Vec<u8> = machine.wiring().sent.iter().map(|(byte, _)| *byte).collect();
     assert_eq!(String::from_utf8_lossy(&sent), "by DMAby CPU");
     assert_eq!(machine.wiring().baud, 115_108, "16 MHz / 139");
 }
@@ -144,11 +130,7 @@ fn timers_expire_when_their_examples_print_so() {
             ("timer expired 3", 3 * period_ms),
             ("ehy, you cannot cancel a timer two times!", 3 * period_ms),
         ];
-        assert_eq!(
-            printed,
-            expected.map(|(text, ms)| (text.to_owned(), ms)),
-            "{name}"
-        );
+        assert_eq!(printed, expected.map(|(text, ms)| (text.to_owned(), ms)), "{name}");
     }
     // The pin is a floating input for one of three seconds.
     let printed = prints("dynamic-gpio", 4100);
@@ -160,29 +142,20 @@ fn timers_expire_when_their_examples_print_so() {
 fn other_examples_end_at_the_register_that_is_not_modelled() {
     for (name, expected) in [
         ("i2c_scanner", "I2C1+0x0 at 0x40005400 is not modelled"),
-        (
-            "pwm-dead-time",
-            "TIM1_CCER (TIM CCER.CCxNE (complementary outputs)) at 0x40010020",
-        ),
+        ("pwm-dead-time", "TIM1_CCER (TIM CCER.CCxNE (complementary outputs)) at 0x40010020"),
         (
             "pwm-input",
             "TIM8_CCMR1 (TIM CCMR.CCxS (capture from another channel's input, or from TRC)) at 0x40010418",
         ),
         ("qei", "TIM2_SMCR (TIM SMCR (slave modes)) at 0x40000008"),
-        (
-            "rtc",
-            "RCC_BDCR (oscillator and clock of the RTC) at 0x40023870",
-        ),
+        ("rtc", "RCC_BDCR (oscillator and clock of the RTC) at 0x40023870"),
         ("serial", "USART1_BRR at 0x40011008 is not modelled"),
         ("serial-9bit", "USART2_CR1 (USART_CR1 beyond 8N1"),
         // A mistake of the example: the HAL halves PCLK2, 84 MHz, and the converter allows 36 MHz.
         ("rtic-adc-dma", "ADCCLK = 42000000 Hz is outside"),
     ] {
         let mut machine = machine(name);
-        let stop = machine
-            .run_until_ps(1_100_000_000_000)
-            .expect_err(name)
-            .to_string();
+        let stop = machine.run_until_ps(1_100_000_000_000).expect_err(name).to_string();
         assert!(stop.contains(expected), "{name}: {stop}");
     }
 }

@@ -45,8 +45,5 @@ fn intervals(edges: &[(bool, f64)]) -> Vec<f64> {
 
 /// Panics if a time in ms differs from the expected one by more than the instructions around it take.
 fn assert_near(what: &str, ms: f64, expected_ms: f64) {
-    assert!(
-        (ms - expected_ms).abs() < 0.1,
-        "{what}: {ms} ms instead of {expected_ms} ms"
-    );
+    assert!((ms - expected_ms).abs() < 0.1, "{what}: {ms} ms instead of {expected_ms} ms");
 }

@@ -52,10 +52,7 @@ fn layered_finger_takes_every_shape_in_its_share() {
         let epidermis = finger.layers[0];
         let k_w_mk = epidermis.medium.conductivity_w_mk / draw.effusivity_factor;
         let within = |value: f64, (least, most): (f64, f64)| {
-            assert!(
-                (least - 1e-12..=most + 1e-12).contains(&value),
-                "{value}: {draw:?}"
-            );
+            assert!((least - 1e-12..=most + 1e-12).contains(&value), "{value}: {draw:?}");
         };
         let (m, w_mk) = match tissue.epidermis {
             Epidermis::Box => ((0.5005e-3, 0.7995e-3), (0.189, 0.231)),
@@ -91,10 +88,7 @@ fn layered_finger_takes_every_shape_in_its_share() {
     }
     for (seen, share) in seen.into_iter().zip([0.5, 0.25, 0.25, 0.5, 0.5]) {
         let off = f64::from(seen) / DRAWS as f64 - share;
-        assert!(
-            off.abs() < 5.0 * (0.25 / DRAWS as f64).sqrt(),
-            "{seen} of {DRAWS}"
-        );
+        assert!(off.abs() < 5.0 * (0.25 / DRAWS as f64).sqrt(), "{seen} of {DRAWS}");
     }
 }
 
@@ -124,10 +118,7 @@ fn every_drawn_finger_is_a_plant() {
                 appears_s: 0.0,
                 duration_s: 1.0,
                 seed,
-                params: Params {
-                    finger: finger.clone(),
-                    ..Params::nominal()
-                },
+                params: Params { finger: finger.clone(), ..Params::nominal() },
             };
             Plant::new(&config).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         }

@@ -4,11 +4,8 @@ use rand::SeedableRng;
 
 use super::*;
 
-const QUIET: ConverterParams = ConverterParams {
-    inl_counts: 0.0,
-    noise_counts: 0.0,
-    ..ConverterParams::NOMINAL
-};
+const QUIET: ConverterParams =
+    ConverterParams { inl_counts: 0.0, noise_counts: 0.0, ..ConverterParams::NOMINAL };
 
 fn converter(params: ConverterParams, seed: u64) -> Converter {
     Converter::new(params, Xoshiro256PlusPlus::seed_from_u64(seed))
@@ -21,10 +18,7 @@ fn largest_non_linearity_is_between_half_the_bound_and_the_bound() {
     for seed in 0..1000 {
         let profile = converter(ConverterParams::NOMINAL, seed).profile;
         let errors = (0..4096).map(|code| profile.at(f64::from(code)));
-        let peak = errors.fold(
-            0.0f64,
-            |peak, e| if e.abs() > peak.abs() { e } else { peak },
-        );
+        let peak = errors.fold(0.0f64, |peak, e| if e.abs() > peak.abs() { e } else { peak });
         let (first, last) = (profile.at(0.0), profile.at(4095.0));
         assert!(
             first.abs() < 1e-12 && last.abs() < 2e-2,
@@ -38,10 +32,7 @@ fn largest_non_linearity_is_between_half_the_bound_and_the_bound() {
         (0.75..0.76).contains(&least) && (1.49..=1.5 + 1e-12).contains(&most),
         "{least} to {most}"
     );
-    assert!(
-        (400..600).contains(&positive),
-        "{positive} of 1000 bend upwards"
-    );
+    assert!((400..600).contains(&positive), "{positive} of 1000 bend upwards");
 }
 
 #[test]
@@ -55,11 +46,7 @@ fn non_linearity_steps_only_at_the_transitions_of_the_upper_bits() {
         }
     }
     for (code, step) in largest.iter().enumerate().skip(1) {
-        assert_eq!(
-            code % 128 == 0,
-            *step > 0.02,
-            "a step of {step} at code {code}"
-        );
+        assert_eq!(code % 128 == 0, *step > 0.02, "a step of {step} at code {code}");
     }
     // The step of the largest capacitor is the largest.
     let others = (1..32).filter(|k| *k != 16).map(|k| largest[128 * k]);
@@ -68,60 +55,31 @@ fn non_linearity_steps_only_at_the_transitions_of_the_upper_bits() {
 
 #[test]
 fn code_is_the_level_plus_its_non_linearity() {
-    let mut converter = converter(
-        ConverterParams {
-            noise_counts: 0.0,
-            ..ConverterParams::NOMINAL
-        },
-        3,
-    );
+    let mut converter =
+        converter(ConverterParams { noise_counts: 0.0, ..ConverterParams::NOMINAL }, 3);
     for level in 0..4096 {
         let level = f64::from(level) + 0.3;
         let expected = level.min(4095.0) + converter.profile.at(level.min(4095.0));
         let code = f64::from(converter.convert(level));
-        assert!(
-            (code - expected.clamp(0.0, 4095.0)).abs() <= 0.5,
-            "{code} for {expected}"
-        );
+        assert!((code - expected.clamp(0.0, 4095.0)).abs() <= 0.5, "{code} for {expected}");
     }
 }
 
 #[test]
 fn offset_and_gain_apply_before_quantisation() {
-    let params = ConverterParams {
-        offset_counts: 2.0,
-        gain_error: 1e-3,
-        ..QUIET
-    };
+    let params = ConverterParams { offset_counts: 2.0, gain_error: 1e-3, ..QUIET };
     let mut converter = converter(params, 1);
-    for (ideal, code) in [
-        (0.0, 2),
-        (1000.0, 1003),
-        (3000.0, 3005),
-        (4095.0, 4095),
-        (-9.0, 0),
-    ] {
-        assert_eq!(
-            converter.convert(converter.with_offset_and_gain(ideal)),
-            code
-        );
+    for (ideal, code) in [(0.0, 2), (1000.0, 1003), (3000.0, 3005), (4095.0, 4095), (-9.0, 0)] {
+        assert_eq!(converter.convert(converter.with_offset_and_gain(ideal)), code);
     }
 }
 
 #[test]
 fn noise_is_white_and_unbiased_with_the_specified_deviation() {
-    let mut converter = converter(
-        ConverterParams {
-            noise_counts: 0.7,
-            ..QUIET
-        },
-        7,
-    );
+    let mut converter = converter(ConverterParams { noise_counts: 0.7, ..QUIET }, 7);
     let n = 400_000;
     let level = 2101.37;
-    let draws: Vec<f64> = (0..n)
-        .map(|_| f64::from(converter.convert(level)) - level)
-        .collect();
+    let draws: Vec<f64> = (0..n).map(|_| f64::from(converter.convert(level)) - level).collect();
     let mean_of = |f: &dyn Fn(usize) -> f64| (0..n - 1).map(f).sum::<f64>() / (n - 1) as f64;
     let mean = mean_of(&|k| draws[k]);
     let variance = mean_of(&|k| (draws[k] - mean).powi(2));
@@ -131,17 +89,8 @@ fn noise_is_white_and_unbiased_with_the_specified_deviation() {
     let expected = 0.7f64.powi(2) + 1.0 / 12.0;
     let root_n = f64::from(n as u32).sqrt();
     assert!(mean.abs() < 5.0 * expected.sqrt() / root_n, "bias {mean}");
-    assert!(
-        (variance / expected - 1.0).abs() < 5.0 * 2f64.sqrt() / root_n,
-        "variance {variance}"
-    );
-    assert!(
-        beside.abs() < 5.0 / root_n,
-        "neighbours correlate by {beside}"
-    );
+    assert!((variance / expected - 1.0).abs() < 5.0 * 2f64.sqrt() / root_n, "variance {variance}");
+    assert!(beside.abs() < 5.0 / root_n, "neighbours correlate by {beside}");
     // Gaussian tails: 1e-4 to 2.7e-3 of the draws are beyond three standard deviations plus half a code.
-    assert!(
-        (1e-4..2.7e-3).contains(&beyond),
-        "{beyond} beyond three deviations"
-    );
+    assert!((1e-4..2.7e-3).contains(&beyond), "{beyond} beyond three deviations");
 }

@@ -2,11 +2,8 @@ use super::*;
 use crate::STEP_S;
 
 /// Without errors and noise, at a gain of one count per W/m2.
-const IDEAL: FluxParams = FluxParams {
-    noise_w_m2: 0.0,
-    counts_per_w_m2: 1.0,
-    ..FluxParams::NOMINAL
-};
+const IDEAL: FluxParams =
+    FluxParams { noise_w_m2: 0.0, counts_per_w_m2: 1.0, ..FluxParams::NOMINAL };
 
 /// Code after many lags under a constant flux, W/m2.
 fn settled(params: FluxParams, defect: FluxDefect, flux_w_m2: f64) -> u16 {
@@ -35,10 +32,7 @@ fn step_response_is_the_exponential_of_the_lag() {
 /// Mid-scale, 48 nV per W/m2 times 2000, 4096 codes of 3.3 V: 8.4 W/m2 a count, and +-17 kW/m2 in all.
 #[test]
 fn codes_have_the_designed_scale_and_end_at_the_rails() {
-    let quiet = FluxParams {
-        noise_w_m2: 0.0,
-        ..FluxParams::NOMINAL
-    };
+    let quiet = FluxParams { noise_w_m2: 0.0, ..FluxParams::NOMINAL };
     let code = |flux_w_m2| settled(quiet, FluxDefect::default(), flux_w_m2);
     assert_eq!(code(0.0), 2048);
     assert_eq!(code(8.4 * 100.0), 2148);
@@ -53,11 +47,7 @@ fn codes_have_the_designed_scale_and_end_at_the_rails() {
 
 #[test]
 fn gain_error_and_zero_are_those_of_the_parameters() {
-    let params = FluxParams {
-        gain_error: 0.1,
-        zero_w_m2: -30.0,
-        ..IDEAL
-    };
+    let params = FluxParams { gain_error: 0.1, zero_w_m2: -30.0, ..IDEAL };
     let code = |flux_w_m2| settled(params, FluxDefect::default(), flux_w_m2);
     assert_eq!(code(0.0), 2048 - 30);
     assert_eq!(code(1000.0), 2048 + 1100 - 30);
@@ -66,10 +56,7 @@ fn gain_error_and_zero_are_those_of_the_parameters() {
 #[test]
 fn noise_has_its_deviation_with_that_of_quantisation_and_no_mean() {
     const READINGS: u32 = 100_000;
-    let params = FluxParams {
-        zero_w_m2: 3.0,
-        ..FluxParams::NOMINAL
-    };
+    let params = FluxParams { zero_w_m2: 3.0, ..FluxParams::NOMINAL };
     let mut sensor = FluxSensor::new(params, 0.0, 7);
     let readings: Vec<f64> = (0..READINGS)
         .map(|_| {
@@ -109,37 +96,20 @@ fn noise_depends_on_the_seed_alone() {
 #[test]
 fn each_defect_shows_in_the_code() {
     let code = |defect: FluxDefect| settled(IDEAL, defect, 1000.0);
-    let wired = |circuit| {
-        code(FluxDefect {
-            circuit,
-            ..FluxDefect::default()
-        })
-    };
+    let wired = |circuit| code(FluxDefect { circuit, ..FluxDefect::default() });
     assert_eq!(wired(FluxCircuit::Closed), 3048);
     assert_eq!(wired(FluxCircuit::Open), 4095);
     assert_eq!(wired(FluxCircuit::Short), 2048);
     assert_eq!(wired(FluxCircuit::Reversed), 1048);
-    let weak = FluxDefect {
-        gain: 0.5,
-        ..FluxDefect::default()
-    };
+    let weak = FluxDefect { gain: 0.5, ..FluxDefect::default() };
     assert_eq!(code(weak), 2548);
-    let shifted = FluxDefect {
-        zero_w_m2: 50.0,
-        ..FluxDefect::default()
-    };
+    let shifted = FluxDefect { zero_w_m2: 50.0, ..FluxDefect::default() };
     assert_eq!(code(shifted), 3098);
 
-    let noisy = FluxParams {
-        noise_w_m2: 1.0,
-        ..IDEAL
-    };
+    let noisy = FluxParams { noise_w_m2: 1.0, ..IDEAL };
     let spread = |noise| {
         let mut sensor = FluxSensor::new(noisy, 0.0, 1);
-        sensor.set_defect(FluxDefect {
-            noise,
-            ..FluxDefect::default()
-        });
+        sensor.set_defect(FluxDefect { noise, ..FluxDefect::default() });
         let squares = (0..1000).map(|_| {
             sensor.step(STEP_S, 0.0);
             (f64::from(sensor.code()) - 2048.0).powi(2)
@@ -150,10 +120,7 @@ fn each_defect_shows_in_the_code() {
     assert!((44.0..53.0).contains(&ratio), "{ratio}");
 
     let mut sensor = FluxSensor::new(FluxParams::NOMINAL, 0.0, 1);
-    sensor.set_defect(FluxDefect {
-        stuck: true,
-        ..FluxDefect::default()
-    });
+    sensor.set_defect(FluxDefect { stuck: true, ..FluxDefect::default() });
     let before = sensor.code();
     for _ in 0..100 {
         sensor.step(STEP_S, 5000.0);

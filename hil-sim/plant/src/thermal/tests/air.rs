@@ -8,8 +8,7 @@ use crate::tile::TileParams;
 /// Heat stored in a slab of the batch, J/m2.
 fn stored_j_m2(bench: &Bench, index: usize, slab: &Slab) -> f64 {
     let heat = slab.capacity_j_m2k.iter().enumerate();
-    heat.map(|(node, capacity)| capacity * bench.heat.slabs.node_c(index, node))
-        .sum()
+    heat.map(|(node, capacity)| capacity * bench.heat.slabs.node_c(index, node)).sum()
 }
 
 /// Without blood and core, finger and object exchange heat only with each other and, without contact, with the air.
@@ -22,24 +21,16 @@ fn only_surfaces_without_contact_lose_heat_to_the_air() {
     };
     let mut bench = Bench::new(&FingerParams::homogeneous(), &object, TileParams::NOMINAL);
     let film_w_m2k = 15.0;
-    bench.heat.lifted_w_m2k = bench
-        .heat
-        .surface_m2k_w
-        .map(|m2k_w| 1.0 / (m2k_w + 1.0 / film_w_m2k));
+    bench.heat.lifted_w_m2k =
+        bench.heat.surface_m2k_w.map(|m2k_w| 1.0 / (m2k_w + 1.0 / film_w_m2k));
     let (on_display, on_object) = touch(granite, 1.0);
-    for (display, on, there) in [
-        (on_display, on_object, true),
-        (None, None, true),
-        (None, None, false),
-    ] {
+    for (display, on, there) in
+        [(on_display, on_object, true), (None, None, true), (None, None, false)]
+    {
         bench.heat.set_contacts(display, on, there);
         for _ in 0..1000 {
             let before: [f64; 3] = std::array::from_fn(|index| {
-                let slab = if index == 2 {
-                    &bench.object
-                } else {
-                    &bench.finger
-                };
+                let slab = if index == 2 { &bench.object } else { &bench.finger };
                 stored_j_m2(&bench, index, slab)
             });
             bench.step(None);
@@ -55,11 +46,7 @@ fn only_surfaces_without_contact_lose_heat_to_the_air() {
                 (false, false) => [film(0), film(1), 0.0],
             };
             for index in 0..3 {
-                let slab = if index == 2 {
-                    &bench.object
-                } else {
-                    &bench.finger
-                };
+                let slab = if index == 2 { &bench.object } else { &bench.finger };
                 let lost = before[index] - stored_j_m2(&bench, index, slab);
                 let off = lost - STEP_S * lost_w_m2[index];
                 assert!(
@@ -90,9 +77,6 @@ fn finger_reduces_the_loss_of_the_plate_to_the_air() {
         tile.second_stage(0.0);
         let lost_w = tile.step_energy(1e-6).to_room_j / 1e-6;
         let expected_w = 50.0 * 10.0 * (warm.plate_m2() - covered_m2);
-        assert!(
-            (lost_w / expected_w - 1.0).abs() < 1e-4,
-            "{lost_w} W is not {expected_w} W"
-        );
+        assert!((lost_w / expected_w - 1.0).abs() < 1e-4, "{lost_w} W is not {expected_w} W");
     }
 }

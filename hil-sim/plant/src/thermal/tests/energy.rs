@@ -18,9 +18,7 @@ fn stored_j_m2(bench: &Bench, index: usize, slab: &Slab, start_c: &[f64]) -> f64
 }
 
 fn nodes_c(bench: &Bench, index: usize, slab: &Slab) -> Vec<f64> {
-    (0..slab.cells())
-        .map(|node| bench.heat.slabs.node_c(index, node))
-        .collect()
+    (0..slab.cells()).map(|node| bench.heat.slabs.node_c(index, node)).collect()
 }
 
 /// Ten minutes of contacts of changing force under a changing current: the heat stored in the tile, and that given by the
@@ -47,17 +45,8 @@ fn energy_closes_over_ten_minutes_of_contacts() {
     }
     let stored = stored_j_m2(&bench, 0, &bench.finger, &start_c);
     given_j += bench.heat.area_m2 * (before_j_m2 - stored);
-    let Energy {
-        electrical_j,
-        from_finger_j,
-        to_room_j,
-    } = bench.heat.energy();
-    let tile_j: f64 = bench
-        .heat
-        .tile
-        .nodes()
-        .map(|(capacity, t)| capacity * (t - ROOM_C))
-        .sum();
+    let Energy { electrical_j, from_finger_j, to_room_j } = bench.heat.energy();
+    let tile_j: f64 = bench.heat.tile.nodes().map(|(capacity, t)| capacity * (t - ROOM_C)).sum();
     let scale_j = electrical_j + from_finger_j.abs() + to_room_j.abs();
     assert!(electrical_j > 500.0 && from_finger_j.abs() > 10.0);
     let tile_open = (tile_j - (electrical_j + from_finger_j - to_room_j)) / scale_j;

@@ -10,19 +10,12 @@ fn display_plate_follows_a_ceramic_half_space_after_contact() {
         patch_m2: contact_model::pressure::contact_area_m2(2.0),
         ..TileParams::NOMINAL
     };
-    let mut bench = Bench::new(
-        &FingerParams::homogeneous(),
-        &ObjectConfig::half_space(SKIN, ROOM_C),
-        tile,
-    );
-    let touch = ContactLaw::NOMINAL
-        .at_force(2.0, &SKIN.surface, &REFERENCE_DISPLAY)
-        .expect("pressed");
+    let mut bench =
+        Bench::new(&FingerParams::homogeneous(), &ObjectConfig::half_space(SKIN, ROOM_C), tile);
+    let touch =
+        ContactLaw::NOMINAL.at_force(2.0, &SKIN.surface, &REFERENCE_DISPLAY).expect("pressed");
     let exact = |t_s: f64| {
-        let (finger, plate) = (
-            SKIN.effusivity(),
-            (tile.ceramic_w_mk * tile.ceramic_j_m3k).sqrt(),
-        );
+        let (finger, plate) = (SKIN.effusivity(), (tile.ceramic_w_mk * tile.ceramic_j_m3k).sqrt());
         let z = (1.0 / finger + 1.0 / plate) / touch.resistance_m2k_w * t_s.sqrt();
         let made = 1.0 - contact_model::reference::erfcx(z);
         let w = plate / (plate + finger);

@@ -30,10 +30,7 @@ fn skin_at_depth_follows_the_golden_solution() {
         if !running.as_ref().is_some_and(same) {
             let object = ObjectConfig::half_space(*find(name).expect("known"), object_c);
             let mut bench = Bench::new(&FingerParams::homogeneous(), &object, TileParams::NOMINAL);
-            let touch = SkinContact {
-                area_m2: 135e-6,
-                resistance_m2k_w,
-            };
+            let touch = SkinContact { area_m2: 135e-6, resistance_m2k_w };
             bench.touch(None, Some(touch));
             running = Some((name, resistance_m2k_w, 0.0, bench));
         }
@@ -44,11 +41,7 @@ fn skin_at_depth_follows_the_golden_solution() {
         }
         let probe = DepthProbe::at(&bench.finger, depth_m).expect("inside");
         let off_mk = 1e3 * (bench.heat.depth_c(Finger::OnObject, &probe) - expected_c).abs();
-        let place = if depth_m < 0.2e-3 {
-            0
-        } else {
-            usize::from(depth_m > 0.6e-3) + 1
-        };
+        let place = if depth_m < 0.2e-3 { 0 } else { usize::from(depth_m > 0.6e-3) + 1 };
         worst_mk[place] = worst_mk[place].max(off_mk);
         seen += 1;
     }

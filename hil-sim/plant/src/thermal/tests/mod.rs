@@ -35,10 +35,8 @@ impl Bench {
     /// Bodies without contact, the finger in steady state in a room of 24 deg C.
     fn new(finger: &FingerParams, object: &ObjectConfig, tile: TileParams) -> Self {
         let cut = |layers: &[_], back| Slab::new(layers, back, 100.0, &Grading::STANDARD);
-        let (slab, object_slab) = (
-            cut(&finger.layers, finger.back()),
-            cut(&object.layers, object.back),
-        );
+        let (slab, object_slab) =
+            (cut(&finger.layers, finger.back()), cut(&object.layers, object.back));
         let loss_w_m2 = finger.air_w_m2k * (SKIN_C - ROOM_C);
         let steady = steady_state(&slab, SKIN_C, loss_w_m2).expect("a steady state");
         let mut heat = ThermalModel::new(

@@ -28,11 +28,7 @@ fn bodies_in_contact_converge_at_second_order_in_time() {
     let (on_display, on_object) = touch(material, 1.0);
     heat.set_contacts(on_display, on_object, true);
     let mut bridge = Bridge::new(BridgeParams::NOMINAL, TileParams::NOMINAL.resistance_ohm());
-    let legs = BridgeOutputs {
-        a: Leg::Duty(1.0),
-        b: Leg::Duty(0.8),
-        enabled: true,
-    };
+    let legs = BridgeOutputs { a: Leg::Duty(1.0), b: Leg::Duty(0.8), enabled: true };
     // Away from the start of the contact, when temperatures change with the square root of time.
     for _ in 0..16_000 {
         heat.step(8, &mut bridge, &legs);
@@ -54,22 +50,12 @@ fn bodies_in_contact_converge_at_second_order_in_time() {
     };
     let mut least = f64::INFINITY;
     let finest: Vec<[f64; 6]> = (0..5).map(run).collect();
-    for (i, what) in [
-        "skin on display",
-        "skin on object",
-        "display",
-        "object",
-        "sink",
-    ]
-    .iter()
-    .enumerate()
+    for (i, what) in
+        ["skin on display", "skin on object", "display", "object", "sink"].iter().enumerate()
     {
         // Differences of successive solutions fall by four.
         let difference: Vec<f64> = finest.windows(2).map(|w| w[0][i] - w[1][i]).collect();
-        let orders: Vec<f64> = difference
-            .windows(2)
-            .map(|d| (d[0] / d[1]).abs().log2())
-            .collect();
+        let orders: Vec<f64> = difference.windows(2).map(|d| (d[0] / d[1]).abs().log2()).collect();
         println!("{what}: differences {difference:?}, orders {orders:.3?}");
         let last = orders.last().expect("three");
         assert!(*last < 2.1, "{what}: order {last}");

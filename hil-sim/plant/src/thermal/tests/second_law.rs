@@ -13,10 +13,7 @@ fn extremes_c(bench: &Bench) -> (f64, f64) {
     }
     all.extend(bench.heat.tile.nodes().map(|(_, t)| t));
     let fold = |f: fn(f64, f64) -> f64, start| all.iter().copied().fold(start, f);
-    (
-        fold(f64::min, f64::INFINITY),
-        fold(f64::max, f64::NEG_INFINITY),
-    )
+    (fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY))
 }
 
 #[test]
@@ -45,10 +42,7 @@ fn without_current_temperatures_stay_within_their_initial_range() {
                 };
                 let fall_c = bench.heat.skin_c(finger) - under_c;
                 let flux_w_m2 = bench.heat.flux_w_m2(finger);
-                assert!(
-                    flux_w_m2 * fall_c >= 0.0,
-                    "{name}, step {k}: {flux_w_m2} over {fall_c}"
-                );
+                assert!(flux_w_m2 * fall_c >= 0.0, "{name}, step {k}: {flux_w_m2} over {fall_c}");
             }
         }
     }
@@ -60,13 +54,7 @@ fn entropy_j_k(bench: &Bench, area_m2: f64) -> f64 {
     let finger: f64 = (bench.finger.capacity_j_m2k.iter().enumerate())
         .map(|(node, capacity)| of(capacity * area_m2, bench.heat.slabs.node_c(0, node)))
         .sum();
-    finger
-        + bench
-            .heat
-            .tile
-            .nodes()
-            .map(|(capacity, t)| of(capacity, t))
-            .sum::<f64>()
+    finger + bench.heat.tile.nodes().map(|(capacity, t)| of(capacity, t)).sum::<f64>()
 }
 
 /// Entropy production of finger, tile and room in each step. The flows of a step are those of its mean temperatures, so
@@ -83,10 +71,7 @@ fn entropy_never_decreases() {
     for k in 0..60_000usize {
         if k % 10_000 == 2000 {
             let touching = k / 10_000 % 2 == 0;
-            bench.touch(
-                on_display.filter(|_| touching),
-                on_object.filter(|_| touching),
-            );
+            bench.touch(on_display.filter(|_| touching), on_object.filter(|_| touching));
         }
         // With and without contact, cooling, off and heating.
         bench.step([Some(4.0), None, Some(-2.0)][k / 5000 % 3]);
@@ -100,8 +85,5 @@ fn entropy_never_decreases() {
     println!("entropy made in 60 s: {made_j_k:.4} J/K; least in a step: {least_j_k:.1e} J/K");
     assert!(made_j_k > 0.1);
     // Rounding of the sum over the nodes, about 1e2 J/K.
-    assert!(
-        least_j_k > -1e-12,
-        "entropy falls by {least_j_k} J/K in a step"
-    );
+    assert!(least_j_k > -1e-12, "entropy falls by {least_j_k} J/K in a step");
 }

@@ -20,9 +20,7 @@ fn skin_c(
 ) -> Vec<f64> {
     let mut bench = Bench::new(finger, object, TileParams::NOMINAL);
     if let Some(core_c) = core_c {
-        bench
-            .heat
-            .set_finger(&vec![SKIN_C; bench.finger.cells()], core_c);
+        bench.heat.set_finger(&vec![SKIN_C; bench.finger.cells()], core_c);
     }
     let touch = SkinContact {
         area_m2: 135e-6,
@@ -67,13 +65,7 @@ fn epidermis_changes_only_the_first_second() {
     let dermis = layered.layers[0];
     layered.layers.insert(
         0,
-        Layer {
-            thickness_m: 0.1e-3,
-            medium: Medium {
-                conductivity_w_mk: 0.21,
-                ..dermis.medium
-            },
-        },
+        Layer { thickness_m: 0.1e-3, medium: Medium { conductivity_w_mk: 0.21, ..dermis.medium } },
     );
     let object = half_space("copper");
     let times_s = [0.1, 10.0];
@@ -93,10 +85,7 @@ fn thin_copper_warms_up() {
     assert_figure("variants.slab", with - plain);
     // With its back held at the start temperature it stays colder than a half-space.
     let held = ObjectConfig {
-        back: BackBoundary::Film {
-            film_w_m2k: f64::INFINITY,
-            temperature_c: ROOM_C,
-        },
+        back: BackBoundary::Film { film_w_m2k: f64::INFINITY, temperature_c: ROOM_C },
         ..thin
     };
     assert!(skin_c(&finger, &held, None, &[10.0])[0] < plain);

@@ -130,22 +130,12 @@ pub struct ValueRange {
 
 /// A value that the scene must give.
 const fn required(unit: &'static str, min: f64, max: f64) -> Option<ValueRange> {
-    Some(ValueRange {
-        unit,
-        min,
-        max,
-        default: None,
-    })
+    Some(ValueRange { unit, min, max, default: None })
 }
 
 /// A factor from 1 to 1000 with a default.
 const fn factor(default: f64) -> Option<ValueRange> {
-    Some(ValueRange {
-        unit: "1",
-        min: 1.0,
-        max: 1000.0,
-        default: Some(default),
-    })
+    Some(ValueRange { unit: "1", min: 1.0, max: 1000.0, default: Some(default) })
 }
 
 impl FaultKind {

@@ -49,12 +49,7 @@ impl From<FaultKind> for ActiveFault {
     /// The defaults of a scene: the display's thermistor and the default value of the kind.
     fn from(kind: FaultKind) -> Self {
         let value = kind.value().and_then(|value| value.default);
-        Self {
-            kind,
-            sensor: Sensor::Display,
-            with: Sensor::Display,
-            value: value.unwrap_or(0.0),
-        }
+        Self { kind, sensor: Sensor::Display, with: Sensor::Display, value: value.unwrap_or(0.0) }
     }
 }
 

@@ -46,15 +46,7 @@ fn fault(
     row: &Spanned<file::Fault>,
     duration_s: f64,
 ) -> Result<ScheduledFault, SceneError> {
-    let file::Fault {
-        kind: word,
-        t_s,
-        until_s,
-        value,
-        sensor,
-        with,
-        ..
-    } = row.get_ref();
+    let file::Fault { kind: word, t_s, until_s, value, sensor, with, .. } = row.get_ref();
     let kind = kind(source, word)?;
     let t_s = source.time("fault.t_s", t_s, duration_s)?;
     let until_s = match until_s {
@@ -67,18 +59,12 @@ fn fault(
         None => f64::INFINITY,
     };
     if let Some(sensor) = sensor.as_ref().filter(|_| !kind.has_sensor()) {
-        return Err(meaningless_key(source, "sensor", sensor, kind, |kind| {
-            kind.has_sensor()
-        }));
+        return Err(meaningless_key(source, "sensor", sensor, kind, |kind| kind.has_sensor()));
     }
     if let Some(with) = with.as_ref().filter(|_| !kind.needs_second_sensor()) {
-        return Err(meaningless_key(source, "with", with, kind, |kind| {
-            kind.needs_second_sensor()
-        }));
+        return Err(meaningless_key(source, "with", with, kind, |kind| kind.needs_second_sensor()));
     }
-    let sensor = sensor
-        .as_ref()
-        .map_or(Sensor::Display, |sensor| *sensor.get_ref());
+    let sensor = sensor.as_ref().map_or(Sensor::Display, |sensor| *sensor.get_ref());
     let with = match with {
         Some(with) if *with.get_ref() == sensor => {
             let problem = "fault.with names the same thermistor as fault.sensor (which is display if absent); \
@@ -95,34 +81,18 @@ fn fault(
         }
         None => sensor,
     };
-    let fault = ActiveFault {
-        kind,
-        sensor,
-        with,
-        value: fault_value(source, row, kind, value.as_ref())?,
-    };
-    Ok(ScheduledFault {
-        fault,
-        t_s,
-        until_s,
-    })
+    let fault =
+        ActiveFault { kind, sensor, with, value: fault_value(source, row, kind, value.as_ref())? };
+    Ok(ScheduledFault { fault, t_s, until_s })
 }
 
 /// The kind of a name.
 fn kind(source: &Source<'_>, word: &Spanned<String>) -> Result<FaultKind, SceneError> {
-    let known = FaultKind::ALL
-        .into_iter()
-        .find(|kind| kind.name() == word.get_ref());
+    let known = FaultKind::ALL.into_iter().find(|kind| kind.name() == word.get_ref());
     known.ok_or_else(|| {
         let names = FaultKind::ALL.iter().map(|kind| kind.name());
-        let names: Vec<_> = names
-            .chain(ProcessorKind::ALL.iter().map(|kind| kind.name))
-            .collect();
-        let problem = format!(
-            "fault.kind = {:?}; known are {}",
-            word.get_ref(),
-            names.join(", ")
-        );
+        let names: Vec<_> = names.chain(ProcessorKind::ALL.iter().map(|kind| kind.name)).collect();
+        let problem = format!("fault.kind = {:?}; known are {}", word.get_ref(), names.join(", "));
         source.error(Some(word.span()), problem)
     })
 }
@@ -175,10 +145,7 @@ fn meaningless_key<T>(
 ) -> SceneError {
     let names = FaultKind::ALL.into_iter().filter(|kind| has_it(*kind));
     let names: Vec<_> = names.map(FaultKind::name).collect();
-    let problem = format!(
-        "fault.{key} has no meaning for {}; it has for {}",
-        kind.name(),
-        names.join(", ")
-    );
+    let problem =
+        format!("fault.{key} has no meaning for {}; it has for {}", kind.name(), names.join(", "));
     source.error(Some(place.span()), problem)
 }

@@ -78,10 +78,7 @@ impl ProcessorKind {
         Self::new("hse-started", &[]),
         Self::new("adc-stopped", &[]),
         Self::new("adc2-stopped", &[]),
-        Self::new(
-            "dma-stopped",
-            &[ProcessorKey::Controller, ProcessorKey::Stream],
-        ),
+        Self::new("dma-stopped", &[ProcessorKey::Controller, ProcessorKey::Stream]),
         Self::new("brown-out", &[]),
         Self::new("power-cycle", &[]),
         Self::new("reset-pin", &[]),
@@ -90,10 +87,7 @@ impl ProcessorKind {
         Self::new("ram-bit", &[ProcessorKey::Address, ProcessorKey::Bit]),
         Self::new("core-bit", &[ProcessorKey::Register, ProcessorKey::Bit]),
         Self::new("register-bit", &[ProcessorKey::Address, ProcessorKey::Bit]),
-        Self::new(
-            "select-line-stuck",
-            &[ProcessorKey::Line, ProcessorKey::Level],
-        ),
+        Self::new("select-line-stuck", &[ProcessorKey::Line, ProcessorKey::Level]),
         Self::new("select-line-open", &[ProcessorKey::Line]),
     ];
 
@@ -115,23 +109,14 @@ pub(super) fn injection(
     duration_s: f64,
     seed: u64,
 ) -> Result<Injection, SceneError> {
-    let file::Fault {
-        t_s,
-        until_s,
-        value,
-        sensor,
-        with,
-        ..
-    } = row.get_ref();
+    let file::Fault { t_s, until_s, value, sensor, with, .. } = row.get_ref();
     let spans = [
         ("until_s", until_s.as_ref().map(Spanned::span)),
         ("value", value.as_ref().map(Spanned::span)),
         ("sensor", sensor.as_ref().map(Spanned::span)),
         ("with", with.as_ref().map(Spanned::span)),
     ];
-    let known = ProcessorKey::ALL
-        .into_iter()
-        .filter(|key| !kind.keys.contains(key));
+    let known = ProcessorKey::ALL.into_iter().filter(|key| !kind.keys.contains(key));
     let others = known.map(|key| (key.name(), key.value(row.get_ref()).map(|(span, _)| span)));
     for (key, span) in spans.into_iter().chain(others) {
         if let Some(span) = span {
@@ -166,13 +151,7 @@ pub(super) fn no_keys(source: &Source<'_>, row: &Spanned<file::Fault>) -> Result
     let row = row.get_ref();
     for key in ProcessorKey::ALL {
         if let Some((span, _)) = key.value(row) {
-            return Err(meaningless_key(
-                source,
-                key.name(),
-                span,
-                row.kind.get_ref(),
-                &[],
-            ));
+            return Err(meaningless_key(source, key.name(), span, row.kind.get_ref(), &[]));
         }
     }
     Ok(())
@@ -185,23 +164,14 @@ fn meaningless_key(
     kind: &str,
     keys: &[ProcessorKey],
 ) -> SceneError {
-    let allowed: Vec<_> = std::iter::once("t_s")
-        .chain(keys.iter().map(|key| key.name()))
-        .collect();
-    let has = ProcessorKind::ALL
-        .iter()
-        .filter(|kind| kind.keys.iter().any(|own| own.name() == key));
+    let allowed: Vec<_> = std::iter::once("t_s").chain(keys.iter().map(|key| key.name())).collect();
+    let has =
+        ProcessorKind::ALL.iter().filter(|kind| kind.keys.iter().any(|own| own.name() == key));
     let has: Vec<_> = has.map(|kind| kind.name).collect();
     let problem = if has.is_empty() {
-        format!(
-            "fault.{key} has no meaning for {kind}; allowed is {}",
-            allowed.join(", ")
-        )
+        format!("fault.{key} has no meaning for {kind}; allowed is {}", allowed.join(", "))
     } else {
-        format!(
-            "fault.{key} has no meaning for {kind}; it has for {}",
-            has.join(", ")
-        )
+        format!("fault.{key} has no meaning for {kind}; it has for {}", has.join(", "))
     };
     source.error(Some(span), problem)
 }

@@ -38,20 +38,14 @@ fn finger_that_lands_ends_tuning_at_any_time_and_the_device_stays_armed() {
                 "err tuning goes on; ask again in a second",
                 "after {after_ms} ms"
             );
-            bench
-                .link()
-                .world()
-                .set_force_and_faults(0.5, std::iter::empty());
+            bench.link().world().set_force_and_faults(0.5, std::iter::empty());
             wait(bench, 50);
             assert_eq!(
                 ask(bench, "tune result"),
                 "err tune was ended: a finger touches the display"
             );
             assert!(ask(bench, "state").starts_with("ok state=armed fault=-"));
-            assert_eq!(
-                ask(bench, "tune"),
-                "err tune needs a display without a finger on it"
-            );
+            assert_eq!(ask(bench, "tune"), "err tune needs a display without a finger on it");
             // Neutral again, under the finger.
             wait(bench, 3000);
             let display_c = bench.link().world().plant().display_c();
@@ -70,15 +64,9 @@ fn thermistor_that_breaks_while_tuning_trips_and_is_named() {
             .set_force_and_faults(0.0, std::iter::once(FaultKind::ThermistorOpen.into()));
         wait(bench, 5);
         assert_eq!(bench.link().world().plant().current_a(), 0.0);
-        assert_eq!(
-            ask(bench, "tune result"),
-            "err tripped by display-open; clear it first"
-        );
+        assert_eq!(ask(bench, "tune result"), "err tripped by display-open; clear it first");
         // Even when the fault is gone, nothing of the experiment is used.
-        bench
-            .link()
-            .world()
-            .set_force_and_faults(0.0, std::iter::empty());
+        bench.link().world().set_force_and_faults(0.0, std::iter::empty());
         wait(bench, 5);
         bench.command("clear").expect("cleared");
         assert_eq!(
@@ -93,10 +81,7 @@ fn hot_sink_ends_tuning_before_it_trips() {
     let hot = device(None, 1).sink_on_coolant(41.7).expect("a plant");
     tuning(hot, |bench| {
         wait(bench, 50);
-        assert_eq!(
-            ask(bench, "tune result"),
-            "err tune was ended: the sink is above 41.5 C"
-        );
+        assert_eq!(ask(bench, "tune result"), "err tune was ended: the sink is above 41.5 C");
     });
 }
 
@@ -120,10 +105,7 @@ fn other_commands_end_tuning() {
                 "{answer}"
             );
             assert!(ask(bench, "state").contains(state));
-            assert_eq!(
-                bench.link().world().plant().current_a() == 0.0,
-                state == STATE_OFF
-            );
+            assert_eq!(bench.link().world().plant().current_a() == 0.0, state == STATE_OFF);
         });
     }
 }
@@ -142,10 +124,7 @@ fn what_tuning_has_found_can_be_asked_for_again() {
         }
         assert!(first.starts_with("ok gain="), "{first}");
         let display_c = bench.link().world().plant().display_c();
-        assert!(
-            display_c < 28.0,
-            "held at the sink's temperature: {display_c}"
-        );
+        assert!(display_c < 28.0, "held at the sink's temperature: {display_c}");
         wait(bench, 3000);
         assert_eq!(ask(bench, "tune result"), first);
         assert_eq!(ask(bench, "margins"), first);
@@ -165,10 +144,7 @@ fn what_does_not_fit_the_state_is_refused() {
         ("tune", "err tune needs the state armed"),
         ("hold 30", "err hold needs a driven display: arm first"),
         ("tune result", "err nothing was tuned since arm; tune first"),
-        (
-            "calibrate display 24",
-            "err not watched for long enough; wait half a second",
-        ),
+        ("calibrate display 24", "err not watched for long enough; wait half a second"),
     ] {
         assert_eq!(ask(&mut bench, line), answer, "{line}");
     }
@@ -201,10 +177,7 @@ fn object_that_is_presented_after_tuning_is_what_the_display_shows() {
         let setpoint = words.find_map(|word| word.strip_prefix("setpoint_c="));
         let setpoint_c: f64 = setpoint.expect("a set-point").parse().expect("degrees");
         let display_c = bench.link().world().plant().display_c();
-        assert!(
-            setpoint_c < 26.0 && (display_c - setpoint_c).abs() < 0.3,
-            "{reply}: {display_c}"
-        );
+        assert!(setpoint_c < 26.0 && (display_c - setpoint_c).abs() < 0.3, "{reply}: {display_c}");
     });
 }
 

@@ -26,9 +26,7 @@ fn errors(all: &[f64]) -> Errors {
 
 /// Temperatures of a range, 0.15 K apart: every one of the converter's segments has 20, and its border up to one.
 fn range(from_c: f64, to_c: f64) -> impl Iterator<Item = f64> {
-    (0..)
-        .map(move |i| from_c + 0.15 * f64::from(i))
-        .take_while(move |t| *t <= to_c)
+    (0..).map(move |i| from_c + 0.15 * f64::from(i)).take_while(move |t| *t <= to_c)
 }
 
 /// Errors of display, skin, room and sink of a device with some settings.
@@ -44,19 +42,11 @@ fn sweep(plants: &CommissioningSetup, seed: u64, settings: &[String]) -> [Vec<f6
         // The display rests at the temperature of the sink, in the room that it was calibrated in.
         *bench.link().world() = plants.sink_on_coolant(t_c).expect("a plant");
         wait(&mut bench, REST_MS);
-        let (read, truth) = mean(
-            &mut bench,
-            |line| line.display_c,
-            MEAN_MS,
-            |world| world.plant().display_c(),
-        );
+        let (read, truth) =
+            mean(&mut bench, |line| line.display_c, MEAN_MS, |world| world.plant().display_c());
         all[0].push(read - truth);
-        let (read, truth) = mean(
-            &mut bench,
-            |line| line.sink_c,
-            MEAN_MS,
-            |world| world.plant().sink_c(),
-        );
+        let (read, truth) =
+            mean(&mut bench, |line| line.sink_c, MEAN_MS, |world| world.plant().sink_c());
         all[3].push(read - truth);
     }
     for t_c in range(27.0, 37.0) {
@@ -76,13 +66,7 @@ fn sweep(plants: &CommissioningSetup, seed: u64, settings: &[String]) -> [Vec<f6
 /// either side, its distance across is unknown to the device: up to half of the step is left there.
 #[test]
 fn calibrated_readings_are_within_millikelvins() {
-    let devices = [
-        (None, 1),
-        (None, 2),
-        (Some(4), 4),
-        (Some(6), 6),
-        (Some(8), 8),
-    ];
+    let devices = [(None, 1), (None, 2), (Some(4), 4), (Some(6), 6), (Some(8), 8)];
     let mut worst: [Errors; 2] = Default::default();
     for (draw, seed) in devices.into_iter().step_by(one_case_in(2)) {
         let plants = device(draw, seed);
@@ -106,17 +90,10 @@ fn calibrated_readings_are_within_millikelvins() {
             }
             let beyond = all.iter().filter(|error| error.abs() > 6e-3).count();
             if *sensor != "sink" {
-                assert!(
-                    beyond * 30 < all.len(),
-                    "{sensor}: {beyond} of {}",
-                    all.len()
-                );
+                assert!(beyond * 30 < all.len(), "{sensor}: {beyond} of {}", all.len());
             }
             // The box has sensors that happen to be good, but no device whose sensors are.
-            assert!(
-                *sensor != "display" || before.rms > 5.0 * after.rms,
-                "{sensor}: {before:?}"
-            );
+            assert!(*sensor != "display" || before.rms > 5.0 * after.rms, "{sensor}: {before:?}");
         }
     }
     for (group, worst) in ["display", "others"].iter().zip(&worst) {

@@ -18,20 +18,14 @@ fn tested(
     sink_k: f64,
     force_n: f64,
 ) -> Option<FluxSensorTest> {
-    let mut params = Params {
-        flux,
-        ..Params::nominal()
-    };
+    let mut params = Params { flux, ..Params::nominal() };
     params.tile.coolant_k = sink_k;
     let setup = CommissioningSetup::new(&params, ROOM_C, 1);
     let mut engine = NativeEngine::new(setup.in_use().expect("a plant"));
     let mut bench = bench(&mut engine, &[]);
     let world = bench.link().world();
     world.set_force_and_faults(force_n, std::iter::empty());
-    world.set_plant_defects(Defects {
-        flux: defect,
-        ..Defects::default()
-    });
+    world.set_plant_defects(Defects { flux: defect, ..Defects::default() });
     let sensor = PlainCommand::FluxSensor(Some(FluxSensor::DESIGNED));
     bench.ask(&sensor).expect("a sensor");
     wait(&mut bench, 100);
@@ -51,22 +45,11 @@ fn a_sensor_that_reads_what_it_cannot_is_named_and_trips_nothing() {
         (fitted, zero(-80.0), FluxSensorTest::Zero),
         (fitted, zero(80.0), FluxSensorTest::Zero),
         (fitted, circuit(FluxCircuit::Open), FluxSensorTest::Range),
-        (
-            fitted,
-            FluxDefect {
-                stuck: true,
-                ..sound
-            },
-            FluxSensorTest::Range,
-        ),
+        (fitted, FluxDefect { stuck: true, ..sound }, FluxSensorTest::Range),
         (None, sound, FluxSensorTest::Range),
         // Both read no flux, or as little as of the air: that is not tested.
         (fitted, circuit(FluxCircuit::Short), FluxSensorTest::Passed),
-        (
-            fitted,
-            circuit(FluxCircuit::Reversed),
-            FluxSensorTest::Passed,
-        ),
+        (fitted, circuit(FluxCircuit::Reversed), FluxSensorTest::Passed),
     ] {
         assert_eq!(tested(flux, defect, 0.0, 0.0), Some(expected), "{defect:?}");
     }
@@ -85,8 +68,5 @@ fn flux_of_the_air_and_of_a_finger_do_not_fail_the_test() {
     let mut bench = bench(&mut engine, &[]);
     wait(&mut bench, 100);
     arm(&mut bench, None).expect("armed");
-    assert_eq!(
-        bench.ask(&QuerySelfTest).expect("a report").flux_sensor,
-        None
-    );
+    assert_eq!(bench.ask(&QuerySelfTest).expect("a report").flux_sensor, None);
 }

@@ -25,9 +25,7 @@ fn moves(
     let mut bench = bench(&mut engine, settings);
     wait(&mut bench, 10);
     let words: Vec<&str> = settings.last().expect("a tile").split(' ').collect();
-    let [set, tile, gain, rest @ ..] = &words[..] else {
-        panic!("{words:?}")
-    };
+    let [set, tile, gain, rest @ ..] = &words[..] else { panic!("{words:?}") };
     let gain: f64 = gain.parse().expect("a gain");
     // The law's gain is the reciprocal of the tile's.
     let line = format!("{set} {tile} {:.6} {}", gain / times, rest.join(" "));
@@ -60,9 +58,8 @@ fn the_loop_oscillates_beyond_its_gain_margin_and_not_within() {
         let plants = device((draw > 0).then_some(draw), draw);
         let settings = settings_for_device(plants.params(), ROOM_C, draw).expect("settings");
         let mut engine = NativeEngine::new(plants.in_use().expect("a plant"));
-        let IdentifiedTile { gain_margin, .. } = bench(&mut engine, &settings)
-            .ask(&QueryMargins)
-            .expect("margins");
+        let IdentifiedTile { gain_margin, .. } =
+            bench(&mut engine, &settings).ask(&QueryMargins).expect("margins");
         let within = moves(&plants, &settings, WITHIN * gain_margin);
         let beyond = moves(&plants, &settings, BEYOND * gain_margin);
         println!(

@@ -24,10 +24,7 @@ type Bench<'a> = Client<SimulatedLink<'a, NativeEngine>>;
 const ROOM_C: f64 = 24.0;
 
 /// A reference thermometer without error but its resolution.
-const PERFECT: HostParams = HostParams {
-    reference_offset_k: 0.0,
-    reference_noise_k: 0.0,
-};
+const PERFECT: HostParams = HostParams { reference_offset_k: 0.0, reference_noise_k: 0.0 };
 
 /// A device of the box; the nominal one for no draw. The reference thermometer is perfect.
 fn device(draw: Option<u64>, seed: u64) -> CommissioningSetup {
@@ -71,8 +68,5 @@ fn mean(
     }
     bench.ask(&PlainCommand::stream(0)).expect("no telemetry");
     assert!(read.len() as u64 > ms / 2, "telemetry of every tick");
-    (
-        read.iter().sum::<f64>() / read.len() as f64,
-        true_c / ms as f64,
-    )
+    (read.iter().sum::<f64>() / read.len() as f64, true_c / ms as f64)
 }

@@ -61,10 +61,7 @@ impl<'a> Surroundings<Link<'a>> for Bench {
             let moved = self.surroundings.move_phantom(world, place);
             moved.map_err(|error| SurroundingsError::Failed(error.to_string()))?;
         }
-        world.set_plant_defects(Defects {
-            flux: self.defect,
-            ..Defects::default()
-        });
+        world.set_plant_defects(Defects { flux: self.defect, ..Defects::default() });
         Ok(())
     }
 
@@ -77,10 +74,7 @@ impl<'a> Surroundings<Link<'a>> for Bench {
 
 /// A drawn device with a drawn sensor that nobody has calibrated.
 fn device(draw: u64) -> Params {
-    let mut params = Params {
-        flux: Some(FluxParams::NOMINAL),
-        ..Params::nominal()
-    };
+    let mut params = Params { flux: Some(FluxParams::NOMINAL), ..Params::nominal() };
     parameters::draw(&mut params, draw);
     if let Some(flux) = &mut params.flux {
         flux.gain_error = UNCALIBRATED.draw(1.0, draw, "uncalibrated") - 1.0;
@@ -156,10 +150,7 @@ fn gains_of_drawn_sensors_are_found_within_what_is_stated() {
         let flux = params.flux.as_ref().expect("a sensor");
         let gain = (1.0 + flux.gain_error) * flux.counts_per_w_m2;
         let drawn = SimulatedPhantom::gel(draw, ROOM_C);
-        let exact = SimulatedPhantom {
-            effusivity: gel().effusivity,
-            ..drawn
-        };
+        let exact = SimulatedPhantom { effusivity: gel().effusivity, ..drawn };
         for (phantom, errors) in [(exact, &mut by_fit), (drawn, &mut by_gel)] {
             let found = calibrated(&params, draw, phantom, SOUND).expect("a calibration");
             let error = 100.0 * (found.counts_per_w_m2 / gain - 1.0);
@@ -176,10 +167,7 @@ fn gains_of_drawn_sensors_are_found_within_what_is_stated() {
     assert_sampled("flux-phantom.gain", rms(&by_gel));
     assert_sampled("flux-phantom.gain_worst", worst(&by_gel));
     // The stated deviation is that of the errors: neither half nor twice.
-    assert!(
-        (0.5..2.0).contains(&(rms(&stated) / rms(&by_gel))),
-        "{stated:?}"
-    );
+    assert!((0.5..2.0).contains(&(rms(&stated) / rms(&by_gel))), "{stated:?}");
 }
 
 #[test]
@@ -189,45 +177,28 @@ fn lines_that_move_the_phantom_are_read_as_they_are_written() {
         assert_eq!(request.to_string().parse(), Ok(request));
     }
     let error = "phantom under".parse::<SurroundingsRequest>();
-    assert_eq!(
-        error,
-        Err("unknown place 'under'; known: beside on away".into())
-    );
+    assert_eq!(error, Err("unknown place 'under'; known: beside on away".into()));
 }
 
 #[test]
 fn what_cannot_be_right_is_refused_and_changes_nothing() {
     let params = device(4);
     let refused = |phantom: SimulatedPhantom, bench, why: &str| {
-        let error = calibrated(&params, 4, phantom, bench)
-            .expect_err(why)
-            .to_string();
+        let error = calibrated(&params, 4, phantom, bench).expect_err(why).to_string();
         println!("{error}");
         assert!(error.contains(why), "{error}");
     };
     let with = |defect: FluxDefect| (defect, true);
     refused(gel(), (SOUND.0, false), "the phantom presses with 0.0");
     // Acrylic glass, and marble.
-    for (effusivity, why) in [
-        (573.0, "of the designed one"),
-        (2400.0, "of the designed one"),
-    ] {
-        let phantom = SimulatedPhantom {
-            effusivity,
-            ..gel()
-        };
+    for (effusivity, why) in [(573.0, "of the designed one"), (2400.0, "of the designed one")] {
+        let phantom = SimulatedPhantom { effusivity, ..gel() };
         refused(phantom, SOUND, why);
     }
-    let warm = SimulatedPhantom {
-        above_room_k: 0.6,
-        ..gel()
-    };
+    let warm = SimulatedPhantom { above_room_k: 0.6, ..gel() };
     refused(warm, SOUND, "the phantom had 24.");
     // A finger's skin, or a foil between.
-    let rough = SimulatedPhantom {
-        resistance_factor: 1.5,
-        ..gel()
-    };
+    let rough = SimulatedPhantom { resistance_factor: 1.5, ..gel() };
     refused(rough, SOUND, "the contact of the phantom has");
     let circuit = |circuit| with(FluxDefect { circuit, ..SOUND.0 });
     refused(
@@ -237,20 +208,6 @@ fn what_cannot_be_right_is_refused_and_changes_nothing() {
     );
     refused(gel(), circuit(FluxCircuit::Short), "heat-flux sensor: ");
     refused(gel(), circuit(FluxCircuit::Reversed), "of the designed one");
-    refused(
-        gel(),
-        with(FluxDefect {
-            stuck: true,
-            ..SOUND.0
-        }),
-        "does not change",
-    );
-    refused(
-        gel(),
-        with(FluxDefect {
-            gain: 0.5,
-            ..SOUND.0
-        }),
-        "of the designed one",
-    );
+    refused(gel(), with(FluxDefect { stuck: true, ..SOUND.0 }), "does not change");
+    refused(gel(), with(FluxDefect { gain: 0.5, ..SOUND.0 }), "of the designed one");
 }

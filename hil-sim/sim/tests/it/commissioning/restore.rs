@@ -14,13 +14,7 @@ fn a_device_reads_and_controls_as_before_by_its_lines() {
     let words: Vec<f64> = (settings.last().expect("a tile").split(' '))
         .filter_map(|word| word.parse().ok())
         .collect();
-    let has = [
-        tile.gain_k_s_a,
-        tile.joule_per_a,
-        tile.leak_1_s,
-        tile.lag_s,
-        tile.dead_s,
-    ];
+    let has = [tile.gain_k_s_a, tile.joule_per_a, tile.leak_1_s, tile.lag_s, tile.dead_s];
     for (has, set) in has.into_iter().zip(&words) {
         assert!((has - set).abs() < 1e-4, "{has}, {set}");
     }
@@ -28,12 +22,8 @@ fn a_device_reads_and_controls_as_before_by_its_lines() {
     // Sensors of this draw are off by 0.2 K, and right after the lines.
     let mut bench = bench(&mut engine, &[]);
     wait(&mut bench, 500);
-    let (read, truth) = mean(
-        &mut bench,
-        |line| line.display_c,
-        250,
-        |world| world.plant().display_c(),
-    );
+    let (read, truth) =
+        mean(&mut bench, |line| line.display_c, 250, |world| world.plant().display_c());
     assert!((read - truth).abs() < 5e-3, "{read}, {truth}");
 }
 

@@ -14,9 +14,7 @@ fn the_mirrors_zero_is_not_taken_for_the_tiles_answer() {
         let mut params = Params::nominal();
         params.sensors.mirror.offset_a = zero_a;
         let settings = settings_for_device(&params, ROOM_C, seed).expect("a commissioned device");
-        let tile = settings
-            .iter()
-            .find_map(|line| line.strip_prefix("set tile "));
+        let tile = settings.iter().find_map(|line| line.strip_prefix("set tile "));
         let gain = tile.and_then(|values| values.split(' ').next());
         gain.and_then(|gain| gain.parse().ok()).expect("a gain")
     };
@@ -43,14 +41,8 @@ fn plate_answers_sines_as_its_heat_capacity_says() {
         let expected =
             tile.seebeck_v_k() * (24.0 + 273.15) / plate_j_k / response.w.hypot(leak_1_s);
         println!("{response:?}, expected {expected:.4}");
-        assert!(
-            (response.k_a / expected - 1.0).abs() < 0.04,
-            "{response:?}, expected {expected}"
-        );
+        assert!((response.k_a / expected - 1.0).abs() < 0.04, "{response:?}, expected {expected}");
         let trailing = response.w.atan2(leak_1_s);
-        assert!(
-            (response.phase_lag_rad - trailing).abs() < 0.06,
-            "{response:?}, {trailing}"
-        );
+        assert!((response.phase_lag_rad - trailing).abs() < 0.06, "{response:?}, {trailing}");
     }
 }

@@ -25,13 +25,7 @@ fn hot_display_ends_the_current_whatever_the_legs_do() {
     // Its thermistor lags by 0.1 s behind some 10 K/s.
     assert!((45.0..47.0).contains(&cut_c), "{cut_c}");
     assert!(world.bridge_fault(), "nFAULT is low");
-    for all in [
-        &[][..],
-        &[
-            FaultKind::BridgeEnableStuck.into(),
-            FaultKind::BridgeStuckLow.into(),
-        ],
-    ] {
+    for all in [&[][..], &[FaultKind::BridgeEnableStuck.into(), FaultKind::BridgeStuckLow.into()]] {
         run(&mut world, 1, driven(HEATING.0, HEATING.1), all);
         assert_eq!(world.plant().current_a(), 0.0);
     }
@@ -97,46 +91,20 @@ fn stuck_comparator_keeps_the_supply_off() {
 /// Its input is the check thermistor's pin: faults there act on it, those of the other four or of the converter do not.
 #[test]
 fn it_sees_the_second_thermistors_pin_alone() {
-    let swapped = ActiveFault {
-        with: Sensor::Check,
-        ..of(FaultKind::SensorsSwapped, Sensor::Room, 0.0)
-    };
+    let swapped =
+        ActiveFault { with: Sensor::Check, ..of(FaultKind::SensorsSwapped, Sensor::Room, 0.0) };
     for (all, cut) in [
-        (
-            vec![of(FaultKind::ThermistorOpen, Sensor::Check, 0.0)],
-            true,
-        ),
-        (
-            vec![of(FaultKind::ThermistorShort, Sensor::Check, 0.0)],
-            true,
-        ),
-        (
-            vec![of(FaultKind::ThermistorOffset, Sensor::Check, 20.9)],
-            false,
-        ),
-        (
-            vec![of(FaultKind::ThermistorOffset, Sensor::Check, 21.1)],
-            true,
-        ),
-        (
-            vec![of(FaultKind::ThermistorDrift, Sensor::Check, -14.1)],
-            true,
-        ),
+        (vec![of(FaultKind::ThermistorOpen, Sensor::Check, 0.0)], true),
+        (vec![of(FaultKind::ThermistorShort, Sensor::Check, 0.0)], true),
+        (vec![of(FaultKind::ThermistorOffset, Sensor::Check, 20.9)], false),
+        (vec![of(FaultKind::ThermistorOffset, Sensor::Check, 21.1)], true),
+        (vec![of(FaultKind::ThermistorDrift, Sensor::Check, -14.1)], true),
         (vec![FaultKind::ReferenceOff.into()], true),
         (vec![FaultKind::AdcStuck.into()], false),
-        (
-            vec![of(FaultKind::ThermistorOpen, Sensor::Display, 0.0)],
-            false,
-        ),
-        (
-            vec![of(FaultKind::ThermistorShort, Sensor::Room, 0.0)],
-            false,
-        ),
+        (vec![of(FaultKind::ThermistorOpen, Sensor::Display, 0.0)], false),
+        (vec![of(FaultKind::ThermistorShort, Sensor::Room, 0.0)], false),
         (vec![swapped], false),
-        (
-            vec![swapped, of(FaultKind::ThermistorShort, Sensor::Room, 0.0)],
-            true,
-        ),
+        (vec![swapped, of(FaultKind::ThermistorShort, Sensor::Room, 0.0)], true),
     ] {
         let mut world = ideal();
         run(&mut world, 2, OFF, &all);
@@ -160,12 +128,7 @@ fn stuck_code_does_not_hide_the_heat_and_a_loose_thermistor_does() {
 fn threshold_is_a_parameter() {
     for (offset_k, cut) in [(21.2, false), (21.4, true)] {
         let mut world = connected(&format!("{IDEAL}comparator.hot_c = 45.3\n"));
-        run(
-            &mut world,
-            2,
-            OFF,
-            &[of(FaultKind::ThermistorOffset, Sensor::Check, offset_k)],
-        );
+        run(&mut world, 2, OFF, &[of(FaultKind::ThermistorOffset, Sensor::Check, offset_k)]);
         assert_eq!(world.plant().supply_cut(), cut, "{offset_k} K");
     }
 }

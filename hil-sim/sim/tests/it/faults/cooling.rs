@@ -30,22 +30,14 @@ fn sink_cools_as_capacity_and_fan_have_it() {
         let expected = 1.0 - f64::exp(-10.0 / tau_s);
         let lost = lost(&all);
         // The tile follows late.
-        assert!(
-            (lost / expected - 1.0).abs() < 0.05,
-            "{factor}: {lost} for {expected}"
-        );
+        assert!((lost / expected - 1.0).abs() < 0.05, "{factor}: {lost} for {expected}");
     }
 }
 
 #[test]
 fn sink_goes_where_its_coolant_is() {
     let mut world = ideal();
-    run(
-        &mut world,
-        300_000,
-        OFF,
-        &[broken(FaultKind::ChillerOff, 40.0)],
-    );
+    run(&mut world, 300_000, OFF, &[broken(FaultKind::ChillerOff, 40.0)]);
     // The plate gives some 0.15 W to the room.
     let sink_c = world.plant().sink_c();
     assert!((sink_c - 40.0).abs() < 0.05, "{sink_c}");

@@ -65,14 +65,8 @@ fn dose_and_range_are_those_of_the_rows() {
     }
     assert!(dose_s > 60.0, "{dose_s} s");
     assert!((figures.cem43_min / (dose_s / 60.0) - 1.0).abs() < 1e-9);
-    assert!(
-        rows.iter()
-            .any(|row| row.display_c == figures.display_c.max)
-    );
-    assert!(
-        rows.iter()
-            .any(|row| row.display_c == figures.display_c.min)
-    );
+    assert!(rows.iter().any(|row| row.display_c == figures.display_c.max));
+    assert!(rows.iter().any(|row| row.display_c == figures.display_c.min));
     assert!(figures.display_c.max > 50.0 && figures.display_c.min < 30.0);
     assert!(rows.iter().all(|row| row.skin_c <= figures.skin_c.max));
 }

@@ -26,11 +26,9 @@ fn current_is_in_proportion_to_the_supply() {
     let full = driven(1.0, 0.0);
     let nominal_a = current_a(full, &[]);
     assert!((10.0..11.0).contains(&nominal_a), "{nominal_a} A");
-    for (kind, supply_v) in [
-        (FaultKind::SupplyLow, 6.0),
-        (FaultKind::SupplyLow, 9.0),
-        (FaultKind::SupplyHigh, 24.0),
-    ] {
+    for (kind, supply_v) in
+        [(FaultKind::SupplyLow, 6.0), (FaultKind::SupplyLow, 9.0), (FaultKind::SupplyHigh, 24.0)]
+    {
         let share = current_a(full, &[broken(kind, supply_v)]) / nominal_a;
         assert!(
             // The driver's 7.5 mA take 0.3 mV from the supply.
@@ -56,12 +54,7 @@ fn supply_comes_back() {
 fn high_supply_overloads_a_weak_driver_only() {
     for (tables, overloaded) in [("", false), ("[plant]\nbridge.trip_a = 20\n", true)] {
         let mut world = connected(tables);
-        run(
-            &mut world,
-            3,
-            driven(1.0, 0.0),
-            &[broken(FaultKind::SupplyHigh, 24.0)],
-        );
+        run(&mut world, 3, driven(1.0, 0.0), &[broken(FaultKind::SupplyHigh, 24.0)]);
         assert_eq!(world.bridge_fault(), overloaded, "{tables}");
         assert_eq!(world.plant().current_a() == 0.0, overloaded, "{tables}");
     }
@@ -101,10 +94,7 @@ fn enable_ends_the_current_of_a_stuck_leg() {
         FaultKind::BridgeStuckLow,
         FaultKind::PolaritySwapped,
     ] {
-        let disabled = BridgeOutputs {
-            enabled: false,
-            ..legs(COOLING)
-        };
+        let disabled = BridgeOutputs { enabled: false, ..legs(COOLING) };
         assert_eq!(current_a(disabled, &[kind.into()]), 0.0, "{kind:?}");
         assert_eq!(current_a(OFF, &[kind.into()]), 0.0, "{kind:?}");
     }
@@ -112,10 +102,7 @@ fn enable_ends_the_current_of_a_stuck_leg() {
 
 #[test]
 fn stuck_enable_drives_for_as_long_as_pwm_does() {
-    let disabled = BridgeOutputs {
-        enabled: false,
-        ..legs(COOLING)
-    };
+    let disabled = BridgeOutputs { enabled: false, ..legs(COOLING) };
     let stuck = [FaultKind::BridgeEnableStuck.into()];
     assert_eq!(current_a(disabled, &[]), 0.0);
     assert_eq!(current_a(disabled, &stuck), current_a(legs(COOLING), &[]));
@@ -125,33 +112,19 @@ fn stuck_enable_drives_for_as_long_as_pwm_does() {
 #[test]
 fn short_of_output_a_trips_the_driver_and_a_dead_pin_hides_it() {
     let mut world = ideal();
-    run(
-        &mut world,
-        1,
-        legs(COOLING),
-        &[FaultKind::BridgeShorted.into()],
-    );
+    run(&mut world, 1, legs(COOLING), &[FaultKind::BridgeShorted.into()]);
     assert!(world.bridge_fault());
     let hidden = [FaultKind::BridgeShorted, FaultKind::FaultPinDead].map(ActiveFault::from);
     run(&mut world, 1, legs(COOLING), &hidden);
     assert!(!world.bridge_fault());
-    assert_eq!(
-        world.plant().current_a(),
-        0.0,
-        "the driver has tripped all the same"
-    );
+    assert_eq!(world.plant().current_a(), 0.0, "the driver has tripped all the same");
 }
 
 #[test]
 fn mirror_shows_what_it_is_stuck_at() {
     let mut world = ideal();
     for (legs, amperes) in [(OFF, 3.0), (driven(1.0, 0.0), 0.0)] {
-        run(
-            &mut world,
-            1,
-            legs,
-            &[broken(FaultKind::MirrorStuck, amperes)],
-        );
+        run(&mut world, 1, legs, &[broken(FaultKind::MirrorStuck, amperes)]);
         // 400 counts/A.
         let code = f64::from(codes(&mut world)[Channel::Current as usize]);
         assert_eq!(code, 400.0 * amperes);

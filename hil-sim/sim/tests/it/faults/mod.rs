@@ -22,11 +22,7 @@ const IDEAL: &str = "[plant]\nsensors.converter.noise_counts = 0\nsensors.conver
     sensors.reference.excitation_duty = 0\nsensors.display.lead_share = 0\nsensors.check.lead_share = 0\n\
     sensors.sink.lead_share = 0\nsensors.skin.lead_share = 0\nbridge.trip_a = 40\n";
 
-const OFF: BridgeOutputs = BridgeOutputs {
-    a: Leg::Off,
-    b: Leg::Off,
-    enabled: false,
-};
+const OFF: BridgeOutputs = BridgeOutputs { a: Leg::Off, b: Leg::Off, enabled: false };
 
 fn scene(tables: &str) -> Scene {
     let text = format!("{HEAD}{tables}");
@@ -57,25 +53,15 @@ fn connected(tables: &str) -> World {
 }
 
 fn driven(a: f64, b: f64) -> BridgeOutputs {
-    BridgeOutputs {
-        a: Leg::Duty(a),
-        b: Leg::Duty(b),
-        enabled: true,
-    }
+    BridgeOutputs { a: Leg::Duty(a), b: Leg::Duty(b), enabled: true }
 }
 
 fn broken(kind: FaultKind, value: f64) -> ActiveFault {
-    ActiveFault {
-        value,
-        ..kind.into()
-    }
+    ActiveFault { value, ..kind.into() }
 }
 
 fn of(kind: FaultKind, sensor: Sensor, value: f64) -> ActiveFault {
-    ActiveFault {
-        sensor,
-        ..broken(kind, value)
-    }
+    ActiveFault { sensor, ..broken(kind, value) }
 }
 
 /// Lets time pass in milliseconds with the finger lifted, things broken, and the legs held.

@@ -32,35 +32,15 @@ fn each_thermistor_breaks_by_itself() {
         for (kind, value, code) in [
             (FaultKind::ThermistorOpen, 0.0, Some(4095)),
             (FaultKind::ThermistorShort, 0.0, Some(0)),
-            (
-                FaultKind::ThermistorOffset,
-                5.0,
-                (sensor != Sensor::Skin).then_some(AT_29_C),
-            ),
-            (
-                FaultKind::ThermistorOffset,
-                -10.0,
-                (sensor == Sensor::Skin).then_some(AT_24_C),
-            ),
-            (
-                FaultKind::ThermistorOffset,
-                -10.0,
-                (sensor != Sensor::Skin).then_some(AT_14_C),
-            ),
-            (
-                FaultKind::ThermistorDrift,
-                5.0,
-                (sensor != Sensor::Skin).then_some(AT_29_C),
-            ),
+            (FaultKind::ThermistorOffset, 5.0, (sensor != Sensor::Skin).then_some(AT_29_C)),
+            (FaultKind::ThermistorOffset, -10.0, (sensor == Sensor::Skin).then_some(AT_24_C)),
+            (FaultKind::ThermistorOffset, -10.0, (sensor != Sensor::Skin).then_some(AT_14_C)),
+            (FaultKind::ThermistorDrift, 5.0, (sensor != Sensor::Skin).then_some(AT_29_C)),
         ] {
             let Some(code) = code else { continue };
             let mut expected = REST;
             expected[sensor as usize] = code;
-            assert_eq!(
-                after(&[of(kind, sensor, value)]),
-                expected,
-                "{kind:?} of {sensor:?}"
-            );
+            assert_eq!(after(&[of(kind, sensor, value)]), expected, "{kind:?} of {sensor:?}");
         }
     }
 }
@@ -104,12 +84,7 @@ fn stuck_converter_repeats_every_channel() {
     run(&mut world, 5, OFF, &[]);
     let stuck = codes(&mut world);
     for _ in 0..20 {
-        run(
-            &mut world,
-            1,
-            driven(1.0, 0.5),
-            &[FaultKind::AdcStuck.into()],
-        );
+        run(&mut world, 1, driven(1.0, 0.5), &[FaultKind::AdcStuck.into()]);
         assert_eq!(codes(&mut world), stuck);
     }
 }
@@ -124,10 +99,8 @@ fn swapped_thermistors_read_each_other() {
     assert!(sound[2].abs_diff(AT_60_C) <= 1, "{sound:?}");
     assert!(sound[0] > AT_60_C + 250, "{sound:?}");
     for sensor in [Sensor::Display, Sensor::Check] {
-        let swapped = ActiveFault {
-            with: Sensor::Sink,
-            ..of(FaultKind::SensorsSwapped, sensor, 0.0)
-        };
+        let swapped =
+            ActiveFault { with: Sensor::Sink, ..of(FaultKind::SensorsSwapped, sensor, 0.0) };
         world.set_force_and_faults(0.0, [hot, swapped].into_iter());
         world.step(OFF);
         let [before, after] = [sound, codes(&mut world)];
@@ -137,20 +110,14 @@ fn swapped_thermistors_read_each_other() {
                 _ if index == sensor as usize => before[2],
                 _ => expected,
             };
-            assert!(
-                after[index].abs_diff(expected) <= 1,
-                "{sensor:?}: {before:?} {after:?}"
-            );
+            assert!(after[index].abs_diff(expected) <= 1, "{sensor:?}: {before:?} {after:?}");
         }
     }
 }
 
 #[test]
 fn dividers_without_reference_all_read_short() {
-    assert_eq!(
-        after(&[FaultKind::ReferenceOff.into()]),
-        [0, 0, 0, 0, 0, 410, 0, 3464]
-    );
+    assert_eq!(after(&[FaultKind::ReferenceOff.into()]), [0, 0, 0, 0, 0, 410, 0, 3464]);
 }
 
 #[test]
@@ -166,16 +133,9 @@ fn force_sensor_breaks_off_sticks_and_shifts() {
     // 300 counts/N over 410.
     assert_eq!(pressed(&mut world, &[FaultKind::ForceStuck.into()]), 410);
     assert_eq!(pressed(&mut world, &[]), 1010);
-    assert_eq!(
-        pressed(&mut world, &[broken(FaultKind::ForceOffset, -0.5)]),
-        860
-    );
+    assert_eq!(pressed(&mut world, &[broken(FaultKind::ForceOffset, -0.5)]), 860);
     assert_eq!(pressed(&mut world, &[FaultKind::ForceOpen.into()]), 0);
-    assert_eq!(
-        world.plant().force_n(),
-        2.0,
-        "the finger presses all the same"
-    );
+    assert_eq!(world.plant().force_n(), 2.0, "the finger presses all the same");
 }
 
 /// The loose one lags twenty times as long, 2 s: 63 % of a step are left when the sound one has arrived.

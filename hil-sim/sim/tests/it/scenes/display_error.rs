@@ -73,11 +73,9 @@ fn the_exact_setpoint_has_the_layer_of_a_heat_flux_sensor_in_it() {
 fn the_display_error_of_layers_is_bounded() {
     // Where the set-point rises quickly, as on copper on foam, the target is ahead of it: the display is up to 33 mK too warm in
     // the first 0.1 s, to the benefit of the skin. The thesis's copper has 16 and 6 mK.
-    for (name, bound_mk) in [
-        ("copper-on-foam", 40.0),
-        ("layered-finger", 20.0),
-        ("lift-and-replace", 20.0),
-    ] {
+    for (name, bound_mk) in
+        [("copper-on-foam", 40.0), ("layered-finger", 20.0), ("lift-and-replace", 20.0)]
+    {
         let scene = scene(&example(name, &[]));
         let mut engine = NativeEngine::new(World::new(&scene).expect("a plant for the scene"));
         let outcome = run(&scene, &mut engine, |_| ()).expect("the device takes the scene");
@@ -96,9 +94,6 @@ fn the_exact_setpoint_is_that_of_a_nominal_finger() {
         "{GRANITE}thickness_m = 0.01\n{FORCE}{finger}draw = 3\n[plant]\ndraw = 5\ncontact.draw = 7\n"
     );
     for ((t_s, exact_c), (_, drawn_c)) in nominal.iter().zip(exact_setpoints(&drawn)) {
-        assert!(
-            (exact_c - drawn_c).abs() < 1e-9,
-            "{exact_c} and {drawn_c} at {t_s} s"
-        );
+        assert!((exact_c - drawn_c).abs() < 1e-9, "{exact_c} and {drawn_c} at {t_s} s");
     }
 }

@@ -10,23 +10,14 @@ fn layered_finger_rests_in_equilibrium_until_it_touches() {
     for row in rows.iter().take_while(|row| row.t_s < 1.0) {
         // Nine seconds have passed, settling included. In an epidermis without blood temperature is linear: the film's
         // 10 W/(m2 K) times 10 K over 0.21 W/(m K).
-        for (receptors_c, skin_c) in [
-            (row.receptors_c, row.skin_c),
-            (row.receptors_real_c, row.skin_real_c),
-        ] {
-            assert!(
-                (skin_c - 33.0).abs() < 1e-9,
-                "skin {skin_c} at {} s",
-                row.t_s
-            );
+        for (receptors_c, skin_c) in
+            [(row.receptors_c, row.skin_c), (row.receptors_real_c, row.skin_real_c)]
+        {
+            assert!((skin_c - 33.0).abs() < 1e-9, "skin {skin_c} at {} s", row.t_s);
             for (receptor_c, depth_m) in receptors_c.iter().zip([0.16e-3, 0.45e-3]) {
                 let exact_c = 33.0 + 100.0 * depth_m / 0.21;
                 let off_c = receptor_c.expect("thick enough") - exact_c;
-                assert!(
-                    off_c.abs() < 1e-6,
-                    "{depth_m} m off by {off_c} at {} s",
-                    row.t_s
-                );
+                assert!(off_c.abs() < 1e-6, "{depth_m} m off by {off_c} at {} s", row.t_s);
             }
         }
     }
@@ -35,22 +26,10 @@ fn layered_finger_rests_in_equilibrium_until_it_touches() {
 #[test]
 fn force_ramps_and_blood_that_it_presses_out_cools_the_skin() {
     let pressed = rows(&example("layered-finger", &[]));
-    for (t_s, force_n) in [
-        (1.0, 0.1),
-        (2.5, 1.05),
-        (3.0, 2.0),
-        (11.0, 1.15),
-        (13.0, 0.0),
-    ] {
-        assert!(
-            (at(&pressed, t_s).force_n - force_n).abs() < 1e-9,
-            "at {t_s} s"
-        );
+    for (t_s, force_n) in [(1.0, 0.1), (2.5, 1.05), (3.0, 2.0), (11.0, 1.15), (13.0, 0.0)] {
+        assert!((at(&pressed, t_s).force_n - force_n).abs() < 1e-9, "at {t_s} s");
     }
-    let flowing = rows(&example(
-        "layered-finger",
-        &[("vessels = true", "vessels = false")],
-    ));
+    let flowing = rows(&example("layered-finger", &[("vessels = true", "vessels = false")]));
     let warmer_c = |t_s| at(&flowing, t_s).skin_real_c - at(&pressed, t_s).skin_real_c;
     assert_eq!(warmer_c(1.5), 0.0, "full flow up to 0.3 N");
     assert!(warmer_c(10.0) > 0.01, "{}", warmer_c(10.0));
@@ -71,16 +50,8 @@ fn slabs_with_every_back_follow_their_exact_solution() {
         ("copper", "", 25.756_038),
         ("copper", "thickness_m = 0.01", 26.249_827),
         ("granite", "thickness_m = 0.004", 28.408_463),
-        (
-            "granite",
-            "thickness_m = 0.004\nback = \"held\"",
-            27.768_548,
-        ),
-        (
-            "granite",
-            "thickness_m = 0.004\nback = \"film\"\nback_film_w_m2k = 200",
-            28.322_451,
-        ),
+        ("granite", "thickness_m = 0.004\nback = \"held\"", 27.768_548),
+        ("granite", "thickness_m = 0.004\nback = \"film\"\nback_film_w_m2k = 200", 28.322_451),
     ] {
         let text = format!(
             "duration_s = 10\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"{material}\"\n{shape}\n\
@@ -122,14 +93,8 @@ fn warm_slab_warms_the_finger_more_with_each_touch() {
     for contact in 0..5 {
         let landed_s = 1.0 + 2.0 * f64::from(contact);
         let (landed, lifted) = (at(&rows, landed_s), at(&rows, landed_s + 1.0));
-        assert!(
-            contact == 0 || landed.skin_real_c > before_c + 0.1,
-            "contact {contact}"
-        );
-        assert!(
-            lifted.skin_real_c > landed.skin_real_c + 1.0,
-            "contact {contact}"
-        );
+        assert!(contact == 0 || landed.skin_real_c > before_c + 0.1, "contact {contact}");
+        assert!(lifted.skin_real_c > landed.skin_real_c + 1.0, "contact {contact}");
         assert!(lifted.skin_real_c < 41.0);
         // The insulated skin keeps a part of it; the slab comes back to its hotplate's temperature.
         let again = at(&rows, landed_s + 1.999);
@@ -147,11 +112,7 @@ fn camera_errors(changes: &[(&str, &str)]) -> Vec<f64> {
     // 25 Hz over 12 s, both ends included.
     assert_eq!(frames.len(), 301);
     for (i, row) in frames.iter().enumerate() {
-        assert!(
-            (row.t_s - 0.04 * i as f64).abs() < 1e-9,
-            "frame {i} at {} s",
-            row.t_s
-        );
+        assert!((row.t_s - 0.04 * i as f64).abs() < 1e-9, "frame {i} at {} s", row.t_s);
     }
     let error =
         |row: &&thermal_sim::trace::TraceRow| Some(row.camera?.recovered_c - row.skin_real_c);
@@ -166,10 +127,7 @@ fn camera_recovers_the_true_skin_within_its_noise() {
     let deviation = (errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / n).sqrt();
     // Table 5-3: 0.65 by 0.54 of the skin's radiance arrives, times its emissivity.
     let expected = 0.08 / 4.0 / (0.95 * 0.65 * 0.54);
-    assert!(
-        (deviation / expected - 1.0).abs() < 0.15,
-        "{deviation} instead of {expected}"
-    );
+    assert!((deviation / expected - 1.0).abs() < 0.15, "{deviation} instead of {expected}");
     assert!(mean.abs() < 4.0 * expected / n.sqrt(), "{mean}");
 }
 
@@ -182,11 +140,7 @@ fn camera_that_sees_itself_takes_the_skin_for_warmer() {
         temperature_c(through.target_radiance(through.total_radiance(radiance(29.0)) + more));
     let errors = camera_errors(&[("rate_hz = 25", "rate_hz = 25\nnetd_k = 0")]);
     let mean = errors.iter().sum::<f64>() / errors.len() as f64;
-    assert!(
-        (mean - (taken_c - 29.0)).abs() < 0.03,
-        "{mean} instead of {}",
-        taken_c - 29.0
-    );
+    assert!((mean - (taken_c - 29.0)).abs() < 0.03, "{mean} instead of {}", taken_c - 29.0);
 }
 
 #[test]
@@ -205,9 +159,6 @@ fn drawn_plant_is_drawn_by_its_seed_and_what_the_scene_says_stays() {
     }
     assert_eq!(scene(&example("worst-case-box", &[])).params, drawn);
     let hot = rows(&example("worst-case-box", &[]));
-    let cool = rows(&example(
-        "worst-case-box",
-        &[("coolant_k = 6.0", "coolant_k = 0.0")],
-    ));
+    let cool = rows(&example("worst-case-box", &[("coolant_k = 6.0", "coolant_k = 0.0")]));
     assert!(at(&hot, 12.0).sink_c > at(&cool, 12.0).sink_c + 0.3);
 }

@@ -61,10 +61,7 @@ fn person(outcome: &Outcome) -> &str {
 fn an_enrolled_finger_is_known_and_trusted_in_its_first_contact() {
     const PLANT: &str = "\n[plant]\nfinger.resistance_factor = 1.6\n";
     let unknown = outcome(&format!("flux_sensor = true{PLANT}"), "person");
-    let known = outcome(
-        &format!("flux_sensor = true\nenrolled = true{PLANT}"),
-        "person",
-    );
+    let known = outcome(&format!("flux_sensor = true\nenrolled = true{PLANT}"), "person");
     assert_eq!(person(&known), "P01");
     assert_eq!(person(&unknown), "none");
     assert_eq!(word(&known), "finger=trusted");
@@ -93,17 +90,9 @@ fn a_device_that_is_told_wrongly_of_a_sensor_says_so_and_keeps_the_assumed_finge
     let without = outcome("", "state");
     let believing = outcome("", "flux set 0.1192 2048 5 0");
     assert_eq!(word(&believing), "finger=sensor-range");
-    assert_eq!(
-        flux_events(&believing),
-        0,
-        "it was so from the first window on"
-    );
+    assert_eq!(flux_events(&believing), 0, "it was so from the first window on");
     let off_k = setpoints(&believing).into_iter().zip(setpoints(&without));
-    assert!(
-        off_k
-            .map(|(one, other)| (one - other).abs())
-            .all(|off_k| off_k < 1e-3)
-    );
+    assert!(off_k.map(|(one, other)| (one - other).abs()).all(|off_k| off_k < 1e-3));
     assert!(setpoints(&without).len() > 3000);
 
     let unaware = outcome("flux_sensor = true", "flux none");
@@ -112,11 +101,7 @@ fn a_device_that_is_told_wrongly_of_a_sensor_says_so_and_keeps_the_assumed_finge
     let unaware = outcome(layerless, "flux none");
     // The operator's line has delayed the others by 3 ms.
     let off_k = setpoints(&unaware).into_iter().zip(setpoints(&without));
-    assert!(
-        off_k
-            .map(|(with, without)| (with - without).abs())
-            .all(|off_k| off_k < 1e-3)
-    );
+    assert!(off_k.map(|(with, without)| (with - without).abs()).all(|off_k| off_k < 1e-3));
 }
 
 /// The operator's measurement has an error of 5 %, cut at two standard deviations: of 200 devices, 4.4 % rms, at most 10 %, and none on average.
@@ -134,24 +119,16 @@ fn a_measured_surface_is_the_plants_with_the_error_of_its_measurement() {
             panic!("{lines:?}");
         };
         let told = line.strip_prefix("surface set ").expect("a surface");
-        let told: Vec<f64> = (told.split(' '))
-            .map(|value| value.parse().expect("a number"))
-            .collect();
+        let told: Vec<f64> =
+            (told.split(' ')).map(|value| value.parse().expect("a number")).collect();
         let display = &scene.params.display;
         let exact = [display.conductivity_w_mk, display.roughness_um, 0.12];
-        errors.extend(
-            told.iter()
-                .zip(exact)
-                .map(|(told, exact)| told / exact - 1.0),
-        );
+        errors.extend(told.iter().zip(exact).map(|(told, exact)| told / exact - 1.0));
     }
     assert_eq!(errors.len(), 600);
     let mean = errors.iter().sum::<f64>() / 600.0;
     let rms = (errors.iter().map(|error| error * error).sum::<f64>() / 600.0).sqrt();
-    assert!(
-        mean.abs() < 0.006 && (rms - 0.044).abs() < 0.004,
-        "{mean}, {rms}"
-    );
+    assert!(mean.abs() < 0.006 && (rms - 0.044).abs() < 0.004, "{mean}, {rms}");
     assert!(errors.iter().all(|error| error.abs() < 0.1001));
 }
 
@@ -159,9 +136,7 @@ fn a_measured_surface_is_the_plants_with_the_error_of_its_measurement() {
 fn the_device_is_told_of_a_measured_surface_and_assumes_the_nominal_one_otherwise() {
     let answer = |device: &str| {
         let answers = outcome(device, "surface").answers;
-        let found = answers
-            .into_iter()
-            .find(|(_, line)| line.contains("slope_rad="));
+        let found = answers.into_iter().find(|(_, line)| line.contains("slope_rad="));
         found.expect("an answer").1
     };
     let nominal = "ok conductivity_w_mk=36.000 roughness_um=1.0000 slope_rad=0.13800";
@@ -180,17 +155,9 @@ fn a_contact_that_fits_no_finger_is_rendered_for_the_assumed_one_and_has_its_wor
     for (name, keys, words) in [
         ("nothing wrong", "", &["trusted"][..]),
         ("dead sensor", dead, &["sensor"]),
-        (
-            "half of the gain",
-            "flux.gain_error = -0.5\n",
-            &["between", "unexplained"],
-        ),
+        ("half of the gain", "flux.gain_error = -0.5\n", &["between", "unexplained"]),
         ("paper", "finger.resistance_factor = 4\n", &["between"]),
-        (
-            "glove",
-            "finger.resistance_factor = 25\n",
-            &["between", "sensor"],
-        ),
+        ("glove", "finger.resistance_factor = 25\n", &["between", "sensor"]),
         ("wet", "finger.resistance_factor = 0.2\n", &["wet"]),
     ] {
         let device = format!("{no_layer}{keys}");
@@ -200,9 +167,7 @@ fn a_contact_that_fits_no_finger_is_rendered_for_the_assumed_one_and_has_its_wor
         let assumes = setpoints(&outcome(&device, "flux none"));
         let off_k = (setpoints(&learns).into_iter().zip(assumes))
             .skip(2700)
-            .fold(0.0, |off_k: f64, (one, other)| {
-                off_k.max((one - other).abs())
-            });
+            .fold(0.0, |off_k: f64, (one, other)| off_k.max((one - other).abs()));
         println!("{name}: {found}, {:.1} mK", 1e3 * off_k);
         if found != "trusted" {
             // What the sensor measures goes on to count for the plate, whose surface is estimated otherwise than without it.
@@ -231,10 +196,7 @@ fn a_finger_that_lifts_and_lands_again_stays_trusted() {
 #[test]
 fn a_display_with_the_sensor_waits_further_from_the_skin() {
     let weight = 2388.0 / (2388.0 + 1170.0);
-    for (device, part) in [
-        ("flux_sensor = true", 3.0 / 64.0 * weight),
-        ("", 1.0 / 128.0),
-    ] {
+    for (device, part) in [("flux_sensor = true", 3.0 / 64.0 * weight), ("", 1.0 / 128.0)] {
         let text = format!(
             "duration_s = 0.5\nskin_c = 34\nroom_c = 24\n[device]\n{device}\n[finger]\ntissue = \"layered\"\n\
              [object]\nmaterial = \"granite\"\n"
@@ -247,9 +209,6 @@ fn a_display_with_the_sensor_waits_further_from_the_skin() {
         let setpoint_c = setpoint_c.expect("a set-point");
         let expected_k = part * (34.0 - setpoint_c);
         let found_k = setpoint_c - row.display_c;
-        assert!(
-            (found_k - expected_k).abs() < 0.02,
-            "{device}: {found_k} for {expected_k}"
-        );
+        assert!((found_k - expected_k).abs() < 0.02, "{device}: {found_k} for {expected_k}");
     }
 }

@@ -91,13 +91,7 @@ const CASES: &[Case] = &[
 
 impl Case {
     fn outcome(&self, material: &str, more: &str) -> Outcome {
-        let Self {
-            finger,
-            plant,
-            tables,
-            t_s,
-            ..
-        } = self;
+        let Self { finger, plant, tables, t_s, .. } = self;
         let text = format!(
             "duration_s = {:?}\nskin_c = 34\nroom_c = 24\nseed = 1\n[device]\nflux_sensor = true\n{finger}\
              [object]\nmaterial = \"{material}\"\n[plant]\n{plant}\n\
@@ -122,10 +116,8 @@ fn what_is_no_finger_ends_in_the_assumed_one_and_a_word() {
             let said = word(&fooled).trim_start_matches("finger=");
             assert!(case.words.contains(&said), "{what}: {said}");
             let events = fooled.events.iter();
-            let last_s = events
-                .filter(|(_, line)| line.ends_with(" flux"))
-                .map(|(t_s, _)| *t_s)
-                .next_back();
+            let last_s =
+                events.filter(|(_, line)| line.ends_with(" flux")).map(|(t_s, _)| *t_s).next_back();
             let last_s = last_s.expect("an event") - case.t_s;
             assert!((0.0..=SAID_AFTER_S).contains(&last_s), "{what}: {last_s} s");
             let (one, other) = (setpoints(&fooled), setpoints(&assumed));

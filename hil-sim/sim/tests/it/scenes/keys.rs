@@ -81,10 +81,8 @@ fn a_heat_flux_sensor_is_fitted_on_request_and_has_its_own_keys() {
     let keys = format!("{FITTED}[plant]\nflux.lag_s = 0.1\n");
     assert_eq!(params(&keys).flux, Some(slow));
     // It is drawn with the plant, of which nothing else is drawn otherwise.
-    let (with, without) = (
-        params(&format!("{FITTED}[plant]\ndraw = 3\n")),
-        params("[plant]\ndraw = 3\n"),
-    );
+    let (with, without) =
+        (params(&format!("{FITTED}[plant]\ndraw = 3\n")), params("[plant]\ndraw = 3\n"));
     assert!(with.flux.is_some() && with.flux != nominal);
     assert_eq!(Params { flux: None, ..with }, without);
 
@@ -173,12 +171,7 @@ fn layers_of_a_scene_are_those_of_the_nominal_fingers() {
 /// The device's mean finger is the plant's nominal one, without blood; its pad is the middle of the drawn ones.
 #[test]
 fn mean_finger_of_the_device_is_the_nominal_layered_finger() {
-    let FingerParams {
-        layers,
-        core_w_m2k,
-        air_w_m2k,
-        ..
-    } = FingerParams::layered();
+    let FingerParams { layers, core_w_m2k, air_w_m2k, .. } = FingerParams::layered();
     let tissue: Vec<_> = (layers.iter())
         .map(|layer| relaxation_fit::Layer {
             thickness_m: layer.thickness_m,
@@ -191,20 +184,13 @@ fn mean_finger_of_the_device_is_the_nominal_layered_finger() {
     assert_eq!(core_w_m2k, Some(f64::INFINITY));
     assert_eq!(air_w_m2k, contact_model::finger::MEAN.air_w_m2k);
     let pads: Vec<_> = (0..200)
-        .map(|seed| {
-            scene(&format!(
-                "{HEAD}[finger]\ntissue = \"layered\"\ndraw = {seed}\n"
-            ))
-        })
+        .map(|seed| scene(&format!("{HEAD}[finger]\ntissue = \"layered\"\ndraw = {seed}\n")))
         .filter(|scene| scene.assumed_finger == AssumedFinger::MeanOnPad)
         .map(|scene| scene.params.finger.air_w_m2k)
         .collect();
     let mean = pads.iter().sum::<f64>() / pads.len() as f64;
     // Uniform from 0.5 to 3: three standard errors of the mean of about 100.
-    assert!(
-        (mean - contact_model::finger::MEAN_ON_PAD.air_w_m2k).abs() < 0.22,
-        "{mean}"
-    );
+    assert!((mean - contact_model::finger::MEAN_ON_PAD.air_w_m2k).abs() < 0.22, "{mean}");
     assert!((70..130).contains(&pads.len()), "{}", pads.len());
 }
 
@@ -215,11 +201,7 @@ fn a_finger_drawn_on_a_pad_is_told_to_the_device() {
         let layered = format!("[finger]\ntissue = \"layered\"\ndraw = {seed}\n");
         let drawn = scene(&format!("{HEAD}{layered}"));
         let on_pad = drawn.params.finger.air_w_m2k <= 3.0;
-        let expected = if on_pad {
-            AssumedFinger::MeanOnPad
-        } else {
-            AssumedFinger::Mean
-        };
+        let expected = if on_pad { AssumedFinger::MeanOnPad } else { AssumedFinger::Mean };
         assert_eq!(drawn.assumed_finger, expected, "{seed}");
         let in_air = scene(&format!("{HEAD}{layered}air_w_m2k = 10\n"));
         assert_eq!(in_air.assumed_finger, AssumedFinger::Mean);
@@ -245,9 +227,7 @@ fn layers_of_an_object_conduct_and_its_material_is_the_touched_surface() {
     let layer = format!("back = \"held\"\n{copper}thickness_m = 3e-3\n");
     assert_eq!(scene(&text(&layer)).plant_config(), thin.plant_config());
     let foam = "[[object.layer]]\nk_w_mk = 0.029\nrho_kg_m3 = 24\nc_j_kgk = 1210\n";
-    let on_foam = text(&format!(
-        "told = \"half-space\"\n{copper}thickness_m = 1e-3\n{foam}"
-    ));
+    let on_foam = text(&format!("told = \"half-space\"\n{copper}thickness_m = 1e-3\n{foam}"));
     let on_foam = scene(&on_foam);
     assert!(on_foam.object_as_half_space);
     assert_eq!(on_foam.object.material, plain.object.material);
@@ -267,47 +247,23 @@ fn faults_of_the_processor_are_injected_at_their_times() {
         (fault("hung-core", ""), MachineFault::HungCore),
         (fault("software-reset", ""), MachineFault::SoftwareReset),
         (fault("hse-started", ""), MachineFault::HseStarted),
-        (
-            fault("power-cycle", ""),
-            MachineFault::PowerCycle { seed: 7 },
-        ),
-        (
-            fault("dma-stopped", ""),
-            MachineFault::DmaStopped {
-                controller: 2,
-                stream: 0,
-            },
-        ),
+        (fault("power-cycle", ""), MachineFault::PowerCycle { seed: 7 }),
+        (fault("dma-stopped", ""), MachineFault::DmaStopped { controller: 2, stream: 0 }),
         (
             fault("dma-stopped", "controller = 1\nstream = 6"),
-            MachineFault::DmaStopped {
-                controller: 1,
-                stream: 6,
-            },
+            MachineFault::DmaStopped { controller: 1, stream: 6 },
         ),
         (
             fault("ram-bit", "address = 0x2000_0010\nbit = 3"),
-            MachineFault::RamBit {
-                address: 0x2000_0010,
-                bit: 3,
-            },
+            MachineFault::RamBit { address: 0x2000_0010, bit: 3 },
         ),
         (
             fault("core-bit", "register = \"s31\"\nbit = 4"),
-            MachineFault::CoreBit {
-                register: CoreRegister::S(31),
-                bit: 4,
-            },
+            MachineFault::CoreBit { register: CoreRegister::S(31), bit: 4 },
         ),
     ] {
         let scene = scene(&format!("seed = 7\n{HEAD}{tables}"));
-        assert_eq!(
-            scene.injections,
-            [Injection {
-                t_s: 0.5,
-                fault: expected
-            }]
-        );
+        assert_eq!(scene.injections, [Injection { t_s: 0.5, fault: expected }]);
         assert!(scene.faults.is_empty());
     }
 }

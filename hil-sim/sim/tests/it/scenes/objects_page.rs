@@ -38,10 +38,7 @@ fn skin_errors_are_those_of_the_page() {
         ("on_foam", example("copper-on-foam", &[])),
         ("as_half_space", example("copper-on-foam", &[half_space])),
         ("as_slab", example("copper-slab", &[])),
-        (
-            "as_slab_film",
-            example("copper-slab", &[("insulated", "film 10")]),
-        ),
+        ("as_slab_film", example("copper-slab", &[("insulated", "film 10")])),
         ("sheet_300_um", sheet("0.0003")),
         ("sheet_30_um", sheet("0.00003")),
     ] {

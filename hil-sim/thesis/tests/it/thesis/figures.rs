@@ -36,15 +36,8 @@ fn closed_form() -> Vec<Figure> {
 
 /// The value at `x` of the curve called `label` in figure `number`.
 fn point(figures: &[Figure], number: &str, label: &str, x: f64) -> Option<f64> {
-    let figure = figures
-        .iter()
-        .find(|figure| figure.number == number)
-        .expect("the figure");
-    let curve = figure
-        .curves
-        .iter()
-        .find(|curve| curve.label == label)
-        .expect("the curve");
+    let figure = figures.iter().find(|figure| figure.number == number).expect("the figure");
+    let curve = figure.curves.iter().find(|curve| curve.label == label).expect("the curve");
     let point = curve.points.iter().find(|(at, _)| (at - x).abs() < 1e-9);
     point.map(|(_, y)| *y)
 }
@@ -111,38 +104,18 @@ fn curves_and_rows_of_the_validation_meet_golden_values() {
             let fall_k = 34.0 - end.skin_c;
             let close = |value: Option<f64>, exact: f64| {
                 let value = value.expect("a point of the curve");
-                assert!(
-                    (value - exact).abs() < 1e-9,
-                    "{material}, {label}: {value} for {exact}"
-                );
+                assert!((value - exact).abs() < 1e-9, "{material}, {label}: {value} for {exact}");
             };
-            close(
-                point(&figures, &format!("6-20 {part}"), label, 10.0),
-                end.skin_c,
-            );
-            close(
-                point(
-                    &figures,
-                    &format!("6-19 {part}"),
-                    "at the five pressures",
-                    kpa,
-                ),
-                fall_k,
-            );
+            close(point(&figures, &format!("6-20 {part}"), label, 10.0), end.skin_c);
+            close(point(&figures, &format!("6-19 {part}"), "at the five pressures", kpa), fall_k);
             let share = (34.0 - golden(2.0).skin_c) / fall_k * 100.0;
             let name = name(material);
             let quantity = format!("{name}, {kpa:.2} kPa, part of the 10 s fall made by 2 s");
             close(Some(computed("Figure 6-20", &quantity)), share);
             checked += 1;
             if condition == "val_2N" {
-                close(
-                    point(&figures, "6-13 A", &format!("{name}, skin"), 10.0),
-                    end.skin_c,
-                );
-                close(
-                    point(&figures, "6-13 A", &format!("{name}, surface"), 10.0),
-                    end.object_c,
-                );
+                close(point(&figures, "6-13 A", &format!("{name}, skin"), 10.0), end.skin_c);
+                close(point(&figures, "6-13 A", &format!("{name}, surface"), 10.0), end.object_c);
                 close(point(&figures, "6-13 B", name, 10.0), end.flux_w_m2);
             }
         }
@@ -173,18 +146,9 @@ fn every_curve_over_time_is_computed_by_the_solver() {
             // Perfect contact has no solver, and a fall is a difference.
             let perfect =
                 figure.number.starts_with("3-2") || curve.label.ends_with("perfect contact");
-            let expected = if perfect || figure.number.starts_with("6-19") {
-                0.0
-            } else {
-                1.0
-            };
+            let expected = if perfect || figure.number.starts_with("6-19") { 0.0 } else { 1.0 };
             for ((_, y), (_, raised)) in curve.points.iter().zip(&other.points) {
-                assert!(
-                    (raised - y - expected).abs() < 1e-9,
-                    "{} {}",
-                    figure.number,
-                    curve.label
-                );
+                assert!((raised - y - expected).abs() < 1e-9, "{} {}", figure.number, curve.label);
             }
         }
     }
@@ -206,10 +170,7 @@ fn error_of_the_solver_is_returned_by_figures() {
             anyhow::bail!("no plant")
         }
     }
-    assert_eq!(
-        figures(&Broken).expect_err("no figures").to_string(),
-        "no plant"
-    );
+    assert_eq!(figures(&Broken).expect_err("no figures").to_string(), "no plant");
 }
 
 #[test]
@@ -234,16 +195,8 @@ fn finite_volumes_agree_with_the_closed_form_in_every_figure() {
     assert_eq!(differences.len(), 13);
     for figure in &differences {
         // 1 mK; of a flux 1e-4 of what it begins with.
-        let allowed = if figure.y.contains("flux") {
-            1e-4 * figure.range
-        } else {
-            1e-3
-        };
+        let allowed = if figure.y.contains("flux") { 1e-4 * figure.range } else { 1e-3 };
         assert!(figure.settled < allowed, "{}", figure.text());
-        assert!(
-            figure.largest > 0.0 && figure.largest < 50.0 * allowed,
-            "{}",
-            figure.text()
-        );
+        assert!(figure.largest > 0.0 && figure.largest < 50.0 * allowed, "{}", figure.text());
     }
 }

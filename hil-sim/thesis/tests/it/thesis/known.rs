@@ -23,20 +23,11 @@ fn exactly_the_known_rows_do_not_agree() {
     let found: BTreeSet<_> = all_rows()
         .into_iter()
         .filter(|row| row.verdict() != Verdict::Agrees)
-        .map(|row| {
-            (
-                row.verdict().word().to_owned(),
-                row.place.to_owned(),
-                row.quantity,
-            )
-        })
+        .map(|row| (row.verdict().word().to_owned(), row.place.to_owned(), row.quantity))
         .collect();
     let new: Vec<_> = found.difference(&known).collect();
     let gone: Vec<_> = known.difference(&found).collect();
-    assert!(
-        new.is_empty() && gone.is_empty(),
-        "new: {new:?}\ngone: {gone:?}"
-    );
+    assert!(new.is_empty() && gone.is_empty(), "new: {new:?}\ngone: {gone:?}");
 }
 
 #[test]

@@ -27,15 +27,11 @@ fn exactly_the_known_measurements_are_shown() {
         quantity: String,
     }
     let known: Vec<Known> = table(include_str!("../../data/measured_known.csv"));
-    let known: Vec<_> = known
-        .iter()
-        .map(|row| (&*row.verdict, &*row.place, &*row.quantity))
-        .collect();
+    let known: Vec<_> =
+        known.iter().map(|row| (&*row.verdict, &*row.place, &*row.quantity)).collect();
     let all = all();
-    let found: Vec<_> = all
-        .iter()
-        .map(|row| (row.shown().word(), row.place, &*row.quantity))
-        .collect();
+    let found: Vec<_> =
+        all.iter().map(|row| (row.shown().word(), row.place, &*row.quantity)).collect();
     assert_eq!(found, known);
     for row in &all {
         assert_eq!(row.why().is_empty(), row.shown() == Shown::Yes, "{row:?}");
@@ -60,39 +56,15 @@ fn plant_gives_the_documented_numbers_beside_the_measured_ones() {
     let at = |variant, quantity| plant(&all, variant, quantity);
     for (name, value) in [
         ("light", at(THESIS, "BaF2, fall within 10 s at 0.1 N")),
-        (
-            "light_layered",
-            at(LAYERED, "BaF2, fall within 10 s at 0.1 N"),
-        ),
-        (
-            "light_gap",
-            at(LAYERED_WITH_GAP, "BaF2, fall within 10 s at 0.1 N"),
-        ),
+        ("light_layered", at(LAYERED, "BaF2, fall within 10 s at 0.1 N")),
+        ("light_gap", at(LAYERED_WITH_GAP, "BaF2, fall within 10 s at 0.1 N")),
         ("firm", at(THESIS, "BaF2, fall within 10 s at 2.0 N")),
-        (
-            "firm_layered",
-            at(LAYERED, "BaF2, fall within 10 s at 2.0 N"),
-        ),
-        (
-            "early_light",
-            at(
-                LAYERED,
-                "BaF2, part of the fall within 10 s made by 2 s, at 0.1 N",
-            ),
-        ),
-        (
-            "early_firm",
-            at(
-                LAYERED,
-                "BaF2, part of the fall within 10 s made by 2 s, at 2.0 N",
-            ),
-        ),
+        ("firm_layered", at(LAYERED, "BaF2, fall within 10 s at 2.0 N")),
+        ("early_light", at(LAYERED, "BaF2, part of the fall within 10 s made by 2 s, at 0.1 N")),
+        ("early_firm", at(LAYERED, "BaF2, part of the fall within 10 s made by 2 s, at 2.0 N")),
         (
             "edge_real",
-            at(
-                LAYERED,
-                "share of the mean fall within 10 s that an edge at 1.84 K sees, real",
-            ),
+            at(LAYERED, "share of the mean fall within 10 s that an edge at 1.84 K sees, real"),
         ),
         (
             "edge_simulated",
@@ -103,22 +75,10 @@ fn plant_gives_the_documented_numbers_beside_the_measured_ones() {
         ),
         (
             "edge_bronze",
-            at(
-                LAYERED,
-                "bronze, share of the fall within 5 s that an edge at 1.44 K sees",
-            ),
+            at(LAYERED, "bronze, share of the fall within 5 s that an edge at 1.44 K sees"),
         ),
-        (
-            "foam",
-            at(THESIS, "foam, fall within 5 s, measured at the edge"),
-        ),
-        (
-            "blood",
-            at(
-                LAYERED,
-                "BaF2, fall within 10 s that stopped blood adds at 1.0 N",
-            ),
-        ),
+        ("foam", at(THESIS, "foam, fall within 5 s, measured at the edge")),
+        ("blood", at(LAYERED, "BaF2, fall within 10 s that stopped blood adds at 1.0 N")),
     ] {
         assert_figure(&format!("measured.{name}"), value);
     }

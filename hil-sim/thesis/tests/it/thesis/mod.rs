@@ -16,20 +16,13 @@ fn table<T: DeserializeOwned>(text: &str) -> Vec<T> {
 }
 
 fn all_rows() -> Vec<Row> {
-    chapters()
-        .into_iter()
-        .flat_map(|chapter| chapter.rows)
-        .collect()
+    chapters().into_iter().flat_map(|chapter| chapter.rows).collect()
 }
 
 fn computed(place: &str, quantity: &str) -> f64 {
     let rows = all_rows();
-    let mut found = rows
-        .iter()
-        .filter(|row| row.place == place && row.quantity == quantity);
-    let row = found
-        .next()
-        .unwrap_or_else(|| panic!("no row {place}, {quantity}"));
+    let mut found = rows.iter().filter(|row| row.place == place && row.quantity == quantity);
+    let row = found.next().unwrap_or_else(|| panic!("no row {place}, {quantity}"));
     assert_eq!(found.next(), None, "{place}, {quantity} twice");
     row.computed
 }

@@ -8,14 +8,7 @@ const fn printed(value: f64, decimals: i32) -> Stated {
 }
 
 fn row(stated: Stated, computed: f64, remark: Option<Remark>) -> Row {
-    Row {
-        place: "Table",
-        quantity: "quantity".into(),
-        unit: "",
-        stated,
-        computed,
-        remark,
-    }
+    Row { place: "Table", quantity: "quantity".into(), unit: "", stated, computed, remark }
 }
 
 #[test]
@@ -44,17 +37,11 @@ fn a_printed_number_agrees_with_all_values_that_round_to_it() {
 
 #[test]
 fn ranges_and_limits_agree_within_their_bounds() {
-    let about = Stated::About {
-        value: 27.0,
-        within: 0.5,
-    };
+    let about = Stated::About { value: 27.0, within: 0.5 };
     assert!(
         about.agrees(26.5) && about.agrees(27.5) && !about.agrees(26.49) && !about.agrees(27.51)
     );
-    let between = Stated::Between {
-        low: 2.0,
-        high: 6.0,
-    };
+    let between = Stated::Between { low: 2.0, high: 6.0 };
     assert!(
         between.agrees(2.0)
             && between.agrees(6.0)
@@ -76,37 +63,17 @@ fn a_remark_counts_only_if_it_explains_the_difference() {
     for (computed, remark, verdict) in [
         (29.0, None, Verdict::Agrees),
         (30.0, None, Verdict::Differs(Some(1.0))),
-        (
-            30.0,
-            Some(Remark::Note("why".into())),
-            Verdict::Differs(Some(1.0)),
-        ),
+        (30.0, Some(Remark::Note("why".into())), Verdict::Differs(Some(1.0))),
         // Agreement needs no remark and is not spoilt by one.
         (29.0, wrong(Correction::Is(77.0)), Verdict::Agrees),
         (29.9, Some(Remark::Cut), Verdict::Cut),
         (30.0, Some(Remark::Cut), Verdict::Differs(Some(1.0))),
         (28.4, Some(Remark::Cut), Verdict::Differs(Some(28.4 - 29.0))),
-        (
-            30.0,
-            damaged(Correction::Reads(printed(30.0, 0))),
-            Verdict::Damaged,
-        ),
-        (
-            30.0,
-            wrong(Correction::Reads(printed(30.0, 0))),
-            Verdict::Wrong,
-        ),
-        (
-            30.0,
-            wrong(Correction::Reads(printed(31.0, 0))),
-            Verdict::Differs(Some(1.0)),
-        ),
+        (30.0, damaged(Correction::Reads(printed(30.0, 0))), Verdict::Damaged),
+        (30.0, wrong(Correction::Reads(printed(30.0, 0))), Verdict::Wrong),
+        (30.0, wrong(Correction::Reads(printed(31.0, 0))), Verdict::Differs(Some(1.0))),
         (30.0, damaged(Correction::Is(29.2)), Verdict::Damaged),
-        (
-            30.0,
-            damaged(Correction::Is(29.6)),
-            Verdict::Differs(Some(1.0)),
-        ),
+        (30.0, damaged(Correction::Is(29.6)), Verdict::Differs(Some(1.0))),
     ] {
         let row = row(printed(29.0, 0), computed, remark);
         assert_eq!(row.verdict(), verdict, "{row:?}");

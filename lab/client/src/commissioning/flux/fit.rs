@@ -108,20 +108,15 @@ impl Solution {
             solve_by_cholesky(&mut matrix.clone(), &mut unit)?;
             *deviation = residual * alike * unit[i].sqrt() / scale[i];
         }
-        Some(Self {
-            values,
-            deviations,
-            residual,
-        })
+        Some(Self { values, deviations, residual })
     }
 }
 
 /// Integral of the signal from the first sample on over `sqrt(pi (t - s))`: exact for straight lines between samples.
 fn half_integral(signal: &[f64]) -> Vec<f64> {
     let power = |n: usize| (n as f64).powi(3).sqrt();
-    let weights: Vec<f64> = (1..signal.len().max(1))
-        .map(|k| power(k + 1) - 2.0 * power(k) + power(k - 1))
-        .collect();
+    let weights: Vec<f64> =
+        (1..signal.len().max(1)).map(|k| power(k + 1) - 2.0 * power(k) + power(k - 1)).collect();
     let unit = STEP_S.sqrt() / GAMMA_5_2;
     let at = |n: usize| {
         let Some(last) = n.checked_sub(1) else {
@@ -156,17 +151,11 @@ mod tests {
         let root: Vec<f64> = (0..1000).map(|n| t_s(n).sqrt()).collect();
         let of_root = half_integral(&root);
         for n in [0, 1, 2, 10, 999] {
-            assert!(
-                (of_one[n] - 2.0 * (t_s(n) / PI).sqrt()).abs() < 1e-12,
-                "{n}"
-            );
+            assert!((of_one[n] - 2.0 * (t_s(n) / PI).sqrt()).abs() < 1e-12, "{n}");
         }
         // The first interval's line is not the root.
         for n in [100, 999] {
-            assert!(
-                (of_root[n] / (0.5 * PI.sqrt() * t_s(n)) - 1.0).abs() < 1e-3,
-                "{n}"
-            );
+            assert!((of_root[n] / (0.5 * PI.sqrt() * t_s(n)) - 1.0).abs() < 1e-3, "{n}");
         }
     }
 
@@ -188,10 +177,7 @@ mod tests {
             let fit = Fit::new(&samples, &fitted, effusivity).expect("a solution");
             assert!((fit.gain.0 / gain - 1.0).abs() < 2e-4, "{fit:?}");
             assert!((fit.phantom_c - phantom_c).abs() < 3e-3, "{fit:?}");
-            assert!(
-                (fit.resistance_m2k_w / resistance - 1.0).abs() < 3e-3,
-                "{fit:?}"
-            );
+            assert!((fit.resistance_m2k_w / resistance - 1.0).abs() < 3e-3, "{fit:?}");
             assert!(fit.residual_k < 1e-3, "{fit:?}");
         }
     }
@@ -199,10 +185,7 @@ mod tests {
     #[test]
     fn a_sensor_without_a_signal_has_no_fit() {
         let samples: Vec<_> = (0..1000)
-            .map(|n| Sample {
-                flux_w_m2: 0.0,
-                surface_c: 24.0 + 1e-3 * f64::from(n),
-            })
+            .map(|n| Sample { flux_w_m2: 0.0, surface_c: 24.0 + 1e-3 * f64::from(n) })
             .collect();
         assert_eq!(Fit::new(&samples, &[10, 100, 500, 900, 999], 1585.0), None);
     }

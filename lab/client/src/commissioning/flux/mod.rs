@@ -70,11 +70,8 @@ pub enum PhantomPlace {
 
 impl PhantomPlace {
     /// All with their words on the line to simulated surroundings.
-    pub const WORDS: [(&'static str, Self); 3] = [
-        ("beside", Self::Beside),
-        ("on", Self::OnDisplay),
-        ("away", Self::Away),
-    ];
+    pub const WORDS: [(&'static str, Self); 3] =
+        [("beside", Self::Beside), ("on", Self::OnDisplay), ("away", Self::Away)];
 }
 
 /// What the phantom has shown of the sensor.
@@ -194,11 +191,7 @@ pub fn calibrate_flux<L: Link>(
     client.ask_finger(finger, &PlainCommand::Abort)?;
     let report = client.flux_report(finger)?;
     let before = report.ok_or(FluxCalibrationError::NoSensor)?.sensor;
-    let mut session = Session {
-        client,
-        finger,
-        surroundings,
-    };
+    let mut session = Session { client, finger, surroundings };
     let calibrated = session.calibrate();
     // Also after a failure. A link that is gone fails here, too.
     let ended = client.abort_and_end_stream(finger);
@@ -299,10 +292,7 @@ impl<L: Link> Session<'_, L> {
         room_c: f64,
     ) -> Result<(FluxSensor, FluxCalibration), CommissionError> {
         let force_n = |line: &ReceivedTelemetry| line.telemetry.force_n.unwrap_or(0.0);
-        let landed = lines
-            .iter()
-            .rposition(|line| force_n(line) < FREE_N)
-            .unwrap_or(0);
+        let landed = lines.iter().rposition(|line| force_n(line) < FREE_N).unwrap_or(0);
         let fitted_from = from.saturating_sub((FITTED_BEFORE_S / STEP_S) as usize);
         let pressed = lines.get(fitted_from..).unwrap_or_default();
         let least_n = pressed.iter().map(force_n).fold(f64::INFINITY, f64::min);
@@ -320,10 +310,7 @@ impl<L: Link> Session<'_, L> {
                 return Err(FluxCalibrationError::Telemetry(lost));
             }
             Ok(Sample {
-                flux_w_m2: line
-                    .telemetry
-                    .flux_w_m2
-                    .ok_or(FluxCalibrationError::SensorFault)?,
+                flux_w_m2: line.telemetry.flux_w_m2.ok_or(FluxCalibrationError::SensorFault)?,
                 surface_c: line
                     .telemetry
                     .surface_c

@@ -12,10 +12,8 @@ fn touch(group: &str, object: &str, error_mk: f64) -> RenderedTouch {
 /// By hand: 0.14 K of one interval under the fingertip are its threshold of 75 %, less lapses of 2 %; no error is chance.
 #[test]
 fn a_thermode_finds_its_threshold_in_three_of_four_trials_but_for_lapses() {
-    let touches = [
-        touch("threshold", "granite 3 mm wood, draw 2", 140.2),
-        touch("none", "foam", 0.0),
-    ];
+    let touches =
+        [touch("threshold", "granite 3 mm wood, draw 2", 140.2), touch("none", "foam", 0.0)];
     let report = told_apart(&touches).expect("known materials");
     let find = |group: &str, observer: &str| {
         let mut rows = report.rows.iter();
@@ -50,8 +48,5 @@ fn one_touch_in_twenty_five_is_beyond_the_percentile() {
 fn an_object_of_no_known_material_is_named() {
     let error = told_apart(&[touch("all", "cheese 3 mm", 1.0)]).expect_err("no material");
     let text = error.to_string();
-    assert!(
-        text.contains("cheese 3 mm") && text.contains("granite"),
-        "{text}"
-    );
+    assert!(text.contains("cheese 3 mm") && text.contains("granite"), "{text}");
 }

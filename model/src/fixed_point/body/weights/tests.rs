@@ -35,10 +35,8 @@ fn terms(weights: &[f64; WEIGHTS]) -> Vec<(Option<Relaxation>, f64)> {
 fn parts_are_those_of_the_mean_finger() {
     let computed: Vec<_> = (terms(&[1.0; WEIGHTS]).iter())
         .map(|(relaxation, direct_m2k_w)| {
-            let impedance = Impedance {
-                direct_m2k_w: *direct_m2k_w,
-                relaxations: relaxation.as_slice(),
-            };
+            let impedance =
+                Impedance { direct_m2k_w: *direct_m2k_w, relaxations: relaxation.as_slice() };
             let after = |t_s| flux_w_m2() * impedance.step_response(t_s);
             let slow = relaxation.filter(|one| one.rate_1_s * TICK_S < 0.0125);
             let slow = slow.map_or(0.0, |one| {

@@ -13,11 +13,7 @@ const ROOM_C: f64 = 24.0;
 /// Half-spaces, and the mean layered finger.
 const FINGERS: [Bodies; 2] = [
     Bodies::HALF_SPACES,
-    Bodies {
-        finger: FingerBody::MEAN,
-        are_half_spaces: false,
-        ..Bodies::HALF_SPACES
-    },
+    Bodies { finger: FingerBody::MEAN, are_half_spaces: false, ..Bodies::HALF_SPACES },
 ];
 
 fn copper() -> ContactPair {
@@ -78,10 +74,7 @@ fn the_heat_into_the_display_is_that_of_the_sensed_skin_while_another_is_assumed
                 before_contact(estimator) - cooling
             };
             let apart = (simulated(&estimator) - simulated(&sensed)).abs();
-            assert!(
-                apart > 1,
-                "the assumed skin is {apart} K from the sensed one"
-            );
+            assert!(apart > 1, "the assumed skin is {apart} K from the sensed one");
             estimator.assume_skin(None);
             assert_eq!(estimator, sensed);
         }

@@ -96,10 +96,7 @@ fn exact(
         let term = |one: &Relaxation| {
             let decay = libm::exp(-one.rate_1_s * step_s);
             let only = [*one];
-            let only = Impedance {
-                direct_m2k_w: 0.0,
-                relaxations: &only,
-            };
+            let only = Impedance { direct_m2k_w: 0.0, relaxations: &only };
             (decay, only.step_response(step_s), 0.0f64)
         };
         let terms: Vec<_> = impedance.relaxations.iter().map(term).collect();
@@ -121,10 +118,7 @@ fn exact(
             let (cooling, warming) = (free(&skin) - skin_gain * air_w_m2, free(&object));
             let flux_w_m2 =
                 (DIFFERENCE_K - cooling - warming) / (resistance_m2k_w + skin_gain + object_gain);
-            surfaces = (
-                cooling + skin_gain * flux_w_m2,
-                warming + object_gain * flux_w_m2,
-            );
+            surfaces = (cooling + skin_gain * flux_w_m2, warming + object_gain * flux_w_m2);
             advance(&mut skin, flux_w_m2 - air_w_m2);
             advance(&mut object, flux_w_m2);
         }
@@ -134,10 +128,7 @@ fn exact(
 }
 
 fn unscaled(body: &Body) -> ScaledBody {
-    ScaledBody {
-        body: *body,
-        factor: U16F16::ONE,
-    }
+    ScaledBody { body: *body, factor: U16F16::ONE }
 }
 
 fn resistance_m2k_w(object: &Material) -> f64 {
@@ -227,28 +218,17 @@ fn relaxations() -> impl Strategy<Value = Vec<Relaxation>> {
 
 fn any_body() -> impl Strategy<Value = Body> {
     (relaxations(), 0.0..1e-2f64).prop_filter_map("cannot be followed", |(all, direct_m2k_w)| {
-        let impedance = Impedance {
-            direct_m2k_w,
-            relaxations: &all,
-        };
+        let impedance = Impedance { direct_m2k_w, relaxations: &all };
         Body::new(&impedance, SKIN.effusivity(), TICK_S).ok()
     })
 }
 
 /// None, or one of any that a host may tell.
 fn law() -> impl Strategy<Value = Option<OwnContactLaw>> {
-    let any = (
-        ContactLaw::EXPONENTS,
-        ContactLaw::HARDNESSES_PA,
-        ContactLaw::GAPS_W_M2K,
-    );
+    let any = (ContactLaw::EXPONENTS, ContactLaw::HARDNESSES_PA, ContactLaw::GAPS_W_M2K);
     prop::option::of(any).prop_map(|law| {
         let (exponent, hardness_pa, gap_w_m2k) = law?;
-        let law = ContactLaw {
-            exponent,
-            hardness_pa,
-            gap_w_m2k,
-        };
+        let law = ContactLaw { exponent, hardness_pa, gap_w_m2k };
         OwnContactLaw::new(&law, TICK_S)
     })
 }

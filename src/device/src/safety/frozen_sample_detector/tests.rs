@@ -64,10 +64,7 @@ fn a_frozen_channel_is_found_within_50_ms_if_the_converter_has_noise() {
             let mut converter = Converter::new(noise_counts, LEVELS);
             assert!((0..2000).all(|_| converter.tick(0, true).is_ok()));
             let found = converter.ticks_to_fault(1 << channel).expect("found");
-            assert!(
-                found.0 <= 47 && found.1 == fault,
-                "{noise_counts} {found:?}"
-            );
+            assert!(found.0 <= 47 && found.1 == fault, "{noise_counts} {found:?}");
         }
     }
 }
@@ -78,10 +75,7 @@ fn a_frozen_converter_is_found_within_50_ms_if_it_had_noise() {
         let mut converter = Converter::new(noise_counts, LEVELS);
         assert!((0..2000).all(|_| converter.tick(0, true).is_ok()));
         let found = converter.ticks_to_fault(0x3f).expect("found");
-        assert!(
-            found.0 <= 47 && found.1 == Fault::SamplesFrozen,
-            "{noise_counts} {found:?}"
-        );
+        assert!(found.0 <= 47 && found.1 == Fault::SamplesFrozen, "{noise_counts} {found:?}");
     }
 }
 

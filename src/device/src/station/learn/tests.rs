@@ -21,10 +21,7 @@ const LANDING_TICK: u32 = 23;
 
 /// A station that presents granite to a mean finger.
 fn station(flux_sensor: Option<FluxSensor>) -> Station {
-    let mut station = Station::new(&Settings {
-        flux_sensor,
-        ..Settings::default()
-    });
+    let mut station = Station::new(&Settings { flux_sensor, ..Settings::default() });
     let (name, granite) = &MATERIALS[3];
     let granite = ChosenMaterial::new(name, granite, &REFERENCE_DISPLAY).expect("a material");
     station.object.choose_material(&granite);
@@ -42,10 +39,7 @@ fn step(station: &mut Station, tick: u32, code: Option<u16>) -> Option<Reference
         station.do_due_work();
     }
     let room = to_fixed(24.0);
-    let before = station
-        .last
-        .reference
-        .map(|reference| reference.setpoint.celsius());
+    let before = station.last.reference.map(|reference| reference.setpoint.celsius());
     let display = before.unwrap_or(room);
     let readings = ValidReadings {
         display,
@@ -53,11 +47,7 @@ fn step(station: &mut Station, tick: u32, code: Option<u16>) -> Option<Reference
         sink: room,
         skin: to_fixed(34.0),
         room,
-        force: if tick < LANDING_TICK {
-            Force::ZERO
-        } else {
-            Force::lit("2")
-        },
+        force: if tick < LANDING_TICK { Force::ZERO } else { Force::lit("2") },
         current: Current::ZERO,
         supply: SupplyVoltage::default(),
     };
@@ -106,10 +96,7 @@ fn the_learnt_finger_is_applied_at_the_next_windows_end_however_soon_it_was_ther
     let at_once = references(Some(0));
     assert!(at_once == references(Some(9)), "an answer after nine ticks");
     let never = references(None);
-    let first = at_once
-        .iter()
-        .zip(&never)
-        .position(|(now, never)| now != never);
+    let first = at_once.iter().zip(&never).position(|(now, never)| now != never);
     // The first input is that of tick 9.
     assert_eq!(first, Some(19));
 }
@@ -143,10 +130,7 @@ fn another_finger_is_assumed_at_once_and_learnt_from_the_next_window_on() {
         if tick == 45 {
             let pad = Command::Finger(Some(AssumedFinger::MeanOnPad));
             assert!(station.execute(&pad).is_ok());
-            assert_eq!(
-                station.object.bodies().finger,
-                *AssumedFinger::MeanOnPad.body()
-            );
+            assert_eq!(station.object.bodies().finger, *AssumedFinger::MeanOnPad.body());
         }
         if let Some(input) = station.take_learner_input() {
             let place = match tick {
@@ -168,19 +152,13 @@ fn another_finger_is_assumed_at_once_and_learnt_from_the_next_window_on() {
 
 #[test]
 fn another_sensor_and_none_forget_the_learnt_finger() {
-    let other = FluxSensor {
-        resistance_mm2k_w: 60.0,
-        ..FluxSensor::DESIGNED
-    };
+    let other = FluxSensor { resistance_mm2k_w: 60.0, ..FluxSensor::DESIGNED };
     for sensor in [Some(other), None] {
         let mut station = station(Some(FluxSensor::DESIGNED));
         let layer = |station: &Station| station.object.bodies().resistances.display_layer;
         let designed_layer = layer(&station);
         // e_skin = 1170 W s^0.5/(m2 K) times 3e-5 m2 K/W over the root of a tick.
-        assert!(
-            (designed_layer.to_num::<f64>() - 1.110).abs() < 2e-3,
-            "{designed_layer}"
-        );
+        assert!((designed_layer.to_num::<f64>() - 1.110).abs() < 2e-3, "{designed_layer}");
         for tick in 0..30 {
             step(&mut station, tick, code(tick));
             if let Some(input) = station.take_learner_input() {
@@ -211,10 +189,7 @@ fn another_sensor_and_none_forget_the_learnt_finger() {
 fn codes_change_nothing_without_a_sensor() {
     let (mut with, mut without) = (station(None), station(None));
     for tick in 0..400 {
-        assert_eq!(
-            step(&mut with, tick, code(tick)),
-            step(&mut without, tick, None)
-        );
+        assert_eq!(step(&mut with, tick, code(tick)), step(&mut without, tick, None));
         assert_eq!(with.estimator.finger, without.estimator.finger);
         assert_eq!(with.object.bodies(), without.object.bodies());
         assert_eq!(with.take_learner_input(), None);

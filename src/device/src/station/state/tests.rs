@@ -49,8 +49,5 @@ fn the_documented_transitions_are_those_of_the_code() {
         table += "\n";
     }
     let documentation = include_str!("../../../../../docs/safety.md");
-    assert!(
-        documentation.contains(&table),
-        "docs/safety.md lacks\n{table}"
-    );
+    assert!(documentation.contains(&table), "docs/safety.md lacks\n{table}");
 }

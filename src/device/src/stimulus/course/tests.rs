@@ -1,10 +1,7 @@
 use super::*;
 
 fn point(time_ms: u32, celsius: f64) -> CoursePoint {
-    CoursePoint {
-        time_ms,
-        temperature: Celsius::from_num(celsius),
-    }
+    CoursePoint { time_ms, temperature: Celsius::from_num(celsius) }
 }
 
 fn course(temperatures: TemperatureKind, points: &[(u32, f64)]) -> Result<Course, CourseError> {
@@ -72,9 +69,6 @@ fn the_dose_of_a_relative_course_depends_on_the_skin() {
         let dose_s = f64::from(course.dose(Celsius::from_num(skin_c)).milliseconds_at_43()) / 1e3;
         // Each ramp of 1 K/s gives 1 s / ln 4 at the top, of which 1 - 4^-3 counts.
         let exact_s = hold_dose_s * (1.0 + 2.0 * (1.0 - 1.0 / 64.0) / libm::log(4.0) / 240.0);
-        assert!(
-            (dose_s / exact_s - 1.0).abs() < 0.002,
-            "{skin_c}: {dose_s}, {exact_s}"
-        );
+        assert!((dose_s / exact_s - 1.0).abs() < 0.002, "{skin_c}: {dose_s}, {exact_s}");
     }
 }

@@ -5,11 +5,7 @@ use proptest::prelude::*;
 use super::*;
 
 const fn order(times: u16, end: CourseEnd) -> PlayOrder {
-    PlayOrder {
-        start: CourseStart::Now,
-        play_count: times,
-        end,
-    }
+    PlayOrder { start: CourseStart::Now, play_count: times, end }
 }
 
 /// The course after `ms` of one playing, by rational interpolation in 128 bits, rounded down to a step of 2^-22 K.
@@ -22,15 +18,9 @@ fn exact(points: &[CoursePoint], ms: u32) -> i128 {
     if ms >= last.time_ms {
         return bits(&last);
     }
-    let end = points
-        .iter()
-        .position(|point| point.time_ms > ms)
-        .expect("a later point");
+    let end = points.iter().position(|point| point.time_ms > ms).expect("a later point");
     let (from, to) = (&points[end - 1], &points[end]);
-    let (passed, whole) = (
-        i128::from(ms - from.time_ms),
-        i128::from(to.time_ms - from.time_ms),
-    );
+    let (passed, whole) = (i128::from(ms - from.time_ms), i128::from(to.time_ms - from.time_ms));
     bits(from) + ((bits(to) - bits(from)) * passed).div_euclid(whole)
 }
 
@@ -42,10 +32,7 @@ fn courses() -> impl Strategy<Value = Vec<CoursePoint>> {
         for (index, (duration_ms, bits)) in steps.into_iter().enumerate() {
             time_ms += if index == 0 { 0 } else { duration_ms };
             let temperature = Celsius::from_bits(bits);
-            points.push(CoursePoint {
-                time_ms,
-                temperature,
-            });
+            points.push(CoursePoint { time_ms, temperature });
         }
         points
     })
@@ -64,28 +51,15 @@ fn check_exact(
     let at = |ms: u32| {
         // A course is at its last point when it ends, and goes on from its first one in the next tick.
         let ms = ms.min(total_ms);
-        let in_period = if ms > 0 && ms.is_multiple_of(period_ms) {
-            period_ms
-        } else {
-            ms % period_ms
-        };
+        let in_period =
+            if ms > 0 && ms.is_multiple_of(period_ms) { period_ms } else { ms % period_ms };
         exact(points, in_period) + i128::from(base.to_bits())
     };
     for ms in elapsed..total_ms + 100 {
         let (temperatures, ended) = player.next_temperatures(points);
         prop_assert_eq!(i128::from(temperatures.now.to_bits()), at(ms), "{} ms", ms);
-        prop_assert_eq!(
-            i128::from(temperatures.target.to_bits()),
-            at(ms + 14),
-            "{} ms",
-            ms
-        );
-        prop_assert_eq!(
-            ended,
-            (ms >= total_ms).then_some(CourseEnd::Neutral),
-            "{} ms",
-            ms
-        );
+        prop_assert_eq!(i128::from(temperatures.target.to_bits()), at(ms + 14), "{} ms", ms);
+        prop_assert_eq!(ended, (ms >= total_ms).then_some(CourseEnd::Neutral), "{} ms", ms);
     }
     Ok(())
 }

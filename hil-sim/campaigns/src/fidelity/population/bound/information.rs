@@ -18,10 +18,7 @@ impl Information {
         let correlation = array::from_fn(|i| {
             array::from_fn(|j| covariance[i][j] / (deviations[i] * deviations[j]))
         });
-        Self {
-            matrix: inverse(correlation),
-            deviations,
-        }
+        Self { matrix: inverse(correlation), deviations }
     }
 
     /// Adds that of a reading with a standard deviation, which changes by these slopes with the parameters.
@@ -46,9 +43,8 @@ impl Information {
 /// Standard deviation of a quantity with these slopes.
 pub fn deviation(covariance: &[Vector; PARAMETERS], slopes: &Vector) -> f64 {
     let rows = covariance.iter().zip(slopes);
-    let sum: f64 = rows
-        .map(|(row, a)| a * row.iter().zip(slopes).map(|(c, b)| c * b).sum::<f64>())
-        .sum();
+    let sum: f64 =
+        rows.map(|(row, a)| a * row.iter().zip(slopes).map(|(c, b)| c * b).sum::<f64>()).sum();
     sum.sqrt()
 }
 

@@ -82,9 +82,7 @@ impl Priors {
             alike.or_default().push(touch(&scene)?.parameters(&scene));
         }
         let priors = drawn.into_iter();
-        Ok(Self(
-            priors.map(|(of, drawn)| (of, covariance(&drawn))).collect(),
-        ))
+        Ok(Self(priors.map(|(of, drawn)| (of, covariance(&drawn))).collect()))
     }
 }
 
@@ -132,30 +130,21 @@ impl BoundResult {
         }
         let rows = last.iter().flat_map(|outcome| outcome.trace.rows());
         // The step that ends in the first row with force had none.
-        let display_c: Vec<_> = rows
-            .skip_while(|row| row.force_n == 0.0)
-            .map(|row| row.display_c)
-            .collect();
+        let display_c: Vec<_> =
+            rows.skip_while(|row| row.force_n == 0.0).map(|row| row.display_c).collect();
         for (at, bounds) in at.iter_mut().zip(bounds(&touch, prior, &display_c)) {
             for (compared, bound) in at.iter_mut().zip(bounds) {
                 compared.bound = bound;
             }
         }
-        Ok(Self {
-            population: case.population,
-            object: case.object.name.clone(),
-            at,
-        })
+        Ok(Self { population: case.population, object: case.object.name.clone(), at })
     }
 }
 
 /// A scene up to a time since landing, s, and what the device has learnt by then.
 fn run_until(scene: &Scene, since_s: f64) -> anyhow::Result<(Outcome, LearnerOutput)> {
     let landing_s = scene.forces.first().map_or(0.0, |force| force.t_s);
-    let scene = Scene {
-        duration_s: landing_s + since_s,
-        ..scene.clone()
-    };
+    let scene = Scene { duration_s: landing_s + since_s, ..scene.clone() };
     let mut engine = NativeEngine::new(World::new(&scene)?);
     let outcome = run(&scene, &mut engine, |_| ())?;
     let learnt = engine.learnt().copied();
@@ -168,15 +157,13 @@ fn learnt_impedance_m2k_w(learnt: &LearnerOutput, s_1_s: f64) -> f64 {
         return MEAN.impedance.direct_m2k_w;
     };
     let [weights @ .., direct] = learnt.weights.map(f64::from);
-    let weighted = others.iter().zip(weights).map(|(one, weight)| Relaxation {
-        gain_m2k_j: weight * one.gain_m2k_j,
-        ..*one
-    });
+    let weighted = others
+        .iter()
+        .zip(weights)
+        .map(|(one, weight)| Relaxation { gain_m2k_j: weight * one.gain_m2k_j, ..*one });
     let relaxations: Vec<_> = std::iter::once(*integrator).chain(weighted).collect();
-    let impedance = Impedance {
-        direct_m2k_w: direct * MEAN.impedance.direct_m2k_w,
-        relaxations: &relaxations,
-    };
+    let impedance =
+        Impedance { direct_m2k_w: direct * MEAN.impedance.direct_m2k_w, relaxations: &relaxations };
     impedance.at(s_1_s)
 }
 
@@ -185,10 +172,7 @@ fn learnt_impedance_m2k_w(learnt: &LearnerOutput, s_1_s: f64) -> f64 {
 fn bounds(touch: &Touch, prior: &Prior, display_c: &[f64]) -> [[f64; 3]; TIMES_S.len()] {
     let steps = display_c.len().saturating_sub(1);
     let exact_c = touch.exact_display_c(steps);
-    let (readings, skin) = (
-        touch.readings_w_m2(display_c),
-        touch.on_display(&exact_c).skin_c,
-    );
+    let (readings, skin) = (touch.readings_w_m2(display_c), touch.on_display(&exact_c).skin_c);
     let mut slopes: Vec<Vector> = vec![[0.0; PARAMETERS]; steps];
     let mut of_skin: Vec<Vector> = vec![[0.0; PARAMETERS]; steps + 1];
     let mut of_tissue = [[0.0; PARAMETERS]; TIMES_S.len()];
@@ -247,13 +231,7 @@ pub fn rows(population: Population, results: &[BoundResult]) -> Vec<BoundRow> {
                 bound: rms(&|one| one.at[i][quantity].bound),
                 error: rms(&|one| one.at[i][quantity].error),
             });
-            rows.push(BoundRow {
-                object: object.into(),
-                since_s,
-                contact,
-                tissue,
-                skin_mk,
-            });
+            rows.push(BoundRow { object: object.into(), since_s, contact, tissue, skin_mk });
         }
     }
     rows
@@ -267,20 +245,9 @@ pub fn table(rows: &[BoundRow]) -> String {
     }
     text += "bound of Cramér and Rao, rms error and their ratio    contact resistance, %         tissue, %              skin, mK\n";
     for row in rows {
-        let BoundRow {
-            object,
-            since_s,
-            contact,
-            tissue,
-            skin_mk,
-        } = row;
+        let BoundRow { object, since_s, contact, tissue, skin_mk } = row;
         let part = |scale: f64, Compared { bound, error }: &Compared| {
-            format!(
-                "{:>8.2}{:>8.2}{:>6.1}",
-                scale * bound,
-                scale * error,
-                error / bound
-            )
+            format!("{:>8.2}{:>8.2}{:>6.1}", scale * bound, scale * error, error / bound)
         };
         // Writing to a String cannot fail.
         let _ = writeln!(

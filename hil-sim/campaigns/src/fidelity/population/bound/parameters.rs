@@ -74,9 +74,7 @@ impl Touch {
         Some(Self {
             finger: LoneFinger {
                 params: finger.clone(),
-                flow: finger
-                    .vessels
-                    .map_or(1.0, |vessels| vessels.flow(PopulationCase::FORCE_N)),
+                flow: finger.vessels.map_or(1.0, |vessels| vessels.flow(PopulationCase::FORCE_N)),
                 skin_c: scene.skin_c,
                 room_c: scene.room_c,
             },
@@ -94,11 +92,7 @@ impl Touch {
         let mut vector = [0.0; PARAMETERS];
         for (i, layer) in self.finger.params.layers.iter().take(LAYERS).enumerate() {
             let medium = &layer.medium;
-            let values = [
-                layer.thickness_m,
-                medium.conductivity_w_mk,
-                medium.capacity_j_m3k,
-            ];
+            let values = [layer.thickness_m, medium.conductivity_w_mk, medium.capacity_j_m3k];
             vector[3 * i..3 * i + 3].copy_from_slice(&values.map(f64::ln));
             if i > 0 {
                 vector[PERFUSION + i - 1] = medium.perfusion_w_m3k.ln();
@@ -118,13 +112,7 @@ impl Touch {
     /// The same with a parameter changed.
     pub fn changed(&self, parameter: usize, by: f64) -> Self {
         let mut changed = self.clone();
-        let Self {
-            finger,
-            display_m2k_w,
-            object_m2k_w,
-            sensor,
-            ..
-        } = &mut changed;
+        let Self { finger, display_m2k_w, object_m2k_w, sensor, .. } = &mut changed;
         match parameter {
             FLOW => finger.flow += by,
             AIR => finger.params.air_w_m2k *= by.exp(),
@@ -139,11 +127,7 @@ impl Touch {
             LAG => sensor.lag_s *= by.exp(),
             LAYER => sensor.resistance_m2k_w *= by.exp(),
             tissue => {
-                let layer = if tissue < PERFUSION {
-                    tissue / 3
-                } else {
-                    tissue - PERFUSION + 1
-                };
+                let layer = if tissue < PERFUSION { tissue / 3 } else { tissue - PERFUSION + 1 };
                 if let Some(layer) = finger.params.layers.get_mut(layer) {
                     let medium = &mut layer.medium;
                     *match tissue {
@@ -160,12 +144,7 @@ impl Touch {
 
     /// Readings of the sensor without noise, W/m2, on a display whose surface, deg C, has this course: one a step.
     pub fn readings_w_m2(&self, display_c: &[f64]) -> Vec<f64> {
-        let FluxParams {
-            gain_error,
-            zero_w_m2,
-            lag_s,
-            ..
-        } = self.sensor;
+        let FluxParams { gain_error, zero_w_m2, lag_s, .. } = self.sensor;
         let share = 1.0 - (-STEP_S / lag_s).exp();
         let mut lagged_w_m2 = 0.0;
         let flux_w_m2 = self.on_display(display_c).flux_w_m2;
@@ -195,8 +174,7 @@ impl Touch {
         let touched = (self.finger).on_object(self.object_m2k_w, steps as u32, &self.object);
         let resistance = self.display_m2k_w + self.sensor.resistance_m2k_w;
         let ends = touched.skin_c.iter().zip(&touched.flux_w_m2);
-        ends.map(|(skin_c, flux_w_m2)| skin_c - resistance * flux_w_m2)
-            .collect()
+        ends.map(|(skin_c, flux_w_m2)| skin_c - resistance * flux_w_m2).collect()
     }
 
     /// Standard deviation of a reading, W/m2.
@@ -232,9 +210,7 @@ pub fn covariance(drawn: &[Vector]) -> [Vector; PARAMETERS] {
     let count = drawn.len() as f64;
     let mean: Vector = array::from_fn(|i| drawn.iter().map(|one| one[i]).sum::<f64>() / count);
     let element = |i: usize, j: usize| {
-        let products = drawn
-            .iter()
-            .map(|one| (one[i] - mean[i]) * (one[j] - mean[j]));
+        let products = drawn.iter().map(|one| (one[i] - mean[i]) * (one[j] - mean[j]));
         products.sum::<f64>() / (count - 1.0)
     };
     let mut all: [Vector; PARAMETERS] = array::from_fn(|i| array::from_fn(|j| element(i, j)));

@@ -29,14 +29,8 @@ fn a_finger_alone_has_the_readings_and_the_skin_of_the_plant() {
             reading - own
         });
         let (count, sum) = off.fold((0.0, 0.0), |(count, sum), off| (count + 1.0, sum + off));
-        let largest = readings
-            .iter()
-            .fold(0.0, |most: f64, one| most.max(one.abs()));
+        let largest = readings.iter().fold(0.0, |most: f64, one| most.max(one.abs()));
         let off = sum / count;
-        assert!(
-            off.abs() < 2.0 + 1e-3 * largest,
-            "{}: {off} W/m²",
-            case.name
-        );
+        assert!(off.abs() < 2.0 + 1e-3 * largest, "{}: {off} W/m²", case.name);
     }
 }

@@ -28,10 +28,7 @@ fn clocks() -> Config {
     let mut config = Config::default();
     let rcc = &mut config.rcc;
     rcc.ls = LsConfig::off();
-    rcc.hse = Some(Hse {
-        freq: Hertz(8_000_000),
-        mode: HseMode::Bypass,
-    });
+    rcc.hse = Some(Hse { freq: Hertz(8_000_000), mode: HseMode::Bypass });
     rcc.pll_src = PllSource::HSE;
     rcc.pll = Some(Pll {
         prediv: PllPreDiv::DIV4,
@@ -61,15 +58,8 @@ async fn main(spawner: Spawner) {
     let mut p = embassy_stm32::init(clocks());
 
     let leg = PwmPin::new(p.PA8, OutputType::PushPull);
-    let mut pwm = SimplePwm::new(
-        p.TIM1,
-        Some(leg),
-        None,
-        None,
-        None,
-        Hertz(20_000),
-        Default::default(),
-    );
+    let mut pwm =
+        SimplePwm::new(p.TIM1, Some(leg), None, None, None, Hertz(20_000), Default::default());
     pwm.ch1().set_duty_cycle_percent(25);
     pwm.ch1().enable();
 

@@ -69,13 +69,8 @@ fn main() -> ! {
     let middle = Output::new(p.PB0, Level::Low, Speed::Low);
     let high = Output::new(p.PC1, Level::Low, Speed::Low);
     interrupt::UART4.set_priority(Priority::P6);
-    HIGH.start(interrupt::UART4)
-        .spawn(toggle_each_ms(high).unwrap());
+    HIGH.start(interrupt::UART4).spawn(toggle_each_ms(high).unwrap());
     interrupt::UART5.set_priority(Priority::P7);
-    MIDDLE
-        .start(interrupt::UART5)
-        .spawn(busy_2_of_5_ms(middle).unwrap());
-    THREAD
-        .init(Executor::new())
-        .run(|spawner| spawner.spawn(busy_20_of_30_ms(thread).unwrap()))
+    MIDDLE.start(interrupt::UART5).spawn(busy_2_of_5_ms(middle).unwrap());
+    THREAD.init(Executor::new()).run(|spawner| spawner.spawn(busy_20_of_30_ms(thread).unwrap()))
 }

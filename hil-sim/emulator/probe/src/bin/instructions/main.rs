@@ -62,11 +62,8 @@ pub struct Answer {
 
 /// Results of all forms.
 #[unsafe(no_mangle)]
-pub static mut ANSWERS: [Answer; FORMS] = [Answer {
-    sums: [0x811c_9dc5; GROUPS],
-    positions: [255; 4],
-    values: [0; 4],
-}; FORMS];
+pub static mut ANSWERS: [Answer; FORMS] =
+    [Answer { sums: [0x811c_9dc5; GROUPS], positions: [255; 4], values: [0; 4] }; FORMS];
 
 /// Number of forms, once all have run.
 #[unsafe(no_mangle)]
@@ -191,14 +188,7 @@ impl Random {
 /// Input number `input` of every form.
 fn input(input: u32) -> Before {
     let mut random = Random(0x9e37_79b9 ^ (input + 1).wrapping_mul(0x0100_0193));
-    let mut before = Before {
-        float: [0; 32],
-        fpscr: 0,
-        apsr: 0,
-        code: 0,
-        core: [0; 13],
-        lr: 0,
-    };
+    let mut before = Before { float: [0; 32], fpscr: 0, apsr: 0, code: 0, core: [0; 13], lr: 0 };
     for _ in 0..4 {
         random.next();
     }
@@ -208,10 +198,7 @@ fn input(input: u32) -> Before {
     for register in &mut before.float {
         *register = random.float();
     }
-    let (group, turn) = (
-        input as usize / (INPUTS as usize / GROUPS),
-        input as usize % 4,
-    );
+    let (group, turn) = (input as usize / (INPUTS as usize / GROUPS), input as usize % 4);
     before.fpscr = FPSCR[group][turn] | random.next() & 0xf000_009f;
     before.apsr = random.next() & 0xf80f_0000;
     before.lr = random.next();
@@ -248,10 +235,7 @@ fn execute(form: usize, number: u32, before: &Before, contents: &[u32; MEMORY]) 
     let (answer, memory) = unsafe {
         core::ptr::copy_nonoverlapping(contents.as_ptr(), block, MEMORY);
         run_form(black_box(before), black_box(&mut after));
-        (
-            &mut (*answer)[form],
-            core::slice::from_raw_parts(block, MEMORY),
-        )
+        (&mut (*answer)[form], core::slice::from_raw_parts(block, MEMORY))
     };
     let sum = &mut answer.sums[(number / (INPUTS / GROUPS as u32)) as usize];
     for word in words(&after).iter().chain(memory) {
