@@ -190,7 +190,7 @@ pub fn table() -> String {
         "//! Written by `cargo run --release -p contact-model --example tables`; do not edit.\n\n\
          use super::kernel::{Row, Table};\n\n\
          const fn row(constant: u32, slope: i32, seventh: i32, sixth: i32, inner: [i32; 4]) -> Row {\n    \
-             Row {\n        constant,\n        slope,\n        seventh,\n        sixth,\n        inner,\n    }\n}\n\n\
+             Row { constant, slope, seventh, sixth, inner }\n}\n\n\
          #[rustfmt::skip]\n\
          pub(super) static TABLE: Table = Table {\n    octaves: [",
     );
