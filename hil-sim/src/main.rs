@@ -3,6 +3,7 @@
 mod cli;
 
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Parser;
 
@@ -61,15 +62,16 @@ enum Cli {
 }
 
 fn main() -> ExitCode {
+    let began = Instant::now();
     let done = match Cli::parse() {
-        Cli::Run(arguments) => run::run(&arguments),
-        Cli::Play(arguments) => play::run(&arguments),
+        Cli::Run(arguments) => run::run(&arguments, began),
+        Cli::Play(arguments) => play::run(&arguments, began),
         Cli::Display(arguments) => display::run(&arguments),
         Cli::Serve(arguments) => serve::run(&arguments),
         #[cfg(unix)]
         Cli::ServeLatency(arguments) => serve::latency::run(&arguments),
         Cli::Commission(arguments) => commission::run(&arguments),
-        Cli::Hand(arguments) => five_fingers::run(&arguments),
+        Cli::Hand(arguments) => five_fingers::run(&arguments, began),
         #[cfg(feature = "emulator")]
         Cli::Profile(arguments) => profile::run(&arguments),
         #[cfg(feature = "emulator")]

@@ -21,6 +21,7 @@ pub mod scene;
 mod scene_recording;
 pub mod serve;
 pub mod simulated_link;
+pub mod speed;
 pub mod trace;
 mod trigger_edges;
 pub mod upload;

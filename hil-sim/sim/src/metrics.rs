@@ -10,6 +10,7 @@ use thermal_plant::{Plant, PlantConfig, STEP_S};
 use crate::dose::cem43_min;
 use crate::run::{Exchange, Outcome};
 use crate::scene::{Draws, Scene};
+use crate::speed::Speed;
 use crate::trace::TraceRow;
 
 /// Time after landing from which the largest error counts, s.
@@ -127,8 +128,9 @@ pub struct Figures {
     pub cpu_load: Option<f64>,
     /// Largest stack use, emulated, bytes.
     pub stack_bytes: Option<u32>,
-    /// Simulated time divided by run time.
-    pub real_time_factor: f64,
+    /// How much faster than real time the run was.
+    #[serde(flatten)]
+    pub speed: Speed,
     /// Faults that the device reported.
     pub faults: Vec<TripRecord>,
     /// Resets of the device after its power-up.
@@ -207,7 +209,7 @@ pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
         },
         cpu_load: outcome.cost.map(|cost| cost.load),
         stack_bytes: outcome.cost.and_then(|cost| cost.stack_bytes),
-        real_time_factor: outcome.real_time_factor,
+        speed: outcome.clock.speed(scene.duration_s),
         faults: faults(outcome),
         resets: resets(outcome),
         answered_lines: exchanges.len(),

@@ -10,6 +10,7 @@ use crate::metrics::{
 };
 use crate::run::Outcome;
 use crate::scene::{Scene, SceneError};
+use crate::speed::Speed;
 
 /// Time of the landing in the scene, s.
 const LANDING_S: f64 = 1.0;
@@ -53,8 +54,9 @@ pub struct PlayFigures {
     pub cem43_min: f64,
     /// Current through the module.
     pub current_a: CurrentFigures,
-    /// Simulated time divided by run time.
-    pub real_time_factor: f64,
+    /// How much faster than real time the run was.
+    #[serde(flatten)]
+    pub speed: Speed,
     /// Faults that the device reported.
     pub faults: Vec<TripRecord>,
     /// Lines that the device has refused.
@@ -75,7 +77,7 @@ impl PlayFigures {
             skin_c: figures.skin_c,
             cem43_min: figures.cem43_min,
             current_a: figures.current_a,
-            real_time_factor: figures.real_time_factor,
+            speed: figures.speed,
             faults: figures.faults,
             refused_lines: figures.refused_lines,
         }

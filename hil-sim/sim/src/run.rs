@@ -10,6 +10,7 @@ use crate::host::SET_UP_FROM_MS;
 use crate::processor::{Injection, MachineFault, NotInjected};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
+use crate::speed::RunClock;
 use crate::trigger_edges::trigger_edges_us;
 
 pub use crate::scene_recording::{Exchange, Outcome};
@@ -69,9 +70,12 @@ pub fn run_with<E: Engine>(
     engine: &mut E,
     progress: impl FnMut(f64),
 ) -> Result<Outcome, RunError<E::Stop>> {
+    let began = Instant::now();
     let settings = commissioning::settings_for_scene(scene).map_err(RunError::Commission)?;
     let scene = commissioning::with_person(scene).map_err(RunError::Commission)?;
-    run_with_settings(&scene, &settings, injections, engine, progress)
+    let mut outcome = run_with_settings(&scene, &settings, injections, engine, progress)?;
+    outcome.clock.began = began;
+    Ok(outcome)
 }
 
 /// Runs a scene on a device with these settings, as lines, whose person is not enrolled.
@@ -119,9 +123,9 @@ pub(crate) fn run_with_settings<E: Engine>(
         }
         progress(ms as f64 / last_ms as f64);
     }
-    let real_time_factor = last_ms as f64 * 1e-3 / began.elapsed().as_secs_f64();
+    let clock = RunClock::at_last_row(began, began, last_ms);
     let SceneRun { recording, engine, .. } = scene_run;
-    Ok(recording.outcome(E::NAME, &engine.resets(), engine.cost(), real_time_factor))
+    Ok(recording.outcome(E::NAME, &engine.resets(), engine.cost(), clock))
 }
 
 /// Microseconds from the start of a half millisecond since the start to a time of the scene, s, if the time is in that half

@@ -1,6 +1,7 @@
 //! Runs of whole scenes on a device, for campaigns.
 
 use std::ops::Range;
+use std::time::Instant;
 
 use anyhow::Context;
 
@@ -69,11 +70,13 @@ pub fn run_scene_on<E: Engine>(
     scene: &Scene,
     start: impl FnOnce(World) -> anyhow::Result<E>,
 ) -> anyhow::Result<(Outcome, Figures)> {
+    let began = Instant::now();
     let world = World::new(scene).context("plant")?;
-    let outcome = run(scene, &mut start(world)?, |_| ()).map_err(|error| match error {
+    let mut outcome = run(scene, &mut start(world)?, |_| ()).map_err(|error| match error {
         RunError::NotInjected(error) => anyhow::Error::from(error),
         error => error.into(),
     })?;
+    outcome.clock.began = began;
     let figures = figures(scene, &outcome);
     Ok((outcome, figures))
 }

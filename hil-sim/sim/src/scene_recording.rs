@@ -6,6 +6,7 @@ use crate::World;
 use crate::engine::{Cost, DeviceReset};
 use crate::host::Host;
 use crate::scene::Scene;
+use crate::speed::RunClock;
 use crate::trace::{Trace, TraceRow};
 
 /// Result of a run.
@@ -27,8 +28,8 @@ pub struct Outcome {
     pub electrical_j: f64,
     /// Computing cost of the scene without set-up and settling.
     pub cost: Option<Cost>,
-    /// Simulated time divided by run time, including settling.
-    pub real_time_factor: f64,
+    /// When the run began and ended.
+    pub clock: RunClock,
 }
 
 /// An answer of the device, and what it answers.
@@ -152,7 +153,7 @@ impl<'a> SceneRecording<'a> {
         engine: &'static str,
         resets: &[DeviceReset],
         cost: Option<Cost>,
-        real_time_factor: f64,
+        clock: RunClock,
     ) -> Outcome {
         let shift = |reset: &DeviceReset| DeviceReset {
             t_s: reset.t_s - self.zero_ms as f64 / 1e3,
@@ -167,7 +168,7 @@ impl<'a> SceneRecording<'a> {
             sent: self.sent,
             electrical_j: self.energy_j.1 - self.energy_j.0,
             cost,
-            real_time_factor,
+            clock,
         }
     }
 }

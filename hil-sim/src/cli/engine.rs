@@ -1,20 +1,25 @@
 //! The engine and the scene of a command.
 
 use std::path::Path;
+use std::time::Instant;
 
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 #[cfg(feature = "emulator")]
 use stm32_emulator::FiveFingerBoard;
+use thermal_sim::engine::{Engine, NativeEngine};
 #[cfg(feature = "emulator")]
 use thermal_sim::five_fingers::FINGERS;
 use thermal_sim::five_fingers::{FiveFingerEngine, FiveFingerRunner, NativeFiveFingers};
+use thermal_sim::metrics::{Figures, figures};
+use thermal_sim::processor::Injection;
+use thermal_sim::run::{Outcome, run_with};
 use thermal_sim::scene::Scene;
 use thermal_sim::{NativeRunner, SceneRunner, World};
 
-use super::Failure;
 #[cfg(feature = "emulator")]
 use super::image;
+use super::{Failure, output};
 
 /// What runs the device's logic.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -80,6 +85,44 @@ pub fn scene(path: &Path) -> Result<(Scene, World), Failure> {
     let world =
         World::new(&scene).with_context(|| path.display().to_string()).map_err(Failure::input)?;
     Ok((scene, world))
+}
+
+/// Runs a scene in its world, with faults of the processor, on the engine that the command line chooses, and the image that it
+/// names. The run's wait counts from `began`, without the time in which the image is built.
+pub fn run_scene(
+    (kind, elf): (EngineKind, Option<&Path>),
+    scene: &Scene,
+    world: World,
+    injections: &[Injection],
+    began: Instant,
+) -> Result<(Outcome, Figures), Failure> {
+    match kind {
+        EngineKind::Native => {
+            refuse_elf(elf)?;
+            run_on(&mut NativeEngine::new(world), scene, injections, began)
+        }
+        #[cfg(feature = "emulator")]
+        EngineKind::Image => {
+            let building = Instant::now();
+            let elf = image::path(elf, 1)?;
+            let began = began + building.elapsed();
+            run_on(&mut image::engine(Some(&elf), world)?, scene, injections, began)
+        }
+    }
+}
+
+fn run_on<E: Engine>(
+    engine: &mut E,
+    scene: &Scene,
+    injections: &[Injection],
+    began: Instant,
+) -> Result<(Outcome, Figures), Failure> {
+    let name = format!("{} on engine {}", scene.object.name, E::NAME);
+    let run = |progress: &dyn Fn(f64)| run_with(scene, injections, engine, progress);
+    let mut outcome = output::with_progress(name, run)?.map_err(Failure::run)?;
+    outcome.clock.began = began;
+    let figures = figures(scene, &outcome);
+    Ok((outcome, figures))
 }
 
 /// Refuses `--elf` for the native engine.

@@ -1,6 +1,7 @@
 //! `hil-sim hand`: five scenes on the five fingers of one device.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use anyhow::{Context, anyhow};
 use clap::Args;
@@ -41,8 +42,8 @@ struct Report {
     latency_cycles_max: Option<u64>,
 }
 
-/// Runs the scenes and prints their figures.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+/// Runs the scenes for a program that began at a time, and prints their figures.
+pub fn run(arguments: &Arguments, began: Instant) -> Result<(), Failure> {
     let mut scenes = Vec::new();
     let mut worlds = Vec::new();
     for path in &arguments.scenes {
@@ -58,10 +59,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (figures, cost) = match arguments.engine {
         EngineKind::Native => {
             engine::refuse_elf(elf)?;
-            measure(&scenes, &mut NativeFiveFingers::new(worlds))
+            measure(&scenes, &mut NativeFiveFingers::new(worlds), began)
         }
         #[cfg(feature = "emulator")]
-        EngineKind::Image => measure(&scenes, &mut super::image::five_fingers(elf, worlds)?),
+        EngineKind::Image => {
+            let building = Instant::now();
+            let elf = super::image::path(elf, FINGERS)?;
+            let began = began + building.elapsed();
+            measure(&scenes, &mut super::image::five_fingers(Some(&elf), worlds)?, began)
+        }
     }?;
     let report = Report { latency_cycles_max: cost.map(|cost| cost.latency_max), fingers: figures };
     let table = || table(&report.fingers, cost);
@@ -71,11 +77,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn measure<H: FiveFingerEngine>(
     scenes: &[Scene; FINGERS],
     five_fingers: &mut H,
+    began: Instant,
 ) -> Result<(Vec<Figures>, Option<Cost>), Failure> {
     let name = format!("five fingers on engine {}", H::NAME);
     let outcomes =
         output::with_progress(name, |progress| run_five_fingers(scenes, five_fingers, progress))?;
-    let outcomes = outcomes.map_err(Failure::run)?;
+    let mut outcomes = outcomes.map_err(Failure::run)?;
+    outcomes.iter_mut().for_each(|outcome| outcome.clock.began = began);
     let figures = scenes.iter().zip(&outcomes);
     let figures = figures.map(|(scene, outcome)| figures_of(scene, outcome));
     Ok((figures.collect(), five_fingers.cost()))

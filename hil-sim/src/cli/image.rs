@@ -9,12 +9,17 @@ use thermal_sim::five_fingers::FINGERS;
 
 use super::Failure;
 
-/// The image that `--elf` names, or that of the current sources for a number of fingers, and its path.
+/// Path of the image that `--elf` names, or of that of the current sources for a number of fingers, which is built.
+pub fn path(elf: Option<&Path>, fingers: usize) -> Result<PathBuf, Failure> {
+    match elf {
+        Some(path) => Ok(path.to_owned()),
+        None => build(fingers).map_err(Failure::run),
+    }
+}
+
+/// The image at [`path`], and that path.
 pub fn firmware(elf: Option<&Path>, fingers: usize) -> Result<(Firmware, PathBuf), Failure> {
-    let path = match elf {
-        Some(path) => path.to_owned(),
-        None => build(fingers).map_err(Failure::run)?,
-    };
+    let path = path(elf, fingers)?;
     let firmware = Firmware::from_file(&path)
         .with_context(|| path.display().to_string())
         .map_err(Failure::input)?;

@@ -1,10 +1,12 @@
 //! `hil-sim play`: a course from a CSV file under a finger.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use anyhow::{Context, anyhow};
 use clap::Args;
 use thermal_client::course::{Prepared, Selection, read_course};
+use thermal_sim::World;
 use thermal_sim::play::{PlayFigures, scene};
 
 use super::engine::{self, EngineKind};
@@ -40,8 +42,8 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Plays the course; prints its figures.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+/// Plays the course for a program that began at a time; prints its figures.
+pub fn run(arguments: &Arguments, began: Instant) -> Result<(), Failure> {
     let selection = Selection { column: arguments.column.as_deref() };
     let course = read_course(&arguments.course, selection).map_err(Failure::input)?;
     let played = Prepared::new(course).fine_enough(arguments.coarse);
@@ -64,8 +66,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .with_context(|| arguments.course.display().to_string())
         .map_err(Failure::input)?;
     output::create(arguments.out.as_deref())?;
-    let runner = engine::runner(arguments.engine, arguments.elf.as_deref())?;
-    let (outcome, figures) = runner.run(&scene).map_err(Failure::run)?;
+    let world = World::new(&scene).context("plant").map_err(Failure::input)?;
+    let device = (arguments.engine, arguments.elf.as_deref());
+    let (outcome, figures) = engine::run_scene(device, &scene, world, &[], began)?;
     let figures = PlayFigures::new(&played, &scene, &outcome, figures);
     if let Some(folder) = &arguments.out {
         (outcome.trace.write(&folder.join("trace.csv")))

@@ -1,14 +1,14 @@
 //! `hil-sim run`: a scene on an engine.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use anyhow::Context;
 use clap::Args;
-use thermal_sim::engine::{Engine, NativeEngine};
-use thermal_sim::metrics::{Figures, figures};
+use thermal_sim::metrics::Figures;
 use thermal_sim::processor::{Injection, ParseMachineFaultError};
 use thermal_sim::report;
-use thermal_sim::run::{Outcome, run_with};
+use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
 use super::engine::{self, EngineKind};
@@ -35,22 +35,12 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Runs the scene; prints its figures and writes its report.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+/// Runs the scene for a program that began at a time; prints its figures and writes its report.
+pub fn run(arguments: &Arguments, began: Instant) -> Result<(), Failure> {
     let (scene, world) = engine::scene(&arguments.scene)?;
     output::create(arguments.out.as_deref())?;
-    let elf = arguments.elf.as_deref();
-    let (outcome, figures) = match arguments.engine {
-        EngineKind::Native => {
-            engine::refuse_elf(elf)?;
-            measure(&scene, &arguments.inject, &mut NativeEngine::new(world))
-        }
-        #[cfg(feature = "emulator")]
-        EngineKind::Image => {
-            let mut engine = super::image::engine(elf, world)?;
-            measure(&scene, &arguments.inject, &mut engine)
-        }
-    }?;
+    let device = (arguments.engine, arguments.elf.as_deref());
+    let (outcome, figures) = engine::run_scene(device, &scene, world, &arguments.inject, began)?;
     if let Some(folder) = &arguments.out {
         write(folder, &scene, &outcome, &figures).map_err(Failure::run)?;
     }
@@ -72,19 +62,6 @@ fn injection(text: &str) -> Result<Injection, String> {
         .ok_or_else(|| format!("`{time}` is no time in seconds"))?;
     let fault = fault.parse().map_err(|error: ParseMachineFaultError| error.to_string())?;
     Ok(Injection { t_s, fault })
-}
-
-fn measure<E: Engine>(
-    scene: &Scene,
-    injections: &[Injection],
-    engine: &mut E,
-) -> Result<(Outcome, Figures), Failure> {
-    let name = format!("{} on engine {}", scene.object.name, E::NAME);
-    let outcome =
-        output::with_progress(name, |progress| run_with(scene, injections, engine, progress))?;
-    let outcome = outcome.map_err(Failure::run)?;
-    let figures = figures(scene, &outcome);
-    Ok((outcome, figures))
 }
 
 fn write(folder: &Path, scene: &Scene, outcome: &Outcome, figures: &Figures) -> anyhow::Result<()> {

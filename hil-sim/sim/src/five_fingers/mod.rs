@@ -25,6 +25,7 @@ use crate::processor::{Injection, MachineFault, NotInjected};
 use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
+use crate::speed::RunClock;
 use crate::trigger_edges::trigger_edges_us;
 use thermal_plant::bridge::BridgeOutputs;
 
@@ -97,6 +98,7 @@ pub fn run<H: FiveFingerEngine>(
     engine: &mut H,
     mut progress: impl FnMut(f64),
 ) -> Result<[Outcome; FINGERS], RunError<H::Stop>> {
+    let began = Instant::now();
     let settings: Vec<_> = (scenes
         .iter()
         .map(|scene| commissioning::settings_for_scene(&scene.on_five_fingers()))
@@ -104,7 +106,7 @@ pub fn run<H: FiveFingerEngine>(
     .map_err(RunError::Commission)?;
     let enrolled = scenes.iter().map(commissioning::with_person);
     let enrolled: Vec<_> = enrolled.collect::<Result<_, _>>().map_err(RunError::Commission)?;
-    let began = Instant::now();
+    let loop_began = Instant::now();
     let mut set_up_from_ms = SET_UP_FROM_MS;
     let mut fingers: [_; FINGERS] = std::array::from_fn(|finger| {
         let (scene, settings) = (&*enrolled[finger], &settings[finger]);
@@ -159,9 +161,9 @@ pub fn run<H: FiveFingerEngine>(
         }
         progress(ms as f64 / last_ms as f64);
     }
-    let real_time_factor = last_ms as f64 * 1e-3 / began.elapsed().as_secs_f64();
+    let clock = RunClock::at_last_row(began, loop_began, last_ms);
     let (cost, resets) = (engine.cost(), engine.resets());
-    Ok(fingers.map(|finger| finger.outcome(H::NAME, &resets, cost, real_time_factor)))
+    Ok(fingers.map(|finger| finger.outcome(H::NAME, &resets, cost, clock)))
 }
 
 /// A line to a finger. A blank line has no address.

@@ -1,5 +1,7 @@
 //! Runs of scenes on five fingers, for campaigns.
 
+use std::time::Instant;
+
 use anyhow::Context;
 
 use super::{FINGERS, FiveFingerEngine, NativeFiveFingers, run};
@@ -32,6 +34,7 @@ pub fn run_scenes_on<E: FiveFingerEngine>(
     scenes: &[Scene; FINGERS],
     start: impl FnOnce([World; FINGERS]) -> anyhow::Result<E>,
 ) -> anyhow::Result<Vec<(Outcome, Figures)>> {
+    let began = Instant::now();
     let worlds: Vec<_> =
         (scenes.iter().map(World::of_five_fingers)).collect::<Result<_, _>>().context("plant")?;
     let worlds: [World; FINGERS] = (worlds.try_into()).ok().context("one world for a scene")?;
@@ -39,7 +42,8 @@ pub fn run_scenes_on<E: FiveFingerEngine>(
         RunError::NotInjected(error) => anyhow::Error::from(error),
         error => error.into(),
     })?;
-    let with_figures = |(scene, outcome): (&Scene, Outcome)| {
+    let with_figures = |(scene, mut outcome): (&Scene, Outcome)| {
+        outcome.clock.began = began;
         let figures = figures(scene, &outcome);
         (outcome, figures)
     };

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use crate::metrics::{CostPerTick, ErrorFigures, Figures};
+use crate::speed::Speed;
 
 /// Refused lines that the table shows.
 const REFUSED_SHOWN: usize = 5;
@@ -50,7 +51,11 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
         rows.push(("CPU load", format!("{:.1} % (estimated)", load * 100.0)));
         rows.push(("stack used", format!("{stack} bytes")));
     }
-    rows.push(("real-time factor", format!("{:.0}", figures.real_time_factor)));
+    let Speed { real_time_factor, loop_real_time_factor } = figures.speed;
+    rows.push((
+        "real-time factor",
+        format!("{real_time_factor:.1}, of the loop {loop_real_time_factor:.0}"),
+    ));
     rows.push(("faults", list(faults.collect())));
     rows.push(("resets", list(resets.collect())));
     if figures.answered_lines > 0 {
