@@ -7,6 +7,7 @@ mod enrolment;
 mod frequency_response;
 mod operator;
 mod setup;
+mod shipped;
 mod surroundings;
 
 use std::collections::HashMap;
@@ -30,6 +31,7 @@ pub use enrolment::with_person;
 pub use frequency_response::FrequencyResponse;
 pub use operator::{commission, restore};
 pub use setup::{CommissioningSetup, SimulatedPhantom};
+pub use shipped::shipped_settings;
 pub use surroundings::{SimulatedOperator, SimulatedSurroundings, SurroundingsAction};
 
 /// Lines of settings, or why commissioning failed; computed once.
@@ -39,7 +41,7 @@ type SharedSettings = Arc<OnceLock<Result<Vec<String>, CommissionError>>>;
 const SURFACE_MEASUREMENT: Tolerance = relative(0.1).normal();
 
 /// The settings of a scene's device as lines: those of commissioning, none if it is not commissioned, its heat-flux sensor
-/// if it is fitted, and the surface of its display if it was measured. Computed by the native engine, once per process for each device.
+/// if it is fitted, and the surface of its display if it was measured.
 ///
 /// # Errors
 /// The device cannot be commissioned.
@@ -77,7 +79,8 @@ pub fn display_surface(scene: &Scene) -> DisplaySurface {
     DisplaySurface::from_array_rounded(measured)
 }
 
-/// The settings of a device with these parameters and this seed of its converter, in a room, deg C.
+/// The settings of a device with these parameters and this seed of its converter, in a room, deg C: those that are kept of
+/// it, or those that commissioning finds, once per process for each device.
 ///
 /// # Errors
 /// The device cannot be commissioned.
@@ -88,6 +91,9 @@ pub fn settings_for_device(
 ) -> Result<Vec<String>, CommissionError> {
     static KNOWN: LazyLock<Mutex<HashMap<String, SharedSettings>>> = LazyLock::new(Mutex::default);
     let plants = CommissioningSetup::new(params, room_c, seed);
+    if let Some(kept) = shipped_settings(&plants) {
+        return Ok(kept.to_vec());
+    }
     let lines = {
         // A thread that panicked has at most left an entry without lines.
         let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);

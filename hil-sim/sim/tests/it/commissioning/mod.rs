@@ -6,6 +6,7 @@ mod flux_self_test;
 mod margins;
 mod phantom;
 mod restore;
+mod shipped;
 mod tile;
 
 use std::time::Duration;
