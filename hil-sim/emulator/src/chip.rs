@@ -223,8 +223,8 @@ impl<W: Wiring> Chip<W> {
             }
             let at = self.next;
             if at < self.next_of_others {
+                // Conversions and bytes change no pin.
                 self.service_streams(at, memory);
-                self.sample_inputs(at);
                 self.refresh_next_of_streams();
                 continue;
             }

@@ -50,7 +50,7 @@ fn drivers_do_at_the_pins_what_the_program_asks() {
     // 20 kHz of a timer clock of 180 MHz, a quarter high.
     assert_eq!(machine.pwm(A, 8), LegState::Duty { high: 2250, period: 9000 });
     let sent = |from: usize, machine: &stm32_emulator::Machine<_>| {
-        let wiring: &crate::probe::Bench = machine.wiring();
+        let wiring: &crate::support::Bench = machine.wiring();
         wiring.sent[from..].iter().map(|(byte, _)| *byte).collect::<Vec<u8>>()
     };
     // Codes of PA1 and PA4, which the bench makes of their channels.

@@ -73,21 +73,6 @@ fn pwm_follows_a_sine() {
     }
 }
 
-/// Six bytes by DMA, then six without, at 115 200 bit/s.
-#[test]
-fn a_serial_port_echoes() {
-    let mut machine = machine("serial-dma");
-    machine.set_host_baud(115_200);
-    run_until_ms(&mut machine, 5);
-    machine.uart_send(b"by DMA");
-    run_until_ms(&mut machine, 10);
-    machine.uart_send(b"by CPU");
-    run_until_ms(&mut machine, 15);
-    let sent: Vec<u8> = machine.wiring().sent.iter().map(|(byte, _)| *byte).collect();
-    assert_eq!(String::from_utf8_lossy(&sent), "by DMAby CPU");
-    assert_eq!(machine.wiring().baud, 115_108, "16 MHz / 139");
-}
-
 /// Number of the breakpoint, and operations, of semihosting.
 const SEMIHOSTING: u8 = 0xab;
 const OPEN: u32 = 0x01;

@@ -1,15 +1,19 @@
 //! Programs of `foreign/`: those that others wrote for the chip, and ours on others' drivers. None shares code with the firmware.
+//! `cargo xtask soak` runs them, because compiling their drivers takes minutes; the suite runs one of them.
+
 mod embassy;
 mod hal_examples;
+#[path = "../support/mod.rs"]
+mod support;
 
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use stm32_emulator::{Firmware, Machine};
 
-use crate::probe::{self, Bench};
+use support::{Bench, build};
 
-static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| probe::build("foreign"));
+static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| build(&["foreign", "--all"]));
 
 /// A machine about to run a program.
 fn machine(name: &str) -> Machine<Bench> {

@@ -8,6 +8,8 @@ mod files;
 mod foreign;
 mod probe;
 mod published_cycles;
+#[path = "../support/mod.rs"]
+mod support;
 
 use documented_figures::run_generator;
 
