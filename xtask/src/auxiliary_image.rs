@@ -29,11 +29,20 @@ pub fn clippy_of_probe(toolchain: &Toolchain) -> Invocation {
 /// Package of the programs of `cargo xtask foreign`.
 pub const FOREIGN: &str = "hil-sim/emulator/foreign/Cargo.toml";
 
-/// `cargo xtask foreign`: builds programs that others wrote, and programs of ours on others' drivers, and prints their folder.
-pub fn foreign(permission: Permission) -> Result<()> {
+/// The program of [`FOREIGN`] that the suite compiles: clocks, DMA and serial port by the published HAL, which needs few drivers.
+const FOREIGN_OF_THE_SUITE: &str = "serial-dma";
+
+/// `cargo xtask foreign`: builds the suite's program that others wrote, or all of them and ours on others' drivers, and prints
+/// their folder.
+pub fn foreign(permission: Permission, all: bool) -> Result<()> {
     fetch_foreign()?;
     copy_examples()?;
-    let package = ["--release", "--manifest-path", FOREIGN];
+    let chosen: &[_] = if all {
+        &["--workspace", "--all-features"]
+    } else {
+        &["--package", "hal-examples", "--bin", FOREIGN_OF_THE_SUITE]
+    };
+    let package = [&["--release", "--manifest-path", FOREIGN], chosen].concat();
     build(permission, "target/foreign", &package, "release")
 }
 

@@ -162,8 +162,14 @@ enum Task {
     BenchImage(SetUp),
     /// Build the image for the emulator's own tests and print its path; called by those tests
     Probe(SetUp),
-    /// Build programs of others for the emulator's own tests and print their folder; called by those tests
-    Foreign(SetUp),
+    /// Build a program of others for the emulator's own tests and print its folder; called by those tests
+    Foreign {
+        #[command(flatten)]
+        set_up: SetUp,
+        /// All such programs, which takes minutes
+        #[arg(long)]
+        all: bool,
+    },
 }
 
 #[derive(Args, Clone, Copy)]
@@ -222,7 +228,7 @@ fn main() -> ExitCode {
         Task::Docs { check } => docs::run(check),
         Task::BenchImage(set_up) => auxiliary_image::benchmark(set_up.permission()),
         Task::Probe(set_up) => auxiliary_image::probe(set_up.permission()),
-        Task::Foreign(set_up) => auxiliary_image::foreign(set_up.permission()),
+        Task::Foreign { set_up, all } => auxiliary_image::foreign(set_up.permission(), all),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

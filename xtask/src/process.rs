@@ -16,9 +16,22 @@ const POLL: Duration = Duration::from_millis(20);
 /// Time limit of queries such as `rustc --version`.
 const PROBE_LIMIT: Duration = Duration::from_secs(20);
 
+/// Cargo's profile of the test suite, and the folder below `target/` for what it compiles.
+pub const SUITE: &str = "suite";
+
+/// Feature with which the suite compiles all programs: what the windows show is tested without a display. Cargo would compile a
+/// dependency, and what depends on it, once more for other features.
+pub const VIEWS: &str = "thermal-window/views";
+
 /// The root of the workspace, in which every command runs.
 pub fn workspace() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
+}
+
+/// The folder for what cargo compiles of the workspace.
+pub fn target_folder() -> PathBuf {
+    let chosen = std::env::var_os("CARGO_TARGET_DIR");
+    chosen.map_or_else(|| workspace().join("target"), PathBuf::from)
 }
 
 /// A command line with changes of the environment. Its `Display` is a shell command for the workspace's root, in which bytes

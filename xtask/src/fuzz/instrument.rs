@@ -10,7 +10,7 @@ use std::process::{Command, ExitCode};
 use anyhow::{Context, Result};
 
 use super::{create, folder};
-use crate::process::{Invocation, workspace};
+use crate::process::{Invocation, SUITE, VIEWS, workspace};
 
 /// Kind of instrumentation that is added to cargo's flags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,12 +87,13 @@ impl Instrumented {
             .or_else(|_| std::fs::copy(&this, &wrapper).map(|_| ()))
             .with_context(|| format!("{}: cannot be made", wrapper.display()))?;
         // The whole workspace is selected for the features of the dependencies, with which all other programs compile them.
-        Invocation::cargo(
-            "build --release --workspace --bin fuzz --features fuzz/libfuzzer".split(' '),
-        )
-        .env("RUSTC_WORKSPACE_WRAPPER", wrapper.to_string_lossy())
-        .run_to_stderr()?;
-        Ok(workspace().join("target/release/fuzz"))
+        let features = format!("fuzz/libfuzzer,{VIEWS}");
+        let line = ["build", "--profile", SUITE, "--workspace", "--bin", "fuzz", "--features"];
+        Invocation::cargo(line)
+            .args([features])
+            .env("RUSTC_WORKSPACE_WRAPPER", wrapper.to_string_lossy())
+            .run_to_stderr()?;
+        Ok(workspace().join("target/suite/fuzz"))
     }
 }
 

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
 
-use crate::process::{Invocation, workspace};
+use crate::process::{Invocation, SUITE, workspace};
 
 /// How one detector is disabled.
 #[derive(Debug, Default)]
@@ -52,7 +52,7 @@ const UNCHANGED: &str = "the unchanged sources must pass";
 /// Folder of the copied sources and of their builds.
 const FOLDER: &str = "target/mutations";
 /// Builds that are quick to link, as each runs a few faults only.
-const INCREMENTAL: &str = "profile.release.incremental = true";
+const INCREMENTAL: &str = "profile.suite.incremental = true";
 
 /// The mutations of the table.
 fn mutations() -> Result<Vec<Mutation>> {
@@ -171,7 +171,7 @@ fn copy_sources(copy: &Path) -> Result<()> {
 
 /// `cargo COMMAND` for `hil-sim` of the copy.
 fn hil_sim(copy: &Path, command: &str) -> Vec<OsString> {
-    let options = ["--release", "--package", "hil-sim", "--config", INCREMENTAL];
+    let options = ["--profile", SUITE, "--package", "hil-sim", "--config", INCREMENTAL];
     let mut line = vec![OsString::from(command)];
     line.extend(options.map(OsString::from));
     line.extend(["--manifest-path".into(), copy.join("Cargo.toml").into()]);
@@ -184,7 +184,7 @@ fn hil_sim(copy: &Path, command: &str) -> Vec<OsString> {
 fn unit_tests(copy: &Path, (package, name): (&str, &str), options: &[&str]) -> Invocation {
     // The tests of the image are no unit tests, and link the emulator.
     let kind: &[&str] = match package {
-        "image-tests" => &["--release", "--test", "image"],
+        "image-tests" => &["--profile", SUITE, "--test", "image"],
         _ => &["--lib"],
     };
     let target = workspace().join(FOLDER).join("target");

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 
 use crate::firmware;
-use crate::process::{Invocation, on_path, workspace};
+use crate::process::{Invocation, SUITE, VIEWS, on_path, target_folder, workspace};
 use crate::setup::{self, Needs, Permission, Toolchain};
 use page::Column;
 
@@ -45,7 +45,12 @@ pub fn run(permission: Permission, options: &Options) -> Result<()> {
     let filter = options.filter.iter().map(OsString::from);
     let tests = if options.emulated {
         let elf = build(&toolchain)?;
-        Invocation::run_package("hil-sim", ["embedded-tests", &elf]).args(filter)
+        // The whole workspace is selected for the features of the dependencies, with which the suite has compiled them.
+        let line =
+            ["build", "--profile", SUITE, "--workspace", "--bin", "hil-sim", "--features", VIEWS];
+        Invocation::cargo(line).run_to_stderr()?;
+        let hil_sim = target_folder().join(SUITE).join("hil-sim");
+        Invocation::new(&hil_sim.to_string_lossy(), ["embedded-tests", &elf]).args(filter)
     } else {
         find_board(permission)?;
         firmware::tests(&toolchain, "test").args(["--"]).args(filter)

@@ -22,6 +22,19 @@ impl Lints {
         Self { rustfmt: runs("fmt"), clippy: runs("clippy") }
     }
 
+    /// `command`, such as `cargo doc`, with the environment of `cargo clippy -- -Dwarnings`: it finds the workspace's crates
+    /// checked by that, and does not check them again.
+    pub fn share_with(self, command: Invocation) -> Invocation {
+        let sysroot = Invocation::new("rustc", ["--print", "sysroot"]).answer();
+        match sysroot {
+            Some(sysroot) if self.clippy => command
+                .env("RUSTC_WORKSPACE_WRAPPER", format!("{}/bin/clippy-driver", sysroot.trim()))
+                // Clippy's own separator of its arguments, of which the compiler remembers the value.
+                .env("CLIPPY_ARGS", "-Dwarnings__CLIPPY_HACKERY__"),
+            _ => command,
+        }
+    }
+
     fn missing(self) -> Vec<&'static str> {
         let tools = [(self.rustfmt, "rustfmt"), (self.clippy, "clippy")];
         let missing = tools.into_iter().filter(|(there, _)| !there);

@@ -64,21 +64,21 @@ pub fn options(members: &[Member], chosen: fn(&Member) -> bool) -> String {
     options.join(" ")
 }
 
-/// Checks the dependencies of each member, and their licences; of the command without the emulator, too. An error names a native
-/// member that depends on the emulator, or a dependency whose licence is not allowed.
+/// Checks the dependencies of all members, and their licences; of the command without the emulator, too. An error names a
+/// dependency of native members on the emulator, or one whose licence is not allowed.
 pub fn check_dependencies(members: &[Member]) -> Result<()> {
-    for member in members {
-        let name = &member.name;
-        check_package(&format!("--package {name} --all-features"), member.is_native())?;
-    }
-    check_package("--package hil-sim --no-default-features", true)?;
+    let native = options(members, Member::is_native);
+    check_packages(&format!("{native} --all-features"), true)?;
+    let emulated = options(members, |member| !member.is_native());
+    check_packages(&format!("{emulated} --all-features"), false)?;
+    check_packages("--package hil-sim --no-default-features", true)?;
     auxiliary_image::fetch_foreign()?;
     let foreign = auxiliary_image::FOREIGN;
-    check_package(&format!("--manifest-path {foreign} --workspace"), true)
+    check_packages(&format!("--manifest-path {foreign} --workspace --all-features"), true)
 }
 
-/// Checks the dependencies of the package that these options of cargo name, for this computer and for the microcontroller.
-fn check_package(options: &str, is_native: bool) -> Result<()> {
+/// Checks the dependencies of the packages that these options of cargo name, for this computer and for the microcontroller.
+fn check_packages(options: &str, is_native: bool) -> Result<()> {
     let line = format!(
         "tree {options} --prefix none --edges normal,build,dev --format {} --target host-tuple --target {TARGET}",
         licences::TREE_FORMAT
@@ -101,8 +101,8 @@ mod tests {
     fn the_licences_of_all_dependencies_are_allowed_and_that_of_the_emulator_is_found() {
         check_dependencies(&all().unwrap()).unwrap();
         let emulator = "--package stm32-emulator";
-        assert!(check_package(emulator, false).is_ok());
-        let error = format!("{:#}", check_package(emulator, true).unwrap_err());
+        assert!(check_packages(emulator, false).is_ok());
+        let error = format!("{:#}", check_packages(emulator, true).unwrap_err());
         assert!(error.contains(EMULATOR), "{error}");
     }
 

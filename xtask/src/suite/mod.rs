@@ -8,7 +8,7 @@ use documented_figures::{GENERATORS_REQUIRED, python_with_mpmath};
 
 use crate::auxiliary_image;
 use crate::firmware::{self, Fingers};
-use crate::process::{Invocation, workspace};
+use crate::process::{Invocation, VIEWS, workspace};
 use crate::setup::{self, Choice, Lints, Needs, Permission, Toolchain};
 use crate::step::Steps;
 use lanes::{Check, Lane};
@@ -64,7 +64,7 @@ fn package(python: Option<&str>) -> Check {
             // Nothing but the sources stays in the folder.
             Invocation::new(python, words).env("PYTHONDONTWRITEBYTECODE", "1")
         };
-        let hil_sim = workspace().join("target/release/hil-sim");
+        let hil_sim = workspace().join("target/suite/hil-sim");
         let tests = run("-m pytest -q -c python/pyproject.toml --rootdir python python/tests");
         vec![
             run("-m pip install --disable-pip-version-check --quiet --no-index --no-deps --no-build-isolation \
@@ -77,23 +77,16 @@ fn package(python: Option<&str>) -> Check {
     Check { title: "package for Python", commands }
 }
 
-/// What the windows show, without a display. The windows themselves are checked by a job of `cargo xtask soak`. `hil-sim` is
-/// selected for the sake of the features of what the toolkit shares with the other programs.
-fn windows() -> Check {
-    let tests = "test --release -p thermal-window -p hil-sim --features thermal-window/views --lib --test views --quiet";
-    check("windows, without a display", [tests])
-}
-
 fn units(members: &[Member]) -> Check {
     let small = members::options(members, Member::is_small);
-    let line = format!("test --release --quiet {small} --lib --bins --tests");
+    let line = format!("test --profile suite --quiet {small} --lib --bins --tests");
     check("units of model, firmware and xtask", [&line])
 }
 
 /// What a person runs before each commit.
 fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
     let small = members::options(members, Member::is_small);
-    let clippy = format!("clippy --release {small} --all-targets -- -Dwarnings");
+    let clippy = format!("clippy --profile suite {small} --all-targets -- -Dwarnings");
     let small = vec![
         formatting(lints),
         figures(),
@@ -101,12 +94,11 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
         units(members),
     ];
     // The power cuts and flipped bits of stored settings are left out for the sake of the quick suite's time.
-    let native =
-        "test --release --quiet --package system-tests --test native -- --skip settings_storage";
+    let native = "test --profile suite --quiet --package system-tests --test native -- --skip settings_storage";
     vec![vec![small, vec![check("native device on the simulated plant", [native])]]]
 }
 
-/// All checks: phases, in each of which lanes run side by side. Programs of the host are compiled in the release profile only,
+/// All checks: phases, in each of which lanes run side by side. Programs of the host are compiled in the profile `suite` only,
 /// in which integer overflow panics, too.
 fn whole(
     toolchain: &Toolchain,
@@ -120,7 +112,7 @@ fn whole(
         image("image for one finger", "xtask firmware"),
         image("image for five fingers", "xtask firmware --fingers 5"),
         image("test image of the emulator", "xtask probe"),
-        image("programs of others for the emulator", "xtask foreign"),
+        image("program of others for the emulator", "xtask foreign"),
         image("image of the benchmark", "xtask bench-image"),
         only_if(
             firmware_lints,
@@ -136,38 +128,51 @@ fn whole(
             },
         ),
     ];
-    // The emulator is selected beside it for the sake of its dependencies' features, with which the lints compile them.
-    let without_emulator = "check --release -p hil-sim -p stm32-emulator --no-default-features";
-    let lints_of_all = "clippy --release --workspace --all-targets -- -Dwarnings";
-    let documentation = cargo("doc --release --workspace --no-deps");
+    // The test target of programs of others is not one of `--all-targets`, because the suite does not run it.
+    let lints_of_all = [
+        "clippy --profile suite --workspace --all-targets -- -Dwarnings",
+        "clippy --profile suite --workspace --test foreign -- -Dwarnings",
+    ];
+    // The whole workspace is selected for the sake of the dependencies' features, and the lints for what they have checked.
+    let without_emulator = if lints.clippy {
+        "clippy --profile suite --workspace --no-default-features -- -Dwarnings"
+    } else {
+        "check --profile suite --workspace --no-default-features"
+    };
+    let documentation = cargo("doc --profile suite --workspace --no-deps");
+    let documentation = documentation.env("RUSTDOCFLAGS", "-Dwarnings");
     let host = vec![
         formatting(lints),
         figures(),
+        only_if(lints.clippy, NO_CLIPPY, check("lints of the host's code", lints_of_all)),
         check("hil-sim without the emulator", [without_emulator]),
-        only_if(lints.clippy, NO_CLIPPY, check("lints of the host's code", [lints_of_all])),
-        Check {
-            title: "documentation",
-            commands: Ok(vec![documentation.env("RUSTDOCFLAGS", "-Dwarnings")]),
-        },
-        check("test programs", ["test --release --workspace --tests --no-run --quiet"]),
+        Check { title: "documentation", commands: Ok(vec![lints.share_with(documentation)]) },
+        check(
+            "test programs",
+            [&format!(
+                "test --profile suite --no-run --quiet --workspace --tests --features {VIEWS}"
+            )],
+        ),
     ];
     let tests = |which: &str| {
-        let line = format!("test --release --no-fail-fast {which}");
+        let line = format!("test --profile suite --no-fail-fast {which} --features {VIEWS}");
         Ok(vec![choice.handed_to(cargo(&line))])
     };
-    // `hil-sim` is selected, too, so that cargo unifies features as for the workspace and compiles no dependency again.
-    let on_image = "-p image-tests -p hil-sim --test image";
-    let circuits = "-p hardware-benches -p hil-sim --lib --bins --test benches --test bom";
+    // `hil-sim` and the windows are selected, too, so that cargo unifies features as for the workspace and compiles no dependency
+    // again.
+    let on_image = "-p image-tests -p hil-sim -p thermal-window --test image";
+    let circuits =
+        "-p hardware-benches -p hil-sim -p thermal-window --lib --bins --test benches --test bom";
     let others = "--workspace --exclude image-tests --exclude hardware-benches --tests";
     let on_target = choice.handed_to(cargo("xtask on-target --emulated --check"));
     let fuzz = format!("xtask fuzz --seconds {FUZZ_S}");
     vec![
         vec![host, images],
         vec![
-            vec![
-                Check { title: "units, and the whole system natively", commands: tests(others) },
-                windows(),
-            ],
+            vec![Check {
+                title: "units, windows without a display, and the whole system natively",
+                commands: tests(others),
+            }],
             vec![
                 Check { title: "image on the emulated microcontroller", commands: tests(on_image) },
                 // It waits for devices in real time, so while the other lane has enough to do.
@@ -232,11 +237,11 @@ mod tests {
 
     /// Compiling it takes more than a minute for each profile.
     #[test]
-    fn the_emulator_is_compiled_in_the_release_profile_only() {
+    fn the_emulator_is_compiled_in_the_profile_of_the_suite_only() {
         for check in checks(Lints::ALL, Some("python3")) {
             for line in check.commands.unwrap() {
                 let line = line.to_string();
-                assert!(!line.contains("--workspace") || line.contains("--release"));
+                assert!(!line.contains("--workspace") || line.contains("--profile suite"));
             }
         }
     }
