@@ -86,7 +86,7 @@ fn run_commands(title: &str, commands: &[Invocation]) -> Result<()> {
 /// The file for the output of a check.
 fn log_of(title: &str) -> PathBuf {
     let name = title.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
-    workspace().join("target/suite").join(name + ".log")
+    workspace().join("target/suite/log").join(name + ".log")
 }
 
 #[cfg(test)]
