@@ -23,7 +23,7 @@ pub mod serve;
 pub mod simulated_link;
 pub mod speed;
 pub mod trace;
-mod trigger_edges;
+pub mod trigger_edges;
 pub mod upload;
 mod world;
 

@@ -78,6 +78,3 @@ impl ScheduledFault {
         Some(now)
     }
 }
-
-#[cfg(test)]
-mod tests;

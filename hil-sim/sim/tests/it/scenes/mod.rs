@@ -3,6 +3,7 @@
 mod display_error;
 mod documented;
 mod examples;
+mod fault_kinds;
 mod flux;
 mod fooled;
 mod keys;

@@ -1,6 +1,8 @@
+//! Kinds of faults, their names, values and times.
+
 use std::collections::HashSet;
 
-use super::*;
+use thermal_sim::scene::{ActiveFault, FaultKind, ScheduledFault};
 
 #[test]
 fn every_kind_has_its_own_name() {
