@@ -94,8 +94,10 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
         units(members),
     ];
     // The power cuts and flipped bits of stored settings are left out for the sake of the quick suite's time.
-    let native = "test --profile suite --quiet --package system-tests --test native -- --skip settings_storage";
-    vec![vec![small, vec![check("native device on the simulated plant", [native])]]]
+    let native = format!(
+        "test --profile suite --quiet --workspace --features {VIEWS} --test native -- --skip settings_storage"
+    );
+    vec![vec![small, vec![check("native device on the simulated plant", [&native])]]]
 }
 
 /// All checks: phases, in each of which lanes run side by side. Programs of the host are compiled in the profile `suite` only,
