@@ -103,9 +103,7 @@ pub fn run_scene(
         }
         #[cfg(feature = "emulator")]
         EngineKind::Image => {
-            let building = Instant::now();
-            let elf = image::path(elf, 1)?;
-            let began = began + building.elapsed();
+            let (elf, began) = image::path_and_began(elf, 1, began)?;
             run_on(&mut image::engine(Some(&elf), world)?, scene, injections, began)
         }
     }

@@ -63,9 +63,7 @@ pub fn run(arguments: &Arguments, began: Instant) -> Result<(), Failure> {
         }
         #[cfg(feature = "emulator")]
         EngineKind::Image => {
-            let building = Instant::now();
-            let elf = super::image::path(elf, FINGERS)?;
-            let began = began + building.elapsed();
+            let (elf, began) = super::image::path_and_began(elf, FINGERS, began)?;
             measure(&scenes, &mut super::image::five_fingers(Some(&elf), worlds)?, began)
         }
     }?;

@@ -1,6 +1,7 @@
 //! The release image in the emulated microcontroller, for commands that run it.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use anyhow::Context;
 use stm32_emulator::{Firmware, FiveFingerBoard, OneFingerBoard, build};
@@ -10,11 +11,22 @@ use thermal_sim::five_fingers::FINGERS;
 use super::Failure;
 
 /// Path of the image that `--elf` names, or of that of the current sources for a number of fingers, which is built.
-pub fn path(elf: Option<&Path>, fingers: usize) -> Result<PathBuf, Failure> {
+fn path(elf: Option<&Path>, fingers: usize) -> Result<PathBuf, Failure> {
     match elf {
         Some(path) => Ok(path.to_owned()),
         None => build(fingers).map_err(Failure::run),
     }
+}
+
+/// [`path`], and `began` moved by the time that building the image took, for a wait that does not count it.
+pub fn path_and_began(
+    elf: Option<&Path>,
+    fingers: usize,
+    began: Instant,
+) -> Result<(PathBuf, Instant), Failure> {
+    let building = Instant::now();
+    let path = path(elf, fingers)?;
+    Ok((path, began + building.elapsed()))
 }
 
 /// The image at [`path`], and that path.

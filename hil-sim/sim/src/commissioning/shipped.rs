@@ -1,9 +1,7 @@
 //! Settings of the devices of the scenes in `scenes/`. Commissioning a device takes several times as long as running a scene on
 //! it, and every program that runs one would repeat it.
 
-use std::collections::HashMap;
 use std::path::Path;
-use std::sync::LazyLock;
 
 use super::CommissioningSetup;
 use crate::scene::Scene;
@@ -20,18 +18,13 @@ macro_rules! shipped {
     };
 }
 
-static SETTINGS: LazyLock<HashMap<String, Vec<String>>> = LazyLock::new(|| {
+/// The devices of `scenes/`, each with its settings as lines.
+pub fn shipped_devices() -> impl Iterator<Item = (CommissioningSetup, Vec<String>)> {
     let shipped =
         shipped!("copper-on-foam" "granite" "layered-finger" "lift-and-replace" "worst-case-box");
-    let settings = |(path, scene, lines): (&str, &str, &str)| {
+    shipped.into_iter().filter_map(|(path, scene, lines)| {
         let scene = Scene::parse(scene, Path::new(path)).ok()?;
         let setup = CommissioningSetup::new(&scene.params, scene.room_c, scene.seed);
-        Some((setup.key(), lines.lines().map(Into::into).collect()))
-    };
-    shipped.into_iter().filter_map(settings).collect()
-});
-
-/// The settings of a device as lines, if a scene of `scenes/` has that device.
-pub fn shipped_settings(setup: &CommissioningSetup) -> Option<&'static [String]> {
-    SETTINGS.get(&setup.key()).map(Vec::as_slice)
+        Some((setup, lines.lines().map(Into::into).collect()))
+    })
 }
