@@ -231,6 +231,7 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::process::SUITE;
 
     fn checks(lints: Lints, python: Option<&str>) -> Vec<Check> {
         let phases = whole(&Toolchain::Active, Choice::Auto, lints, python);
@@ -246,6 +247,14 @@ mod tests {
                 assert!(!line.contains("--workspace") || line.contains("--profile suite"));
             }
         }
+    }
+
+    #[test]
+    fn the_alias_for_single_tests_compiles_as_the_suite_does() {
+        let config = include_str!("../../../.cargo/config.toml");
+        let alias =
+            format!("suite-test = \"test --profile {SUITE} --workspace --features {VIEWS}\"");
+        assert!(config.contains(&alias), "{alias}");
     }
 
     #[test]

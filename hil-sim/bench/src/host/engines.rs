@@ -23,13 +23,13 @@ pub struct Figures {
 #[derive(Clone, Debug, Serialize)]
 struct Factors {
     engine: &'static str,
-    /// Median; the run's wait counts from the creation of its plant on.
+    /// Median real-time factor of a run, counted from the creation of its plant.
     real_time_factor: f64,
-    /// Median.
+    /// Median real-time factor of the simulation's loop.
     loop_real_time_factor: f64,
-    /// That of the least disturbed round.
+    /// Largest real-time factor of the loop, in the least disturbed round.
     loop_largest: f64,
-    /// Median of the ratio of the loop's factor to that of the first engine in the same round.
+    /// Median ratio of the loop's factor to the factor that the first engine's loop had in the same round.
     loop_ratio: f64,
 }
 
