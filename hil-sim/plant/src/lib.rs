@@ -116,7 +116,7 @@ impl Plant {
             (air_w_m2k, config.room_c),
             STEP_S,
         );
-        heat.set_finger(&steady.node_c, steady.core_c);
+        heat.set_finger_at_rest(&steady);
         let at_rest = SensorInputs {
             display_c: heat.display_c(),
             sink_c: heat.tile().sink_c(),

@@ -12,7 +12,7 @@
 use super::bridge::{Bridge, BridgeOutputs};
 use super::contact::SkinContact;
 use super::energy::{Energy, EnergyBalance};
-use super::slab::{DepthProbe, Slab, SlabBatch, SurfaceEquation};
+use super::slab::{DepthProbe, Slab, SlabBatch, SteadyState, SurfaceEquation};
 use super::substeps;
 use super::tile::{CoolingDefects, ModuleDefect, Tile};
 
@@ -45,6 +45,9 @@ pub struct ThermalModel {
     on_display_w_m2k: f64,
     on_object_w_m2k: f64,
     area_m2: f64,
+    /// Whether finger and object are as they started, so that their slabs need no steps: the finger in steady state and not
+    /// yet touched, the object not yet there.
+    at_rest: bool,
     step_s: f64,
     energy_balance: EnergyBalance,
 }
@@ -73,13 +76,20 @@ impl ThermalModel {
             on_display_w_m2k: 0.0,
             on_object_w_m2k: 0.0,
             area_m2: 0.0,
+            at_rest: false,
             step_s,
             energy_balance: EnergyBalance::default(),
         }
     }
 
+    /// Sets the finger to its steady state in the air of the room, where it stays until the first contact.
+    pub fn set_finger_at_rest(&mut self, steady: &SteadyState) {
+        self.set_finger(&steady.node_c, steady.core_c);
+        self.at_rest = true;
+    }
+
     /// Sets the temperatures of the finger's nodes and of its core, deg C.
-    pub fn set_finger(&mut self, node_c: &[f64], core_c: f64) {
+    fn set_finger(&mut self, node_c: &[f64], core_c: f64) {
         for slab in [Finger::OnDisplay as usize, Finger::OnObject as usize] {
             for (node, temperature_c) in node_c.iter().enumerate() {
                 self.slabs.set_node_c(slab, node, *temperature_c);
@@ -118,6 +128,7 @@ impl ThermalModel {
         on_object: Option<SkinContact>,
         object_present: bool,
     ) {
+        self.at_rest &= on_display.is_none() && on_object.is_none() && !object_present;
         let [finger, _, object] = self.surface_m2k_w;
         let plate_k_w = self.tile.patch_half_k_w();
         self.on_display_w_m2k =
@@ -140,7 +151,22 @@ impl ThermalModel {
         let step_s = substeps::length_s(self.step_s, index);
         self.tile.prepare(step_s);
         self.tile.drive(bridge.current(step_s, legs, &self.tile.load()));
+        if self.at_rest {
+            self.step_tile_alone(step_s);
+        } else {
+            self.step_all(index, step_s);
+        }
+    }
 
+    /// Advances the tile, which no finger covers.
+    fn step_tile_alone(&mut self, step_s: f64) {
+        self.tile.first_stage(step_s, 0.0, 0.0, 0.0);
+        self.tile.second_stage(0.0);
+        self.energy_balance.add(&self.tile.step_energy(step_s));
+    }
+
+    /// Advances tile, finger and object by the sub-step of the given index and length.
+    fn step_all(&mut self, index: usize, step_s: f64) {
         let out = self.outward_flux_w_m2();
         let inflow_w = self.area_m2 * self.flux_w_m2(Finger::OnDisplay);
         let equations = self.slabs.first_stage(index, out.map(|w_m2| -w_m2));

@@ -5,6 +5,7 @@ mod energy;
 mod first_moments;
 mod interior_temperatures;
 mod order_of_convergence;
+mod rest;
 mod second_law;
 mod variants;
 
@@ -46,7 +47,7 @@ impl Bench {
             (finger.air_w_m2k, ROOM_C),
             STEP_S,
         );
-        heat.set_finger(&steady.node_c, steady.core_c);
+        heat.set_finger_at_rest(&steady);
         Self {
             heat,
             finger: slab,
