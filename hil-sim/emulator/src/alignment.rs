@@ -1,7 +1,6 @@
 //! Instructions whose address must be aligned, whatever CCR.UNALIGN_TRP (ARMv7-M A3.2.1). The CPU emulation checks those of
 //! exclusive accesses only; the others are checked before each instruction of a machine that is asked to.
 use super::Wiring;
-use super::elf::RAM_BASE;
 use super::faults::UNALIGNED;
 use super::state::{Cpu, Exit, refund};
 use unicorn_engine::RegisterARM as Reg;
@@ -25,21 +24,10 @@ fn aligned_base(first: u32, second: u32) -> Option<(u32, u32)> {
     (!matches!(base, 13 | 15)).then_some((base, mask))
 }
 
-/// Called before each instruction: an access that is not aligned takes the fault before it happens. Inside an IT block, where
-/// the CPU emulation does not stop, it takes it after the block.
-pub(super) fn check<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32) {
-    let at = (address & 0x07ff_ffff) as usize;
-    let mut code = [0; 4];
-    match cpu.get_data().flash.get(at..at + 4) {
-        Some(bytes) if address < RAM_BASE => code.copy_from_slice(bytes),
-        _ => {
-            if cpu.mem_read(address.into(), &mut code).is_err() {
-                return; // the fetch itself fails
-            }
-        }
-    }
-    let half = |n: usize| u32::from(u16::from_le_bytes([code[n], code[n + 1]]));
-    let Some((base, mask)) = aligned_base(half(0), half(2)) else {
+/// Called before each instruction, which is given in half-words: an access that is not aligned takes the fault before it happens.
+/// Inside an IT block, where the CPU emulation does not stop, it takes it after the block.
+pub(super) fn check<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, instruction: (u32, u32)) {
+    let Some((base, mask)) = aligned_base(instruction.0, instruction.1) else {
         return;
     };
     // The emulation numbers R0 to R12 consecutively; no other register but LR is a base.

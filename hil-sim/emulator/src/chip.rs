@@ -28,6 +28,9 @@ mod failures;
 mod register_table;
 #[cfg(test)]
 mod tests;
+mod write_buffer;
+
+use write_buffer::WriteBuffer;
 
 /// Modelled timers, and the indices of those that the chip names; in order TIM1 to TIM7, TIM8, TIM10, TIM11.
 const TIMERS: usize = 10;
@@ -97,6 +100,10 @@ pub(crate) struct Chip<W> {
     wwdg: Wwdg,
     /// A debugger has halted the core.
     halted_by_debugger: bool,
+    /// Whether the chip checks what software must respect of its errata.
+    strict: bool,
+    /// On a strict chip only.
+    write_buffer: WriteBuffer,
     pub time: Timebase,
     /// Cycle at which the last clock of the chip stopped; timers and pins keep the state of that cycle.
     stopped_at: Option<u64>,
@@ -133,7 +140,7 @@ impl<W: Wiring> Chip<W> {
             wiring,
             nvic: Nvic::new(),
             ppb: Ppb::new(),
-            rcc: Rcc::powered_up(state.external_clock, state.external_clock_start_us),
+            rcc: Rcc::powered_up(state),
             flash: Flash::new(flash, state),
             ports: std::array::from_fn(Port::new),
             exti: Exti::default(),
@@ -147,6 +154,8 @@ impl<W: Wiring> Chip<W> {
             iwdg: Iwdg::new(state.lsi_hz),
             wwdg: Wwdg::new(),
             halted_by_debugger: false,
+            strict: state.strict,
+            write_buffer: WriteBuffer::default(),
             time: Timebase::new(HSI_HZ),
             stopped_at: None,
             legs: [LegState::Off; 2],
@@ -162,6 +171,28 @@ impl<W: Wiring> Chip<W> {
 
     pub fn clocks(&self) -> Clocks {
         self.rcc.clocks()
+    }
+
+    /// Whether instructions must be [noted](Self::note_instruction).
+    #[inline]
+    pub fn counts_instructions(&self) -> bool {
+        self.rcc.has_fresh_clocks() || self.write_buffer.register().is_some()
+    }
+
+    /// Takes note of an instruction, in half-words, before it runs.
+    pub fn note_instruction(&mut self, (first, second): (u32, u32)) {
+        let is_dsb = first == 0xf3bf && second & 0xfff0 == 0x8f40;
+        self.rcc.note_instruction(is_dsb);
+        self.write_buffer.note_instruction(is_dsb);
+    }
+
+    /// Takes note of the return of a handler.
+    pub fn note_exception_return(&mut self) {
+        if let (Some(register), None) = (self.write_buffer.register(), self.misuse) {
+            let rule =
+                "a handler returns right behind a store to it, without a DSB (Cortex-M4, 838869)";
+            self.misuse = Some((register, Refusal::Misuse(rule)));
+        }
     }
 
     /// Brings the timers up to `now`; how a pin is driven, by a timer or as an output.

@@ -165,6 +165,7 @@ pub(crate) fn leave<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32) -> Result<
     let state = cpu.get_data_mut();
     let (now, instructions) = (state.cycles, state.instructions);
     let valid = matches!(exc_return | NO_FLOAT, 0xffff_fff1 | 0xffff_fff9 | 0xffff_fffd);
+    state.chip().note_exception_return();
     let nvic = &mut state.chip().nvic;
     let to_thread = exc_return & 8 != 0;
     let valid = valid && nvic.is_active(running) && !(to_thread && nvic.active_count() > 1);

@@ -33,6 +33,7 @@ mod rcc;
 mod run;
 mod state;
 mod stop;
+mod strict;
 mod tim;
 mod timebase;
 mod usart;

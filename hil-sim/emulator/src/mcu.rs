@@ -1,5 +1,4 @@
 //! The emulated microcontroller: its public interface.
-use super::alignment;
 use super::chip::Chip;
 use super::cpu_setup::create_cpu;
 use super::debugger::Halted;
@@ -12,6 +11,7 @@ use super::rcc::Clocks;
 use super::run::RunLimit;
 use super::state::{Cpu, State};
 use super::stop::Stop;
+use super::strict;
 use super::{LegState, Wiring};
 use std::sync::Arc;
 use thermal_sim::FlashCells;
@@ -69,7 +69,7 @@ impl<W: Wiring + 'static> Machine<W> {
         cpu.mem_write(RAM_BASE.into(), &initial_ram).map_err(emulator)?;
         if strict {
             let hook = |cpu: &mut Cpu<'_, W>, address: u64, _: u32| {
-                alignment::check(cpu, address as u32);
+                strict::check(cpu, address as u32);
             };
             cpu.add_code_hook(1, 0, hook).map_err(emulator)?;
         }

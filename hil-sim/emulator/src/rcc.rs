@@ -5,9 +5,11 @@ use thermal_sim::processor::{ChipState, ResetCause};
 
 mod clock_security;
 mod clock_tree;
+mod fresh_clocks;
 mod power;
 
 pub(crate) use clock_security::AfterHse;
+use fresh_clocks::FreshClocks;
 
 /// High-speed internal oscillator.
 pub const HSI_HZ: u32 = 16_000_000;
@@ -74,6 +76,9 @@ pub(crate) struct Rcc {
     lpenr: [u32; 5],
     csr: u32,
     dckcfgr: u32,
+    /// Clocks that were enabled and do not run yet; on a strict chip only.
+    fresh_clocks: FreshClocks,
+    strict: bool,
     /// The external clock is not there.
     hse_failed: bool,
     /// Start-up time of the external clock, us.
@@ -119,11 +124,12 @@ impl Rcc {
         }
     }
 
-    /// The registers at power-up, with the external clock present or not, and the time that it takes to start.
-    pub fn powered_up(external_clock: bool, hse_start_us: u32) -> Self {
+    /// The registers of a chip in this state at power-up.
+    pub fn powered_up(chip: &ChipState) -> Self {
         Self {
-            hse_failed: !external_clock,
-            hse_start_us: hse_start_us.into(),
+            hse_failed: !chip.external_clock,
+            hse_start_us: chip.external_clock_start_us.into(),
+            strict: chip.strict,
             ..Self::new(ResetCause::PowerOn, 0)
         }
     }
@@ -145,6 +151,27 @@ impl Rcc {
         } else {
             Err(Refusal::ClockOff(ENR_NAMES[enr as usize], bit))
         }
+    }
+
+    /// Refuses an access to a peripheral whose clock was enabled too short a time ago.
+    pub fn check_clock_runs(&self, enr: Enr, bit: u8) -> Answer<()> {
+        if self.fresh_clocks.contains(enr as usize, bit) {
+            return Err(Refusal::Misuse(
+                "accessed right behind the enabling of its clock, without a DSB (ES0298, 2.2.7)",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Whether instructions must be [noted](Self::note_instruction).
+    #[inline]
+    pub fn has_fresh_clocks(&self) -> bool {
+        !self.fresh_clocks.is_empty()
+    }
+
+    /// Takes note of an instruction before it runs.
+    pub fn note_instruction(&mut self, is_dsb: bool) {
+        self.fresh_clocks.note_instruction(is_dsb);
     }
 
     /// Whether a reset bit is held.
@@ -190,6 +217,16 @@ impl Rcc {
         })
     }
 
+    /// Instructions that must lie between the enabling of a clock and the first access to its peripheral (ES0298, 2.2.7).
+    fn clock_delay(&self, bus: usize) -> u32 {
+        let Clocks { hclk_hz, pclk1_hz, pclk2_hz, .. } = self.clocks;
+        match bus {
+            _ if bus == Enr::Apb1 as usize => 1 + hclk_hz / pclk1_hz,
+            _ if bus == Enr::Apb2 as usize => 1 + hclk_hz / pclk2_hz,
+            _ => 2,
+        }
+    }
+
     /// Bus of a reset or enable register: AHB1, AHB2, AHB3, gap, APB1, APB2, gap, gap, three times.
     fn bus(offset: u32) -> Answer<usize> {
         match (offset - 0x10) / 4 % 8 {
@@ -227,7 +264,10 @@ impl Rcc {
                 };
                 // reserved bits keep their reset value, which is not always 0
                 only(value ^ registers[bus], allowed[bus], "reserved bits")?;
-                registers[bus] = value;
+                let set = value & !std::mem::replace(&mut registers[bus], value);
+                if self.strict && matches!(offset >> 4, 3 | 4) {
+                    self.fresh_clocks.add(bus, set, self.clock_delay(bus));
+                }
             }
             0x70 => only(value, 0, "oscillator and clock of the RTC")?,
             0x94 => only(value, 0, "clocks of peripherals without a model")?,

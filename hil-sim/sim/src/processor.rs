@@ -57,7 +57,8 @@ pub struct ChipState {
     pub slow_flash: bool,
     /// How long the core waits for the flash.
     pub flash: FlashTiming,
-    /// Whether the emulator checks what it otherwise leaves out, to be fast: the alignment of accesses to several words.
+    /// Whether the emulator checks what it otherwise leaves out, to be fast: the alignment of accesses to several words, and
+    /// that no peripheral is accessed right behind the enabling of its clock, or right before the return of a handler.
     pub strict: bool,
     /// The unique identifier that the factory gives each chip, in words.
     pub unique_id: [u32; 3],

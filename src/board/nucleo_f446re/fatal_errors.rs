@@ -62,6 +62,8 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 #[exception]
 unsafe fn NonMaskableInt() {
     if late_clock::acknowledge_failure_while_waiting() {
+        // As at the end of the tasks' handlers (main.rs).
+        cortex_m::asm::dsb();
         return;
     }
     disable_bridges_and_store_first_fault(Fault::Clock);

@@ -19,6 +19,8 @@ impl WindowWatchdog {
     /// always open, so a feeding is never too early.
     pub fn start(wwdg: WWDG, rcc: &mut Rcc) -> Self {
         rcc.apb1enr().modify(|_, w| w.wwdgen().enabled());
+        // The first writes behind the enabling of a clock can be lost (errata sheet ES0298, 2.2.7).
+        cortex_m::asm::dsb();
         wwdg.cfr().write(|w| {
             w.wdgtb().div8();
             w.w().set(COUNTDOWN_START)

@@ -89,7 +89,7 @@ fn build(toolchain: &Toolchain) -> Result<String> {
 fn find_board(permission: Permission) -> Result<()> {
     ensure!(
         on_path("probe-rs").is_some(),
-        "probe-rs is not installed: cargo install probe-rs-tools; without a board, --emulated runs the same tests"
+        "probe-rs is not installed: cargo install --locked probe-rs-tools; without a board, --emulated runs the same tests"
     );
     let probes = Invocation::new("probe-rs", ["list"]).answer().unwrap_or_default();
     ensure!(

@@ -1,7 +1,7 @@
 //! The address map: the device at an address, whether its clock runs, and the effects of a store on other devices.
 use super::{
     ADC_IRQ, ADC1, ADC2, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ,
-    WWDG_IRQ,
+    WWDG_IRQ, WriteBuffer,
 };
 use crate::adc::Adc;
 use crate::dac::Dac;
@@ -113,6 +113,7 @@ impl<W: Wiring> Chip<W> {
         self.nvic = Nvic::new();
         self.ppb = self.ppb.after_reset(cause == ResetCause::PowerOn);
         self.halted_by_debugger = false;
+        self.write_buffer = WriteBuffer::default();
         if cause == ResetCause::PowerOn {
             self.flash.cells.power_up();
         }
@@ -196,7 +197,7 @@ impl<W: Wiring> Chip<W> {
         }
     }
 
-    /// The device at an address, if its clock is on.
+    /// The device at an address, if its clock runs.
     fn clocked(&self, address: u32) -> Answer<Device> {
         let Some((device, enable)) = device(address) else {
             return Err(if names::peripheral(address).is_some() {
@@ -207,6 +208,7 @@ impl<W: Wiring> Chip<W> {
         };
         if let Some((enr, bit)) = enable {
             self.rcc.check_clock(enr, bit)?;
+            self.rcc.check_clock_runs(enr, bit)?;
         }
         Ok(device)
     }
@@ -228,6 +230,9 @@ impl<W: Wiring> Chip<W> {
             return Ok(());
         }
         let device = self.clocked(address)?;
+        if self.strict {
+            self.write_buffer.store(address & !3);
+        }
         let (offset, value) = match bytes {
             4 => (address & 0x3ff, value),
             _ => self.widened(device, address & 0x3ff, bytes, value, now)?,

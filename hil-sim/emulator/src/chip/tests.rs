@@ -109,6 +109,60 @@ const APB2RSTR: u32 = 0x4002_3824;
 const APB2ENR: u32 = 0x4002_3844;
 const USART2: u32 = 0x4000_4400;
 
+/// Instructions, in half-words.
+const NOP: (u32, u32) = (0xbf00, 0);
+const DSB: (u32, u32) = (0xf3bf, 0x8f4f);
+const STR: (u32, u32) = (0x6008, 0);
+
+/// ES0298, 2.2.7. With PCLK1 at HCLK, the clock of a peripheral on APB1 takes two cycles, on AHB1 as well.
+#[test]
+fn a_strict_chip_refuses_an_access_right_behind_the_enabling_of_a_clock() {
+    let answer = |strict, enable: (u32, u32), register, between: &[(u32, u32)]| {
+        let state = ChipState { strict, ..ChipState::default() };
+        let mut chip = Chip::new(Outside::default(), vec![0xff; 0x1_0000], &state);
+        chip.system_reset(ResetCause::PowerOn, 0);
+        let old = chip.read(enable.0, 0, 0).expect("an enable register");
+        chip.write(enable.0, 4, old | enable.1, 0).expect("a peripheral");
+        for instruction in between.iter().chain([&STR]) {
+            chip.note_instruction(*instruction);
+        }
+        chip.write(register, 4, 0, 0)
+    };
+    let wwdg = ((0x4002_3840, 1 << 11), 0x4000_2c04);
+    let gpioa = ((0x4002_3830, 1), GPIOA + 0x14);
+    for (enable, register) in [wwdg, gpioa] {
+        for between in [&[][..], &[NOP]] {
+            let refused = answer(true, enable, register, between);
+            assert!(matches!(refused, Err(Refusal::Misuse(_))), "{register:#x}: {refused:?}");
+            assert_eq!(answer(false, enable, register, between), Ok(()));
+        }
+        for between in [&[DSB][..], &[NOP, NOP]] {
+            assert_eq!(answer(true, enable, register, between), Ok(()), "{register:#x}");
+        }
+        assert_eq!(answer(true, enable, APB2RSTR, &[]), Ok(()), "another device");
+    }
+}
+
+/// Arm's errata notice of the Cortex-M4, 838869.
+#[test]
+fn a_strict_chip_refuses_the_return_of_a_handler_right_behind_a_store() {
+    let misused = |strict, between: &[(u32, u32)]| {
+        let state = ChipState { strict, ..ChipState::default() };
+        let mut chip = Chip::new(Outside::default(), vec![0xff; 0x1_0000], &state);
+        chip.write(EXTI, 4, 0, 0).expect("a register without a clock of its own");
+        between.iter().for_each(|instruction| chip.note_instruction(*instruction));
+        chip.note_exception_return();
+        chip.misuse.map(|(register, _)| register)
+    };
+    for between in [&[][..], &[NOP; 12]] {
+        assert_eq!(misused(true, between), Some(EXTI));
+        assert_eq!(misused(false, between), None);
+    }
+    for between in [&[DSB][..], &[NOP, DSB], &[NOP; 13]] {
+        assert_eq!(misused(true, between), None);
+    }
+}
+
 /// RM0390 10.2: a line pends at an edge, and a pin that is high already has none.
 #[test]
 fn an_edge_that_was_before_its_selection_does_not_pend() {
