@@ -18,6 +18,10 @@ use crate::safety::limits::COOLING_DERATING_SINK_TEMPERATURE;
 /// (39.5 °C): by 1/2 (2^-1, this power of two) of the current limit per kelvin, so to zero at 41.5 °C.
 const COOLING_LIMIT_FRACTION_LOST_PER_K_SHIFT: u32 = 1;
 
+/// A plain law takes over once the display's reading has stayed this near to the set-point, K, for so many ticks.
+const TAKE_OVER_WITHIN: Celsius = Celsius::lit("0.5");
+const TAKE_OVER_TICKS: u16 = 256;
+
 /// Control law that chooses the module's current from the reference and the readings of the display's thermistor;
 /// selected by the host's command `law`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,6 +60,9 @@ impl Law {
 #[derive(Clone, Debug)]
 pub struct Controller {
     law: Law,
+    /// The law that the host has chosen, if it has not taken over yet, and the ticks for which the display has been near its
+    /// set-point meanwhile.
+    next_law: Option<(Law, u16)>,
     pi_10hz: Pi,
     pi: Pi,
     /// Current of the last tick, A (positive cools), chosen by the law or set by [`Self::track_current`]. A
@@ -69,6 +76,7 @@ impl Controller {
     pub fn new(parameters: &ControlParameters, limit: Current) -> Self {
         Self {
             law: Law::default(),
+            next_law: None,
             pi_10hz: Pi::new(parameters.pi_10hz, limit),
             pi: Pi::new(parameters.pi, limit),
             current: Current::ZERO,
@@ -83,18 +91,48 @@ impl Controller {
         self.pi_10hz.set_coefficients(parameters.pi_10hz);
     }
 
-    /// The selected law, which chooses the current. The host's command `law` selects another.
+    /// The law that chooses the current.
     pub const fn law(&self) -> Law {
         self.law
     }
 
-    /// Selects `law`. A proportional-integral law starts from the present current (bumpless transfer); the law `model`
-    /// continues from the observer, which follows the current under every law. If `law` is already selected, nothing
-    /// changes.
+    /// The law that was selected last, which may have to take over yet.
+    pub fn selected_law(&self) -> Law {
+        self.next_law.map_or(self.law, |(law, _)| law)
+    }
+
+    /// Selects `law`. The law `model` takes over at once, because it continues from the observer, which follows the current
+    /// under every law. A proportional-integral law starts from the present current, and one that moves a display which is on its
+    /// way would take it beyond its set-point: such a law takes over when the display has come near its set-point, or when no
+    /// law chooses the current.
     pub fn select_law(&mut self, law: Law) {
-        if law != self.law {
+        self.next_law = None;
+        match law {
+            Law::Model => self.law = law,
+            Law::Pi | Law::Pi10Hz if law != self.law => self.next_law = Some((law, 0)),
+            Law::Pi | Law::Pi10Hz => {}
+        }
+    }
+
+    /// Takes the selected law over if the display, whose reading is given, is near its set-point and has been for some time.
+    fn take_over_if_settled(&mut self, reference: &Reference, display: Celsius) {
+        let Some((law, ticks)) = self.next_law else {
+            return;
+        };
+        let is_near = reference.setpoint.celsius().abs_diff(display) <= TAKE_OVER_WITHIN;
+        let ticks = if is_near { ticks.saturating_add(1) } else { 0 };
+        self.next_law = Some((law, ticks));
+        if ticks >= TAKE_OVER_TICKS {
+            self.take_over();
+        }
+    }
+
+    /// The selected law takes over, from the present current.
+    fn take_over(&mut self) {
+        if let Some((law, _)) = self.next_law.take() {
             self.law = law;
-            self.track_current(self.current);
+            self.pi_10hz.track_current(self.current);
+            self.pi.track_current(self.current);
         }
     }
 
@@ -109,6 +147,7 @@ impl Controller {
     /// current (bumpless transfer); the law `model` continues from the observer instead.
     pub fn track_current(&mut self, current: Current) {
         self.current = current;
+        self.take_over();
         self.pi_10hz.track_current(current);
         self.pi.track_current(current);
     }
@@ -123,6 +162,7 @@ impl Controller {
         sink: Celsius,
         plate: &PlateObserver,
     ) -> Current {
+        self.take_over_if_settled(reference, display);
         self.current = match self.law {
             Law::Pi10Hz => self.pi_10hz.update_output_when_due(reference.setpoint, display),
             Law::Pi => self.pi.update_output_when_due(reference.setpoint, display),

@@ -5,6 +5,7 @@
 //! semi-infinite mode (chapter 4 of the thesis) the reference is always the interface temperature of Eq. 3-1.
 
 mod equivalent_forces;
+mod limiter;
 mod setpoint_lead;
 mod skin_on_object;
 
@@ -22,6 +23,7 @@ use crate::estimate::{
 };
 use crate::safety::Setpoint;
 use equivalent_forces::equivalent_forces;
+pub use limiter::{PlainLimits, ReferenceLimiter};
 use setpoint_lead::SetpointLead;
 use skin_on_object::{BodiesBeforeContact, ContactPairFactors, SkinOnObject};
 

@@ -20,6 +20,10 @@ pub const SETPOINT_MAX_C: f64 = 42.0;
 pub const SETPOINT_MIN: Celsius = fixed_celsius(SETPOINT_MIN_C);
 /// Hottest set-point in fixed point, 42 °C, to which [`Setpoint`](super::Setpoint) clamps.
 pub const SETPOINT_MAX: Celsius = fixed_celsius(SETPOINT_MAX_C);
+/// Coldest true surface of the display that the control may cause while no fault is present, °C.
+pub const SURFACE_MIN_WITHOUT_FAULT: Celsius = fixed_celsius(14.0);
+/// Warmest true surface of the display that the control may cause while no fault is present, °C.
+pub const SURFACE_MAX_WITHOUT_FAULT: Celsius = fixed_celsius(43.0);
 /// Reading of either display thermistor, °C, below which the station trips by
 /// [`Fault::DisplayCold`](super::Fault::DisplayCold). Cold pain begins at 13 °C.
 pub const DISPLAY_TRIP_BELOW: Celsius = fixed_celsius(13.5);

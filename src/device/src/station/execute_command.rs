@@ -21,7 +21,7 @@ impl Station {
             Command::Cause => return Ok(Reply::Cause(self.latch.last_trip_cause().copied())),
             Command::SelfTest => return Ok(Reply::SelfTest(self.self_test_report)),
             Command::Raw => return Ok(Reply::Raw(self.last.samples)),
-            Command::Law(None) => return Ok(Reply::Law(self.controller.law())),
+            Command::Law(None) => return Ok(Reply::Law(self.controller.selected_law())),
             Command::Average(thermistor) => return self.thermistor_average(thermistor),
             Command::NormalEquation(row) => return self.normal_equation_row(row),
             Command::Law(Some(law)) => self.controller.select_law(law),

@@ -18,7 +18,7 @@ mod follow_stimulus;
 mod learn;
 mod state;
 
-use contact_model::fixed_point::to_fixed;
+use contact_model::fixed_point::{Celsius, to_fixed};
 use fixed::types::U16F16;
 use thermal_learner::PlaceBeforeContact;
 use thermal_settings::Settings;
@@ -33,7 +33,7 @@ use crate::estimate::{
 use crate::events::{DeviceEvent, EventReporter};
 use crate::identification::{AbortReason, NormalEquationAccumulator};
 use crate::learning::{FingerLearning, FluxParameters};
-use crate::reference::{Reference, ReferenceGenerator};
+use crate::reference::{PlainLimits, Reference, ReferenceGenerator, ReferenceLimiter};
 use crate::safety::{
     self, Fault, FaultDetectors, FaultLatch, PreviousDemandAndResidual, SelfTestReport,
     SelfTestResult, SelfTestStep, ThermalDose, TripCause, ValidReadings,
@@ -67,6 +67,8 @@ pub struct Station {
     voltage: VoltageFeedforward,
     state: State,
     reference: ReferenceGenerator,
+    plain_limits: Option<PlainLimits>,
+    limiter: ReferenceLimiter,
     estimator: Estimator,
     averages: ThermistorAverages,
     detectors: FaultDetectors,
@@ -167,6 +169,8 @@ impl Station {
             learning: flux_sensor
                 .map(|sensor| FingerLearning::new(sensor, PlaceBeforeContact::Air)),
             reference: ReferenceGenerator::default(),
+            plain_limits: parameters.plain_limits,
+            limiter: ReferenceLimiter::default(),
             due: DueWork::default(),
             controller: Controller::new(&parameters, limit),
             voltage: VoltageFeedforward::new(&settings.module),
@@ -210,6 +214,7 @@ impl Station {
 
     fn set_control_parameters(&mut self, parameters: &ControlParameters) {
         self.controller.set_pi_gains(parameters);
+        self.plain_limits = parameters.plain_limits;
         self.estimator.plate.set_parameters(&parameters.observer);
     }
 
@@ -232,7 +237,7 @@ impl Station {
         let (demand, reference) = match valid {
             Ok(valid) => {
                 let estimate = self.detect_touch_and_update_estimates(samples, &valid);
-                let reference = self.reference_for_present_state(&estimate);
+                let reference = self.limited_reference(&estimate, valid.display);
                 let demand =
                     self.choose_bridge_demand(&valid, samples, &estimate, reference.as_ref());
                 (demand, reference)
@@ -371,6 +376,24 @@ impl Station {
         let pair = self.object.contact_pair();
         let bodies = self.object.bodies();
         self.estimator.update_estimates(valid, force, landed_ticks, pair, bodies)
+    }
+
+    /// The reference of the present state, limited if the law is a plain one.
+    fn limited_reference(
+        &mut self,
+        estimate: &PlateEstimateBeforeReading,
+        reading: Celsius,
+    ) -> Option<Reference> {
+        let wanted = self.reference_for_present_state(estimate);
+        let Some(wanted) = wanted else {
+            self.limiter.reset();
+            return None;
+        };
+        // An identification chooses its own current.
+        let is_free = self.controller.law() == Law::Model
+            || matches!(self.state, State::Armed(ArmedTask::Identify(_)));
+        let limits = if is_free { None } else { self.plain_limits.as_ref() };
+        Some(self.limiter.limit(wanted, reading, limits))
     }
 
     /// Set-point and target temperature that the display must follow in this tick. `None` in off, ready and tripped,
@@ -512,6 +535,7 @@ impl Station {
     fn invalidate_estimates(&mut self) {
         self.estimator.invalidate();
         self.reference.discard_contact_and_skin_simulation();
+        self.limiter.reset();
     }
 
     /// Ends an identification of the tile that is still running, with the outcome [`AbortReason::Interrupted`], and

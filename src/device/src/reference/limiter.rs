@@ -1,0 +1,106 @@
+//! Limits of the reference of the plain laws, so that the true surface of the display stays within its limits although these laws
+//! overshoot.
+//!
+//! The law `model` knows the lag of the display's thermistor, and passes a set-point by less than 0.1 K. The laws `pi` and
+//! `pi-10hz` see the reading only, and their loop is as slow as its effective dead time: lag, dead time, and half the time between
+//! two updates. Therefore their reference approaches the limits of the surface exponentially, with a time constant of several
+//! such times; and because a finger that lands or lifts moves the surface before a slow thermistor shows it, the ends of their
+//! range are drawn in. A tile that was never identified has an unknown lag, so its reference is not limited.
+
+use contact_model::fixed_point::{Celsius, Fraction, saturating_product, to_fixed};
+use thermal_settings::Tile;
+
+use super::Reference;
+use crate::TICK_HZ;
+use crate::safety::limits::{
+    SETPOINT_MAX_C, SETPOINT_MIN_C, SURFACE_MAX_WITHOUT_FAULT, SURFACE_MIN_WITHOUT_FAULT,
+};
+
+/// Time constant with which the reference approaches the warm limit of the surface, in effective dead times. With
+/// 6 a step from 24 °C to an end of the range went up to 1.1 K beyond it, with 9 it took half as long again (lags of 0.1 to 0.5 s).
+const APPROACH_PER_DEAD_TIME: f64 = 7.0;
+/// How much slower the reference falls than it rises, as a power of two: near its limit more current cools less, so the loop is
+/// slower there. With equal rates 8 of 400 drawn runs ended below 14 °C, with half the rate none.
+const COOLING_SLOWER_LOG2: u32 = 1;
+/// Half an update of the law `pi-10hz`, s; the limits are the same for both laws.
+const HALF_UPDATE_S: f64 = 0.05;
+/// By how much both ends of the range are drawn in, K for each second of effective dead time beyond this one, s.
+const DRAWN_IN_K_S: f64 = 4.0;
+const DRAWN_IN_FROM_S: f64 = 0.2;
+/// By how much more the ends are drawn in, K. A finger is warmer than a cold display by twice as much as it is colder than a warm
+/// one, and more current cools less, so its landing and its lift disturb more at the cold end.
+const COLD_END_K: f64 = 2.0;
+const WARM_END_K: f64 = 0.4;
+
+/// Limits of the reference of the plain laws, by the tile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlainLimits {
+    /// Part of its distance from the limit of the surface by which the reference rises in a tick at most.
+    part: Fraction,
+    /// Range of the set-point, °C.
+    min: Celsius,
+    max: Celsius,
+}
+
+impl PlainLimits {
+    /// Limits for a tile, in floating point, so not for the tick; `None` if it was never identified.
+    pub fn new(tile: &Tile) -> Option<Self> {
+        if *tile == Tile::FACTORY_DEFAULT {
+            return None;
+        }
+        let dead_time_s = tile.sensor_lag_s + tile.dead_time_s + HALF_UPDATE_S;
+        let drawn_in_k = (DRAWN_IN_K_S * (dead_time_s - DRAWN_IN_FROM_S)).max(0.0);
+        let approach_ticks = APPROACH_PER_DEAD_TIME * dead_time_s * f64::from(TICK_HZ);
+        Some(Self {
+            part: to_fixed(1.0 / approach_ticks),
+            min: to_fixed(SETPOINT_MIN_C + COLD_END_K + drawn_in_k),
+            max: to_fixed(SETPOINT_MAX_C - WARM_END_K - drawn_in_k),
+        })
+    }
+
+    /// The reference of the tick behind that with the reference `last`, °C, on its way to `wanted`.
+    fn next(&self, last: Celsius, wanted: Celsius) -> Celsius {
+        let step = |distance: Celsius| -> Celsius {
+            saturating_product(distance.max(Celsius::ZERO), self.part)
+        };
+        let up = step(SURFACE_MAX_WITHOUT_FAULT.saturating_sub(last));
+        let down = step(last.saturating_sub(SURFACE_MIN_WITHOUT_FAULT)) >> COOLING_SLOWER_LOG2;
+        let allowed = wanted.max(self.min).min(self.max);
+        allowed.max(last.saturating_sub(down)).min(last.saturating_add(up))
+    }
+}
+
+/// Limits the reference of each tick.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ReferenceLimiter {
+    /// Set-point of the last tick, °C; `None` if the next one starts from the reading.
+    last: Option<Celsius>,
+}
+
+impl ReferenceLimiter {
+    /// Lets the next reference start from the display's reading: in a tick without a reference.
+    pub const fn reset(&mut self) {
+        self.last = None;
+    }
+
+    /// The reference that the display follows in place of `wanted`, under the law `model` without limits.
+    pub fn limit(
+        &mut self,
+        wanted: Reference,
+        reading: Celsius,
+        limits: Option<&PlainLimits>,
+    ) -> Reference {
+        let wanted_c = wanted.setpoint.celsius();
+        let Some(limits) = limits else {
+            self.last = Some(wanted_c);
+            return wanted;
+        };
+        let next = limits.next(self.last.unwrap_or(reading), wanted_c);
+        self.last = Some(next);
+        let out_of_range = wanted_c < limits.min || wanted_c > limits.max;
+        Reference { limited: wanted.limited || out_of_range, ..Reference::at(next) }
+    }
+}
+
+#[cfg(test)]
+mod tests;

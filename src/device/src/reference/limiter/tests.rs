@@ -1,0 +1,76 @@
+use std::vec::Vec;
+
+use super::*;
+
+fn limits(sensor_lag_s: f64) -> PlainLimits {
+    let tile = Tile { sensor_lag_s, dead_time_s: 0.02, ..Tile::FACTORY_DEFAULT };
+    PlainLimits::new(&tile).expect("another tile than the factory's")
+}
+
+fn reference(celsius: f64) -> Reference {
+    Reference::at(Celsius::from_num(celsius))
+}
+
+/// Set-points, °C, of so many ticks from a reading on the way to a wanted set-point.
+fn way(limits: &PlainLimits, reading_c: f64, wanted_c: f64, ticks: usize) -> Vec<f64> {
+    let mut limiter = ReferenceLimiter::default();
+    let mut next =
+        || limiter.limit(reference(wanted_c), Celsius::from_num(reading_c), Some(limits));
+    (0..ticks).map(|_| next().setpoint.celsius().to_num()).collect()
+}
+
+/// `T = limit + (start - limit) e^(-t/tau)`: towards 43 °C with seven effective dead times, towards 14 °C with fourteen.
+#[test]
+fn the_reference_approaches_the_limits_of_the_surface_exponentially() {
+    for (lag_s, dead_time_s) in [(0.05, 0.12), (0.13, 0.2), (0.5, 0.57)] {
+        let limits = limits(lag_s);
+        for (wanted_c, limit_c, tau_s) in
+            [(42.0, 43.0, 7.0 * dead_time_s), (15.0, 14.0, 14.0 * dead_time_s)]
+        {
+            let start_c = 27.0;
+            for (tick, celsius) in way(&limits, start_c, wanted_c, 1000).iter().enumerate() {
+                let t_s = 1e-3 * (tick + 1) as f64;
+                let exact_c = limit_c + (start_c - limit_c) * libm::exp(-t_s / tau_s);
+                assert!((celsius - exact_c).abs() < 0.02, "{lag_s} s: {celsius}, not {exact_c} °C");
+            }
+        }
+    }
+}
+
+/// Both ends by 4 K for each second of dead time beyond 0.2 s, and the cold one by 2 K, the warm one by 0.4 K.
+#[test]
+fn the_range_ends_where_a_finger_that_lifts_cannot_take_the_surface_beyond_its_limits() {
+    for (lag_s, min_c, max_c) in [(0.1, 17.0, 41.6), (0.13, 17.0, 41.6), (0.5, 18.48, 40.12)] {
+        let limits = limits(lag_s);
+        for (wanted_c, end_c) in [(15.0, min_c), (42.0, max_c)] {
+            let last = way(&limits, 27.0, wanted_c, 60_000).pop().expect("a tick");
+            assert!((last - end_c).abs() < 1e-5, "{lag_s} s, {wanted_c} °C: {last} °C");
+            let limited = ReferenceLimiter::default()
+                .limit(reference(wanted_c), Celsius::ZERO, Some(&limits))
+                .limited;
+            assert_eq!(limited, (wanted_c - end_c).abs() > 1e-9, "{lag_s} s, {wanted_c} °C");
+        }
+    }
+}
+
+#[test]
+fn a_wanted_set_point_that_is_near_enough_is_taken_as_it_is() {
+    let limits = limits(0.1);
+    let mut limiter = ReferenceLimiter::default();
+    for wanted_c in [30.0, 30.001, 29.9995, 30.0] {
+        let next = limiter.limit(reference(wanted_c), Celsius::lit("30"), Some(&limits));
+        assert_eq!(next, reference(wanted_c));
+    }
+    // Without limits anything is, and the next limited reference starts from it.
+    assert_eq!(limiter.limit(reference(41.0), Celsius::ZERO, None), reference(41.0));
+    let next = limiter.limit(reference(40.0), Celsius::ZERO, Some(&limits));
+    assert!(next.setpoint.celsius() > 40.9);
+    limiter.reset();
+    let next = limiter.limit(reference(40.0), Celsius::lit("31"), Some(&limits));
+    assert!(next.setpoint.celsius() < 31.1);
+}
+
+#[test]
+fn a_tile_that_was_never_identified_has_no_limits() {
+    assert_eq!(PlainLimits::new(&Tile::FACTORY_DEFAULT), None);
+}
