@@ -115,6 +115,8 @@ impl Controller {
     }
 
     /// Takes the selected law over if the display, whose reading is given, is near its set-point and has been for some time.
+    #[cold]
+    #[inline(never)]
     fn take_over_if_settled(&mut self, reference: &Reference, display: Celsius) {
         let Some((law, ticks)) = self.next_law else {
             return;
@@ -128,6 +130,8 @@ impl Controller {
     }
 
     /// The selected law takes over, from the present current.
+    #[cold]
+    #[inline(never)]
     fn take_over(&mut self) {
         if let Some((law, _)) = self.next_law.take() {
             self.law = law;
@@ -147,7 +151,9 @@ impl Controller {
     /// current (bumpless transfer); the law `model` continues from the observer instead.
     pub fn track_current(&mut self, current: Current) {
         self.current = current;
-        self.take_over();
+        if self.next_law.is_some() {
+            self.take_over();
+        }
         self.pi_10hz.track_current(current);
         self.pi.track_current(current);
     }
@@ -162,7 +168,9 @@ impl Controller {
         sink: Celsius,
         plate: &PlateObserver,
     ) -> Current {
-        self.take_over_if_settled(reference, display);
+        if self.next_law.is_some() {
+            self.take_over_if_settled(reference, display);
+        }
         self.current = match self.law {
             Law::Pi10Hz => self.pi_10hz.update_output_when_due(reference.setpoint, display),
             Law::Pi => self.pi.update_output_when_due(reference.setpoint, display),

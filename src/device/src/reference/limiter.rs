@@ -58,47 +58,19 @@ impl PlainLimits {
         })
     }
 
-    /// The reference of the tick behind that with the reference `last`, °C, on its way to `wanted`.
-    fn next(&self, last: Celsius, wanted: Celsius) -> Celsius {
+    /// The reference that the display follows in place of `wanted`: a step from `last`, the reference of the tick before, or, if
+    /// there was none, from the display's `reading`, °C.
+    pub fn limit(&self, wanted: Reference, last: Option<Reference>, reading: Celsius) -> Reference {
+        let wanted_c = wanted.setpoint.celsius();
+        let last_c = last.map_or(reading, |last| last.setpoint.celsius());
         let step = |distance: Celsius| -> Celsius {
             saturating_product(distance.max(Celsius::ZERO), self.part)
         };
-        let up = step(SURFACE_MAX_WITHOUT_FAULT.saturating_sub(last));
-        let down = step(last.saturating_sub(SURFACE_MIN_WITHOUT_FAULT)) >> COOLING_SLOWER_LOG2;
-        let allowed = wanted.max(self.min).min(self.max);
-        allowed.max(last.saturating_sub(down)).min(last.saturating_add(up))
-    }
-}
-
-/// Limits the reference of each tick.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct ReferenceLimiter {
-    /// Set-point of the last tick, °C; `None` if the next one starts from the reading.
-    last: Option<Celsius>,
-}
-
-impl ReferenceLimiter {
-    /// Lets the next reference start from the display's reading: in a tick without a reference.
-    pub const fn reset(&mut self) {
-        self.last = None;
-    }
-
-    /// The reference that the display follows in place of `wanted`, under the law `model` without limits.
-    pub fn limit(
-        &mut self,
-        wanted: Reference,
-        reading: Celsius,
-        limits: Option<&PlainLimits>,
-    ) -> Reference {
-        let wanted_c = wanted.setpoint.celsius();
-        let Some(limits) = limits else {
-            self.last = Some(wanted_c);
-            return wanted;
-        };
-        let next = limits.next(self.last.unwrap_or(reading), wanted_c);
-        self.last = Some(next);
-        let out_of_range = wanted_c < limits.min || wanted_c > limits.max;
-        Reference { limited: wanted.limited || out_of_range, ..Reference::at(next) }
+        let up = step(SURFACE_MAX_WITHOUT_FAULT.saturating_sub(last_c));
+        let down = step(last_c.saturating_sub(SURFACE_MIN_WITHOUT_FAULT)) >> COOLING_SLOWER_LOG2;
+        let allowed_c = wanted_c.max(self.min).min(self.max);
+        let next_c = allowed_c.max(last_c.saturating_sub(down)).min(last_c.saturating_add(up));
+        Reference { limited: wanted.limited || allowed_c != wanted_c, ..Reference::at(next_c) }
     }
 }
 

@@ -23,7 +23,7 @@ use crate::estimate::{
 };
 use crate::safety::Setpoint;
 use equivalent_forces::equivalent_forces;
-pub use limiter::{PlainLimits, ReferenceLimiter};
+pub use limiter::PlainLimits;
 use setpoint_lead::SetpointLead;
 use skin_on_object::{BodiesBeforeContact, ContactPairFactors, SkinOnObject};
 

@@ -33,7 +33,7 @@ use crate::estimate::{
 use crate::events::{DeviceEvent, EventReporter};
 use crate::identification::{AbortReason, NormalEquationAccumulator};
 use crate::learning::{FingerLearning, FluxParameters};
-use crate::reference::{PlainLimits, Reference, ReferenceGenerator, ReferenceLimiter};
+use crate::reference::{PlainLimits, Reference, ReferenceGenerator};
 use crate::safety::{
     self, Fault, FaultDetectors, FaultLatch, PreviousDemandAndResidual, SelfTestReport,
     SelfTestResult, SelfTestStep, ThermalDose, TripCause, ValidReadings,
@@ -68,7 +68,6 @@ pub struct Station {
     state: State,
     reference: ReferenceGenerator,
     plain_limits: Option<PlainLimits>,
-    limiter: ReferenceLimiter,
     estimator: Estimator,
     averages: ThermistorAverages,
     detectors: FaultDetectors,
@@ -170,7 +169,6 @@ impl Station {
                 .map(|sensor| FingerLearning::new(sensor, PlaceBeforeContact::Air)),
             reference: ReferenceGenerator::default(),
             plain_limits: parameters.plain_limits,
-            limiter: ReferenceLimiter::default(),
             due: DueWork::default(),
             controller: Controller::new(&parameters, limit),
             voltage: VoltageFeedforward::new(&settings.module),
@@ -237,7 +235,10 @@ impl Station {
         let (demand, reference) = match valid {
             Ok(valid) => {
                 let estimate = self.detect_touch_and_update_estimates(samples, &valid);
-                let reference = self.limited_reference(&estimate, valid.display);
+                let mut reference = self.reference_for_present_state(&estimate);
+                if self.controller.law() != Law::Model {
+                    self.limit_reference_of_plain_law(&mut reference, valid.display);
+                }
                 let demand =
                     self.choose_bridge_demand(&valid, samples, &estimate, reference.as_ref());
                 (demand, reference)
@@ -378,22 +379,16 @@ impl Station {
         self.estimator.update_estimates(valid, force, landed_ticks, pair, bodies)
     }
 
-    /// The reference of the present state, limited if the law is a plain one.
-    fn limited_reference(
-        &mut self,
-        estimate: &PlateEstimateBeforeReading,
-        reading: Celsius,
-    ) -> Option<Reference> {
-        let wanted = self.reference_for_present_state(estimate);
-        let Some(wanted) = wanted else {
-            self.limiter.reset();
-            return None;
-        };
+    /// Limits the reference under a plain law, if that chooses the current.
+    #[cold]
+    #[inline(never)]
+    fn limit_reference_of_plain_law(&self, reference: &mut Option<Reference>, reading: Celsius) {
         // An identification chooses its own current.
-        let is_free = self.controller.law() == Law::Model
-            || matches!(self.state, State::Armed(ArmedTask::Identify(_)));
-        let limits = if is_free { None } else { self.plain_limits.as_ref() };
-        Some(self.limiter.limit(wanted, reading, limits))
+        if let (Some(limits), Some(wanted)) = (&self.plain_limits, reference)
+            && !matches!(self.state, State::Armed(ArmedTask::Identify(_)))
+        {
+            *wanted = limits.limit(*wanted, self.last.reference, reading);
+        }
     }
 
     /// Set-point and target temperature that the display must follow in this tick. `None` in off, ready and tripped,
@@ -535,7 +530,6 @@ impl Station {
     fn invalidate_estimates(&mut self) {
         self.estimator.invalidate();
         self.reference.discard_contact_and_skin_simulation();
-        self.limiter.reset();
     }
 
     /// Ends an identification of the tile that is still running, with the outcome [`AbortReason::Interrupted`], and
