@@ -102,7 +102,7 @@ pub(crate) struct Chip<W> {
     halted_by_debugger: bool,
     /// Whether the chip checks what software must respect of its errata.
     strict: bool,
-    /// On a strict chip only.
+    /// Up to date where instructions are noted, on a strict chip.
     write_buffer: WriteBuffer,
     pub time: Timebase,
     /// Cycle at which the last clock of the chip stopped; timers and pins keep the state of that cycle.
@@ -188,7 +188,9 @@ impl<W: Wiring> Chip<W> {
 
     /// Takes note of the return of a handler.
     pub fn note_exception_return(&mut self) {
-        if let (Some(register), None) = (self.write_buffer.register(), self.misuse) {
+        if let (true, Some(register), None) =
+            (self.strict, self.write_buffer.register(), self.misuse)
+        {
             let rule =
                 "a handler returns right behind a store to it, without a DSB (Cortex-M4, 838869)";
             self.misuse = Some((register, Refusal::Misuse(rule)));

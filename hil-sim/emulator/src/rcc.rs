@@ -76,9 +76,8 @@ pub(crate) struct Rcc {
     lpenr: [u32; 5],
     csr: u32,
     dckcfgr: u32,
-    /// Clocks that were enabled and do not run yet; on a strict chip only.
+    /// Clocks that were enabled and do not run yet; up to date where instructions are noted, on a strict chip.
     fresh_clocks: FreshClocks,
-    strict: bool,
     /// The external clock is not there.
     hse_failed: bool,
     /// Start-up time of the external clock, us.
@@ -129,7 +128,6 @@ impl Rcc {
         Self {
             hse_failed: !chip.external_clock,
             hse_start_us: chip.external_clock_start_us.into(),
-            strict: chip.strict,
             ..Self::new(ResetCause::PowerOn, 0)
         }
     }
@@ -265,7 +263,7 @@ impl Rcc {
                 // reserved bits keep their reset value, which is not always 0
                 only(value ^ registers[bus], allowed[bus], "reserved bits")?;
                 let set = value & !std::mem::replace(&mut registers[bus], value);
-                if self.strict && matches!(offset >> 4, 3 | 4) {
+                if matches!(offset >> 4, 3 | 4) {
                     self.fresh_clocks.add(bus, set, self.clock_delay(bus));
                 }
             }

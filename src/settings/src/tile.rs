@@ -38,6 +38,11 @@ impl Tile {
         dead_time_s: 0.016,
     };
 
+    /// Whether it was identified: whether it is another one than the factory's.
+    pub fn is_identified(&self) -> bool {
+        *self != Self::FACTORY_DEFAULT
+    }
+
     /// Number of decimals, 6, of each of the tile's parameters in a `set tile` line and in the record in flash.
     /// Parameters are rounded to it, so that line and record hold them exactly.
     pub const DECIMALS: i32 = 6;

@@ -30,7 +30,6 @@ impl Rcc {
         Self {
             hse_failed: self.hse_failed,
             hse_start_us: self.hse_start_us,
-            strict: self.strict,
             ..Self::new(cause, flags)
         }
     }

@@ -18,9 +18,6 @@ pub(super) struct FreshClocks {
 }
 
 impl FreshClocks {
-    /// None.
-    pub(super) const NONE: Self = Self { bits: [0; BUSES], instructions: [0; BUSES] };
-
     /// Adds clocks that a store has enabled, and that run after so many further instructions.
     pub(super) fn add(&mut self, bus: usize, bits: u32, instructions: u32) {
         if bits != 0 {
@@ -31,7 +28,7 @@ impl FreshClocks {
 
     /// Whether there is none.
     pub(super) fn is_empty(&self) -> bool {
-        *self == Self::NONE
+        self.bits == [0; BUSES]
     }
 
     /// Whether the clock of a bit is one of them.
@@ -42,7 +39,7 @@ impl FreshClocks {
     /// Takes note of an instruction before it runs: every one takes a cycle at least, and a DSB waits for all clocks.
     pub(super) fn note_instruction(&mut self, is_dsb: bool) {
         if is_dsb {
-            *self = Self::NONE;
+            *self = Self::default();
         }
         for (bits, instructions) in self.bits.iter_mut().zip(&mut self.instructions) {
             match instructions.checked_sub(1) {

@@ -125,18 +125,7 @@ impl Controller {
         let ticks = if is_near { ticks.saturating_add(1) } else { 0 };
         self.next_law = Some((law, ticks));
         if ticks >= TAKE_OVER_TICKS {
-            self.take_over();
-        }
-    }
-
-    /// The selected law takes over, from the present current.
-    #[cold]
-    #[inline(never)]
-    fn take_over(&mut self) {
-        if let Some((law, _)) = self.next_law.take() {
-            self.law = law;
-            self.pi_10hz.track_current(self.current);
-            self.pi.track_current(self.current);
+            self.track_current(self.current);
         }
     }
 
@@ -151,8 +140,8 @@ impl Controller {
     /// current (bumpless transfer); the law `model` continues from the observer instead.
     pub fn track_current(&mut self, current: Current) {
         self.current = current;
-        if self.next_law.is_some() {
-            self.take_over();
+        if let Some((law, _)) = self.next_law.take() {
+            self.law = law;
         }
         self.pi_10hz.track_current(current);
         self.pi.track_current(current);

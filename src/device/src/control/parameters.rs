@@ -1,7 +1,7 @@
 //! Parameters of the control laws for one tile, in fixed point.
 
 use contact_model::fixed_point::Celsius;
-use thermal_settings::{Settings, Tile};
+use thermal_settings::Settings;
 
 use crate::estimate::{ObserverParameters, PlateModel};
 use crate::low_pass::Coefficient;
@@ -47,10 +47,10 @@ impl ControlParameters {
                 plate: PlateModel::new(&settings.module, &settings.tile),
                 sensor: Coefficient::from_time_constant_s(settings.tile.sensor_lag_s),
                 correction: pi,
-                largest_residual: if settings.tile == Tile::FACTORY_DEFAULT {
-                    OBSERVER_RESIDUAL_MAX_NOMINAL_TILE
-                } else {
+                largest_residual: if settings.tile.is_identified() {
                     OBSERVER_RESIDUAL_MAX_IDENTIFIED_TILE
+                } else {
+                    OBSERVER_RESIDUAL_MAX_NOMINAL_TILE
                 },
             },
             plain_limits: PlainLimits::new(&settings.tile),

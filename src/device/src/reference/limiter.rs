@@ -45,7 +45,7 @@ pub struct PlainLimits {
 impl PlainLimits {
     /// Limits for a tile, in floating point, so not for the tick; `None` if it was never identified.
     pub fn new(tile: &Tile) -> Option<Self> {
-        if *tile == Tile::FACTORY_DEFAULT {
+        if !tile.is_identified() {
             return None;
         }
         let dead_time_s = tile.sensor_lag_s + tile.dead_time_s + HALF_UPDATE_S;
@@ -58,8 +58,8 @@ impl PlainLimits {
         })
     }
 
-    /// The reference that the display follows in place of `wanted`: a step from `last`, the reference of the tick before, or, if
-    /// there was none, from the display's `reading`, °C.
+    /// The reference that the display follows in place of `wanted`. It lies at most one step from `last`, the reference of the
+    /// previous tick. If that tick had none, it starts from the reading of the display's thermistor, °C.
     pub fn limit(&self, wanted: Reference, last: Option<Reference>, reading: Celsius) -> Reference {
         let wanted_c = wanted.setpoint.celsius();
         let last_c = last.map_or(reading, |last| last.setpoint.celsius());
