@@ -11,7 +11,7 @@ use super::objects::checksum;
 use crate::device::Device;
 use crate::device::safety::{Fault, ThermalDose};
 use crate::protocol::CommandHandler;
-use crate::settings::Settings;
+use crate::tests::tuned_settings;
 
 const NO_COURSE: &str = "err no course is loaded; upload begin course first";
 const NOT_BEGUN: &str = "err no upload has begun; upload begin object COUNT DIRECT first";
@@ -106,7 +106,7 @@ fn stimuli_need_a_driven_display_and_no_fault() {
 #[test]
 fn what_the_finger_would_feel_is_refused_while_a_course_plays_and_allowed_while_it_is_held() {
     let mut bench = Bench::armed();
-    bench.send_ok(&["pulse 30 31 10 0.05 5"]);
+    bench.send_ok(&["pulse 26 27 10 0.05 5"]);
     let refused = "err not while an object or a course is presented: abort or arm first";
     assert_eq!(bench.send("set tile 2.7 0.03 0.2 0.1 0.01"), refused);
     bench.steps(400);
@@ -199,8 +199,8 @@ fn half_an_upload_and_a_course_are_lost_by_a_reset() {
     let mut bench = Bench::armed();
     assert_eq!(bench.upload("absolute", &[(0.0, 30.0), (0.1, 31.0)]), "ok");
     bench.send_ok(&["upload begin course 2 absolute", "upload row 0 0 25"]);
-    bench.device = Device::new(&Settings::default());
-    bench.handler = CommandHandler::new(Settings::default());
+    bench.device = Device::new(&tuned_settings());
+    bench.handler = CommandHandler::new(tuned_settings());
     assert_eq!(bench.send("upload row 1 1 26"), NOT_BEGUN);
     assert_eq!(bench.send("upload commit 00000000"), NOT_BEGUN);
     bench.arm();

@@ -16,7 +16,7 @@ use crate::device::safety::Fault;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, FingerIndex, Telemetry};
 use crate::protocol::{CommandHandler, UnsolicitedLine};
-use crate::settings::Settings;
+use crate::tests::tuned_settings;
 
 pub(super) const FIRST: FingerIndex<1> = FingerIndex::FIRST;
 
@@ -34,8 +34,8 @@ pub(super) struct Bench {
 impl Bench {
     pub(super) fn off() -> Self {
         Self {
-            device: Device::new(&Settings::default()),
-            handler: CommandHandler::new(Settings::default()),
+            device: Device::new(&tuned_settings()),
+            handler: CommandHandler::new(tuned_settings()),
             tick: 0,
             touching: false,
             current: 0,
@@ -160,10 +160,10 @@ fn a_course_is_followed_between_its_points_and_ends_on_the_last_one() {
 #[test]
 fn repeats_and_the_end_on_neutral() {
     let mut bench = Bench::armed();
-    assert_eq!(bench.upload("absolute", &[(0.0, 30.0), (0.1, 31.0), (0.2, 30.0)]), "ok");
+    assert_eq!(bench.upload("absolute", &[(0.0, 26.0), (0.1, 27.0), (0.2, 26.0)]), "ok");
     bench.send_ok(&["play now 3 neutral"]);
     let setpoints = bench.steps(601);
-    for (tick, expected_c) in [(100, 31.0), (200, 30.0), (300, 31.0), (500, 31.0), (600, 30.0)] {
+    for (tick, expected_c) in [(100, 27.0), (200, 26.0), (300, 27.0), (500, 27.0), (600, 26.0)] {
         assert_close(setpoints[tick], expected_c);
     }
     assert_eq!(bench.state(), "armed");
@@ -230,25 +230,25 @@ fn a_relative_course_adds_the_skin_and_an_assumed_skin_replaces_the_sensor() {
 fn a_course_is_loaded_while_another_plays_and_a_broken_upload_leaves_the_old_one() {
     let mut bench = Bench::armed();
     // The second segment begins after the upload.
-    let points = [(0.0, 30.0), (0.15, 31.5), (0.2, 32.0)];
+    let points = [(0.0, 26.0), (0.15, 27.5), (0.2, 28.0)];
     assert_eq!(bench.upload("absolute", &points), "ok");
     bench.send_ok(&["play now"]);
     bench.steps(100);
-    assert_eq!(bench.upload("absolute", &[(0.0, 20.0), (0.2, 22.0)]), "ok");
-    assert_close(bench.steps(100)[99], 31.99);
+    assert_eq!(bench.upload("absolute", &[(0.0, 24.0), (0.2, 26.0)]), "ok");
+    assert_close(bench.steps(100)[99], 27.99);
     // Half an upload.
     bench.send_ok(&["upload begin course 2 absolute", "upload row 0 0 25"]);
     let wrong = bench.send("upload commit 00000000");
     assert_eq!(wrong, "err 1 of 2 rows; nothing is changed, upload again");
     bench.send_ok(&["play now"]);
-    assert_close(bench.steps(101)[100], 21.0);
+    assert_close(bench.steps(101)[100], 25.0);
 }
 
 #[test]
 fn a_course_is_loaded_although_a_fault_trips_the_station_meanwhile() {
     let mut bench = Bench::armed();
     let points: Vec<_> =
-        (0..100).map(|point| (0.1 * f64::from(point), 20.0 + 0.1 * f64::from(point))).collect();
+        (0..100).map(|point| (0.1 * f64::from(point), 25.0 + 0.02 * f64::from(point))).collect();
     let (lines, commit) = upload_lines("absolute", &points);
     for line in &lines {
         bench.send_ok(&[line]);
@@ -267,13 +267,13 @@ fn a_course_is_loaded_although_a_fault_trips_the_station_meanwhile() {
     bench.arm();
     bench.send_ok(&["play now"]);
     let setpoints = bench.steps(9901);
-    assert_close(setpoints[0], 20.0);
-    assert_close(setpoints[9900], 29.9);
+    assert_close(setpoints[0], 25.0);
+    assert_close(setpoints[9900], 26.98);
 }
 
 #[test]
 fn a_pulse_and_a_course_for_all_fingers_are_executed_by_those_that_are_not_tripped() {
-    let settings = Settings::default();
+    let settings = tuned_settings();
     let mut device = Device::<2>::new(&settings);
     let mut handler = CommandHandler::<2>::new(settings);
     let second = FingerIndex::new(1).expect("a finger");
@@ -342,15 +342,15 @@ fn a_course_that_another_command_replaces_before_its_first_tick_has_not_started(
 #[test]
 fn a_pulse_is_a_course_of_four_points_that_begins_at_once() {
     let mut bench = Bench::armed();
-    bench.send_ok(&["pulse 30 31 10 0.05 5"]);
+    bench.send_ok(&["pulse 26 27 10 0.05 5"]);
     let setpoints = bench.steps(400);
     for (tick, expected_c) in
-        [(0, 30.0), (50, 30.5), (100, 31.0), (150, 31.0), (250, 30.5), (350, 30.0)]
+        [(0, 26.0), (50, 26.5), (100, 27.0), (150, 27.0), (250, 26.5), (350, 26.0)]
     {
         assert_close(setpoints[tick], expected_c);
     }
     bench.send_ok(&["play now"]);
-    assert_close(bench.steps(101)[100], 31.0);
+    assert_close(bench.steps(101)[100], 27.0);
 }
 
 #[test]

@@ -7,12 +7,12 @@ use crate::device::drive::{ComparatorTest, Drive};
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, FingerIndex};
 use crate::protocol::{CommandHandler, UnsolicitedLine};
-use crate::settings::Settings;
+use crate::tests::tuned_settings;
 
 const FIVE: usize = 5;
 
 fn host<const FINGERS: usize>(device: &mut Device<FINGERS>, line: &str) -> String {
-    let mut handler = CommandHandler::<FINGERS>::new(Settings::default());
+    let mut handler = CommandHandler::<FINGERS>::new(tuned_settings());
     let done = handler.answer(line, |finger, command| device.execute(finger, command));
     done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
 }
@@ -94,7 +94,7 @@ fn state_of(device: &mut Device<FIVE>, finger: usize) -> String {
 
 #[test]
 fn a_command_is_executed_by_the_addressed_finger_or_by_all() {
-    let mut device = Device::<FIVE>::new(&Settings::default());
+    let mut device = Device::<FIVE>::new(&tuned_settings());
     assert_eq!(host(&mut device, "@3 material abs"), "@3 ok");
     arm(&mut device, finger(3));
     assert_eq!(host(&mut device, "@3 start"), "@3 ok");
@@ -118,7 +118,7 @@ fn a_command_is_executed_by_the_addressed_finger_or_by_all() {
 /// A finger that is tripped neither trips the others nor keeps the host's `abort` from them.
 #[test]
 fn a_fault_at_one_finger_does_not_affect_the_others() {
-    let mut device = Device::<FIVE>::new(&Settings::default());
+    let mut device = Device::<FIVE>::new(&tuned_settings());
     FingerIndex::all().for_each(|finger| arm(&mut device, finger));
     for finger in FingerIndex::all() {
         let bridge_fault = finger.index() == 1;
@@ -139,7 +139,7 @@ fn a_fault_at_one_finger_does_not_affect_the_others() {
 
 #[test]
 fn answers_and_telemetry_have_the_address_of_their_finger() {
-    let mut device = Device::<FIVE>::new(&Settings::default());
+    let mut device = Device::<FIVE>::new(&tuned_settings());
     assert!(host(&mut device, "id").contains(" fingers=5 "));
     assert!(host(&mut device, "@4 id").starts_with("@4 ok thermal-display "));
     assert!(host(&mut device, "state").starts_with("@0 ok state=off"));
@@ -166,7 +166,7 @@ fn answers_and_telemetry_have_the_address_of_their_finger() {
 /// The host may still address it as finger 0.
 #[test]
 fn lines_of_a_single_finger_have_no_address() {
-    let mut device = Device::<1>::new(&Settings::default());
+    let mut device = Device::<1>::new(&tuned_settings());
     assert_eq!(host(&mut device, "stream 1"), "ok");
     assert!(host(&mut device, "id").contains(" fingers=1 "));
     assert!(host(&mut device, "state").starts_with("ok state=off"));

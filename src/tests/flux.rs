@@ -240,12 +240,12 @@ fn telemetry_has_flux_surface_and_finger_if_they_are_named() {
     assert_eq!(one.send("stream 1 flux display surface finger"), "ok");
     one.step((FREE, SAME), [2048]);
     let line_without = line(&mut one);
-    assert!(line_without.ends_with(" - - - -"), "{line_without}");
+    assert!(line_without.ends_with(" - - - untuned"), "{line_without}");
     assert_eq!(one.send(SET), "ok");
     one.step((FREE, SAME), [2048, 2048, 2048 + 119]);
     let line = line(&mut one);
     let words: Vec<_> = line.split(' ').collect();
-    let ["T", "4", "off", display, "998.3", surface, "learning", "-"] = words[..] else {
+    let ["T", "4", "off", display, "998.3", surface, "learning", "untuned"] = words[..] else {
         panic!("{line}");
     };
     // Nothing warms or cools the display.

@@ -9,7 +9,7 @@ use crate::device::command::AssumedFinger;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, FingerIndex};
 use crate::protocol::CommandHandler;
-use crate::settings::Settings;
+use crate::tests::tuned_settings;
 
 const FIVE: usize = 5;
 
@@ -40,10 +40,10 @@ struct Bench {
 impl Bench {
     /// Fingers 1 and 2 rest on the same object, copper.
     fn presenting() -> Self {
-        let mut device = Device::new(&Settings::default());
+        let mut device = Device::new(&tuned_settings());
         let fingers = [finger(1), finger(2)];
         fingers.into_iter().for_each(|one| arm(&mut device, one));
-        let handler = CommandHandler::new(Settings::default());
+        let handler = CommandHandler::new(tuned_settings());
         let mut bench = Self { device, handler, tick: 0, currents: [0; 2] };
         bench.send_ok(&["material copper", "@1 start", "@2 start", "stream 1"]);
         bench.run(5);
@@ -104,8 +104,8 @@ fn after(bench: &Bench, lines: &[&str]) -> [f64; 2] {
 #[test]
 fn a_slab_is_refused_before_a_material_is_chosen() {
     let mut bench = Bench {
-        device: Device::new(&Settings::default()),
-        handler: CommandHandler::new(Settings::default()),
+        device: Device::new(&tuned_settings()),
+        handler: CommandHandler::new(tuned_settings()),
         tick: 0,
         currents: [0; 2],
     };
@@ -153,7 +153,7 @@ fn a_material_and_half_space_end_a_slab_or_an_upload() {
 }
 
 #[test]
-fn the_state_ends_with_the_body_of_the_object() {
+fn the_state_has_the_body_of_the_object() {
     let mut bench = Bench::presenting();
     for (lines, body) in [
         (&["object room"][..], "half-space"),
@@ -170,7 +170,7 @@ fn the_state_ends_with_the_body_of_the_object() {
             bench.send(line);
         }
         let state = bench.send("@1 state");
-        assert!(state.ends_with(&format!(" body={body}")), "{lines:?}: {state}");
+        assert!(state.ends_with(&format!(" body={body} tile=tuned")), "{lines:?}: {state}");
     }
 }
 
@@ -210,7 +210,7 @@ fn an_object_that_no_display_can_be_is_limited_and_trips_nothing() {
         bench.send_ok(&[&format!("object {celsius}"), &begin, &commit]);
         assert_eq!(bench.run(20), [limit_c; 2], "{celsius} C");
         let state = bench.send("@1 state");
-        assert!(state.ends_with(" limited body=upload"), "{celsius} C: {state}");
+        assert!(state.ends_with(" limited body=upload tile=tuned"), "{celsius} C: {state}");
     }
 }
 

@@ -1,6 +1,8 @@
 //! Contact detection on the simulated force sensor and converter: delay of detection, estimated time of landing, and false
 //! detections by noise and drift.
 
+use std::f64::consts::TAU;
+
 use documented_figures::assert_figure;
 use thermal_display::device::sense::{ContactDetector, SCANS_PER_TICK, SampleConverter, Samples};
 use thermal_display::settings::Settings;
@@ -39,8 +41,9 @@ impl Bench {
         self.scan(SCANS_PER_TICK - SCANS_BEFORE);
         let samples = Samples { force: self.sum, ..Samples::default() };
         let force = self.sensors.convert_samples(&samples).force.expect("a sound sensor");
-        self.touch.update_contact(force);
-        self.sensors.track_force_zero_unless_touching(&samples, &self.touch);
+        let below_zero = self.sensors.is_force_below_zero();
+        let zero_has_moved = self.touch.update_contact(force, below_zero);
+        self.sensors.track_force_zero_unless_touching(&samples, &self.touch, zero_has_moved);
         self.sum = 0;
         self.scan(SCANS_BEFORE);
     }
@@ -135,5 +138,115 @@ fn noise_and_a_drifting_zero_cause_no_detection_in_two_hours() {
         }
         let (detected, estimated) = bench.land(drift_n_per_h * 0.05 + 0.1);
         assert!(detected <= 2 && estimated == detected, "{detected}, {estimated}");
+    }
+}
+
+/// A sensor whose stack of 0.5 kg resonates at this frequency, Hz, on its cell.
+fn soft_sensor(resonance_hz: f64) -> SensorParams {
+    let mut params = sensor(0.0, 0.0, 1e-3, 1.2);
+    let rad_s = TAU * resonance_hz;
+    params.force.cell.compliance_m_n = 1.0 / (params.force.cell.mass_kg * rad_s * rad_s);
+    params
+}
+
+/// Ticks of the landings and lifts, by the detector, while a force acts that is given by the tick.
+fn touch_changes(bench: &mut Bench, ticks: u32, force_n: impl Fn(u32) -> f64) -> Vec<u32> {
+    let changed = |tick: &u32| {
+        let before = bench.touch.touching();
+        bench.tick(force_n(*tick));
+        bench.touch.touching() != before
+    };
+    (0..ticks).filter(changed).collect()
+}
+
+/// A finger that lands within 20 ms and lifts within 10 to 40 ms, on cells that resonate at 41 to 1000 Hz with a damping of 0.03, and
+/// one of 0.1 N that lands 0.6 s after the lift.
+#[test]
+fn a_ringing_cell_shows_one_landing_and_one_lift() {
+    println!(
+        "| resonance, Hz | force, N | lift within, ms | lift found after, ms | 0.1 N found after, ms |"
+    );
+    let (mut latest_lift, mut latest_landing) = (0, 0);
+    for resonance_hz in [41.0, 58.0, 80.0, 120.0, 200.0, 400.0, 1000.0] {
+        for (force_n, lift_ms) in
+            [0.5, 2.0, 5.0].into_iter().flat_map(|force| [1, 10, 15, 20, 40].map(|ms| (force, ms)))
+        {
+            let mut bench = Bench::new(soft_sensor(resonance_hz), 5);
+            (0..1000).for_each(|_| bench.tick(0.0));
+            let ramp = |tick: u32, ms: u32| (f64::from(tick) / f64::from(ms)).min(1.0);
+            let changes = touch_changes(&mut bench, 3000, |tick| match tick {
+                0..1500 => force_n * ramp(tick, 20),
+                tick => force_n * (1.0 - ramp(tick - 1500, lift_ms)),
+            });
+            let of = format!("{resonance_hz} Hz, {force_n} N, {lift_ms} ms: {changes:?}");
+            let [_, lift] = changes[..] else { panic!("{of}") };
+            let lift = lift - 1500;
+            let mut bench = Bench::new(soft_sensor(resonance_hz), 6);
+            (0..1000).for_each(|_| bench.tick(0.0));
+            let changes = touch_changes(&mut bench, 3000, |tick| match tick {
+                0..1500 => force_n * ramp(tick, 20),
+                1500..2100 => force_n * (1.0 - ramp(tick - 1500, lift_ms)),
+                _ => 0.1,
+            });
+            let [_, _, landing] = changes[..] else { panic!("{of}, then {changes:?}") };
+            let landing = landing - 2100;
+            println!("| {resonance_hz} | {force_n} | {lift_ms} | {lift} | {landing} |");
+            (latest_lift, latest_landing) = (latest_lift.max(lift), latest_landing.max(landing));
+        }
+    }
+    assert_figure("touch.soft_lift", latest_lift.into());
+    assert_figure("touch.soft_landing", latest_landing.into());
+}
+
+/// A vibration of 15 and 50 mN at 30 to 200 Hz, alone and with a finger of 0.1 N.
+#[test]
+fn a_vibration_of_the_fan_begins_no_contact_and_delays_one_by_less_than_100_ms() {
+    println!("| vibration, mN | frequency, Hz | resonance, Hz | 0.1 N found after, ms |");
+    let mut latest = 0;
+    for (vibration_n, vibration_hz) in
+        [0.015, 0.05].into_iter().flat_map(|n| [30.0, 47.0, 90.0, 200.0].map(|hz| (n, hz)))
+    {
+        for resonance_hz in [41.0, 200.0, 1000.0] {
+            let mut params = soft_sensor(resonance_hz);
+            params.force.cell.vibration_n = vibration_n;
+            params.force.cell.vibration_hz = vibration_hz;
+            let mut bench = Bench::new(params, 7);
+            let changes = touch_changes(&mut bench, 30_000, |tick| match tick {
+                10_000..20_000 => 0.1,
+                _ => 0.0,
+            });
+            let of = format!("{vibration_n} N, {vibration_hz} Hz on {resonance_hz} Hz");
+            let [landing, lift] = changes[..] else { panic!("{of}: {changes:?}") };
+            let (landing, lift) = (landing - 10_000, lift - 20_000);
+            println!(
+                "| {:.0} | {vibration_hz} | {resonance_hz} | {landing} |",
+                1000.0 * vibration_n
+            );
+            assert!(lift < 600, "{of}: lift after {lift} ms");
+            latest = latest.max(landing);
+        }
+    }
+    assert_figure("touch.vibrating_landing", latest.into());
+}
+
+/// A zero that moves by 2 mN/s to 150 mN either way: at rest, and hidden by a finger of 1 N that stays for 100 s.
+#[test]
+fn a_drift_of_the_zero_ends_every_contact_that_a_finger_has_ended() {
+    for drift_n_s in [-2e-3, 2e-3] {
+        let mut params = sensor(0.0, 0.0, 1e-3, 1.2);
+        params.force.cell.drift_n_s = drift_n_s;
+        let mut bench = Bench::new(params, 8);
+        let resting = touch_changes(&mut bench, 120_000, |_| 0.0);
+        assert_eq!(resting, [0; 0], "{drift_n_s} N/s");
+        assert_eq!(bench.land(0.1).0, 2, "{drift_n_s} N/s");
+        let mut bench = Bench::new(params, 9);
+        let changes = touch_changes(&mut bench, 160_000, |tick| match tick {
+            2_000..102_000 => 1.0,
+            _ => 0.0,
+        });
+        let [_, lift] = changes[..] else { panic!("{drift_n_s} N/s: {changes:?}") };
+        println!("{drift_n_s} N/s: lift found after {} ms", lift - 102_000);
+        assert!(lift - 102_000 < 1000, "{drift_n_s} N/s: {lift}");
+        assert_eq!(bench.land(0.1).0, 2, "{drift_n_s} N/s");
     }
 }

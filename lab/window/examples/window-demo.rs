@@ -223,6 +223,7 @@ fn line(tick: u32, t_s: f64, screen: &str) -> ReceivedTelemetry {
             surface_c: None,
             finger: None,
             limited: false,
+            is_untuned: false,
         },
         at: Duration::from_millis(tick.into()),
         lost_before: u32::from(tick == 5000),

@@ -106,6 +106,9 @@ class Status:
     """Whether the set-point was clamped, or the display is off it in a stimulus."""
     body: str
     """`half-space`, `slab` or `upload`."""
+    tuned: bool | None
+    """Whether the tile was identified; if not, set-points are limited to 20 to 38 °C and 1 K/s. `None` from firmware
+    without the capability `untuned`."""
 
     @classmethod
     def read(cls, reply: Fields) -> Status:
@@ -119,6 +122,7 @@ class Status:
             setpoint_c=reply.real_or_none("setpoint_c"),
             limited="limited" in reply.words,
             body=reply.word("body"),
+            tuned=None if (tile := reply.optional("tile")) is None else tile == "tuned",
         )
 
 

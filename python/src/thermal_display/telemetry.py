@@ -90,6 +90,11 @@ class Sample:
         """Whether the set-point is limited."""
         return self.remark == "limited"
 
+    @property
+    def untuned(self) -> bool:
+        """Whether the tile was never identified, unless the line says `limited` in place of it."""
+        return self.remark == "untuned"
+
 
 @dataclass(frozen=True)
 class Stream:

@@ -396,6 +396,11 @@ pub enum Refused {
     /// `play` was sent, and the temperature of the loaded course, °C, given here, would be out of range above the present
     /// skin.
     CourseOutOfRange(Celsius),
+    /// `hold` or `play` was sent to a tile that was never identified, and would bring its set-point to this temperature, °C, which
+    /// is outside of its range of 20 to 38 °C.
+    UntunedRange(Celsius),
+    /// The same, and the set-point would move at this rate, K/s, which is more than the 1 K/s of such a tile.
+    UntunedRate(Celsius),
     /// `play` was sent, and the loaded course would bring the thermal dose to this, which trips.
     CourseDose(PredictedDose),
 }
@@ -416,8 +421,11 @@ pub struct Status {
     /// Set-point of the last tick, °C. `None` if that tick began in off, self-test, ready or tripped, or found a fault:
     /// no set-point is followed then.
     pub setpoint: Option<Celsius>,
-    /// Whether the set-point of the last tick would have been outside of 15 to 42 °C, and was clamped to that range.
+    /// Whether the set-point of the last tick is not the one that was asked for, because that is outside of its range; or, on a
+    /// tile that was never identified, moves too fast.
     pub limited: bool,
+    /// Whether the tile was identified or set; if not, the set-point is limited to 20 to 38 °C and 1 K/s.
+    pub is_tuned: bool,
     /// Word for the body of the object that the host has chosen: [`ObjectBody::name`].
     pub body: &'static str,
 }

@@ -64,8 +64,11 @@ pub struct Telemetry {
     /// Set-point of the tick, °C. `None` if the tick began in off, self-test, ready or tripped, or found a fault: no
     /// set-point is followed then.
     pub setpoint: Option<Celsius>,
-    /// Whether the set-point of the tick would have been outside of 15 to 42 °C, and was clamped to that range.
+    /// Whether the set-point of the tick is not the one that was asked for, because that is outside of its range; or, on a tile
+    /// that was never identified, moves too fast.
     pub limited: bool,
+    /// Whether the tile was identified or set; if not, the set-point is limited to 20 to 38 °C and 1 K/s.
+    pub is_tuned: bool,
     /// Reading of the first display thermistor, °C, which the control laws use; `None` if the thermistor is open or
     /// shorted.
     pub display: Option<Celsius>,

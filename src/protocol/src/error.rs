@@ -14,7 +14,10 @@ use thermal_device::TelemetryFields;
 use thermal_device::command::{AssumedFinger, Refused};
 use thermal_device::control::Law;
 use thermal_device::safety::PredictedDose;
-use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
+use thermal_device::safety::limits::{
+    SETPOINT_MAX_C, SETPOINT_MIN_C, UNTUNED_RATE_MAX_K_S, UNTUNED_SETPOINT_MAX,
+    UNTUNED_SETPOINT_MIN,
+};
 use thermal_device::stimulus::{
     COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, CourseEnd, CourseError,
     CourseStart, TemperatureKind,
@@ -513,6 +516,15 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
                 f,
                 "with the present skin the course reaches {celsius} C; {min} to {max} C are allowed"
             );
+        }
+        Refused::UntunedRange(celsius) => {
+            let [min, max] = [UNTUNED_SETPOINT_MIN, UNTUNED_SETPOINT_MAX].map(rounded_celsius);
+            let celsius = rounded_celsius(*celsius);
+            return write!(f, "{celsius} C needs tune first; until then {min} to {max} C are allowed");
+        }
+        Refused::UntunedRate(rate_k_s) => {
+            let [rate, max] = [*rate_k_s, UNTUNED_RATE_MAX_K_S].map(rounded_celsius);
+            return write!(f, "{rate} K/s needs tune first; until then {max} K/s are allowed");
         }
         Refused::CourseDose(dose) => return write_dose(f, dose.milliseconds_at_43()),
         Refused::StillFaulty(fault) => {

@@ -30,7 +30,7 @@ pub use error::{Error, QuotedWordExcerpt, StorageFailureText};
 pub use line_checksum::{ChecksumError, OutgoingLine, line_checksum, strip_checksum, write_line};
 pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
 pub use person::{PersonCodes, PersonReply, PersonRequest};
-pub use reply::Reply;
+pub use reply::{Reply, TUNED_WORD, UNTUNED_WORD};
 pub use request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, NOMINAL_CONTACT_LAW_WORD, Request};
 pub use telemetry::{TelemetryLine, UnsolicitedLine};
 pub use upload::UploadError;

@@ -23,7 +23,13 @@ use crate::request::CONTACT_MODEL_WORDS;
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
 const PROTOCOL_VERSION: u32 = 1;
 /// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
-const CAPABILITIES: &str = "upload,checksum,board,self-test,raw,course,flux,contact,surface,person";
+const CAPABILITIES: &str =
+    "upload,checksum,board,self-test,raw,course,flux,contact,surface,person,untuned";
+
+/// Word in `state` for a tile that was identified or set.
+pub const TUNED_WORD: &str = "tuned";
+/// Word in `state` and telemetry for a tile that was never identified.
+pub const UNTUNED_WORD: &str = "untuned";
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
@@ -187,6 +193,8 @@ fn state_answer_line(status: &Status) -> LineBuffer {
     line.push_str_if_fits(if status.limited { " limited" } else { "" });
     line.push_str_if_fits(" body=");
     line.push_str_if_fits(status.body);
+    line.push_str_if_fits(" tile=");
+    line.push_str_if_fits(if status.is_tuned { TUNED_WORD } else { UNTUNED_WORD });
     line
 }
 

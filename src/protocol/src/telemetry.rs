@@ -8,6 +8,7 @@ use thermal_device::{FingerIndex, Telemetry, TelemetryFields};
 
 use crate::command_handler::ExecuteOnStations;
 use crate::line_buffer::LineBuffer;
+use crate::reply::UNTUNED_WORD;
 
 /// One finger's telemetry of a tick; `Display` writes it as a line to the host, without a line ending and in at most
 /// 160 bytes:
@@ -127,6 +128,7 @@ impl fmt::Display for TelemetryLine {
         line.push_str_if_fits(match telemetry.state.fault() {
             Some(fault) => fault.name(),
             None if telemetry.limited => "limited",
+            None if !telemetry.is_tuned => UNTUNED_WORD,
             None => "-",
         });
         line.fmt(f)

@@ -260,6 +260,7 @@ fn the_longest_answers_fit_their_limit() {
         mode: ContactModel::SemiInfinite,
         setpoint: Some(Celsius::MIN),
         limited: true,
+        is_tuned: true,
         body: ObjectBody::HalfSpace.name(),
     };
     let answer = Reply::Station(command::Reply::Status(status)).to_string();
@@ -302,6 +303,7 @@ fn the_longest_answers_fit_their_limit() {
         state: tripped,
         setpoint: Some(Celsius::MIN),
         limited: true,
+        is_tuned: true,
         display: Some(Celsius::MIN),
         sink: Some(Celsius::MIN),
         skin: Some(Celsius::MIN),

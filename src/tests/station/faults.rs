@@ -1,6 +1,7 @@
 //! Faults trip at once and stay latched; current and voltage stay within their limits.
 
 use super::TestBench;
+use super::rendering::assert_follows_contact;
 use crate::device::StateName;
 use crate::device::drive::Drive;
 use crate::device::safety::Fault;
@@ -10,7 +11,7 @@ use crate::device::sense::Samples;
 type FaultCase = (&'static str, fn(&mut TestBench));
 
 /// A thermistor at 200 °C reads as shorted, at -200 °C as open.
-const FAULT_CASES: [FaultCase; 17] = [
+const FAULT_CASES: [FaultCase; 16] = [
     ("display-open", |bench| bench.display_c = -200.0),
     ("display-short", |bench| bench.display_c = 200.0),
     ("check-open", |bench| bench.check_c = -200.0),
@@ -21,7 +22,6 @@ const FAULT_CASES: [FaultCase; 17] = [
     ("skin-short", |bench| bench.skin_c = 200.0),
     ("room-open", |bench| bench.room_c = -200.0),
     ("room-short", |bench| bench.room_c = 200.0),
-    ("force-sensor", |bench| bench.force_n = -1.3),
     ("display-hot", |bench| bench.check_c = 43.1),
     ("display-cold", |bench| bench.display_c = 13.4),
     ("sink-hot", |bench| bench.sink_c = 42.1),
@@ -213,7 +213,7 @@ fn a_self_test_without_current_in_one_direction_trips() {
 
 #[test]
 fn a_fault_ends_the_simulated_contact() {
-    let mut bench = TestBench::presenting("copper");
+    let mut bench = TestBench::presenting_with_plate("copper");
     bench.force_n = 2.0;
     bench.steps(5000);
     bench.bridge_fault = true;
@@ -221,17 +221,18 @@ fn a_fault_ends_the_simulated_contact() {
     bench.bridge_fault = false;
     bench.step();
     bench.send_ok(&["clear", "arm", "start"]);
-    let expected_c = bench.contact("copper", 24.0).at(0.0).display_c;
-    super::assert_close(bench.setpoint_c(), expected_c);
+    let contact = bench.contact("copper", 24.0);
+    assert_follows_contact(&mut bench, &contact, 0.0, 1000);
 }
 
 #[test]
 fn the_demanded_current_saturates_at_its_limit_and_reverses_at_once() {
     let mut bench = TestBench::presenting("copper");
+    bench.send_ok(&["law model"]);
     for (line, demand_a) in [("object 60", -6), ("object -20", 6)] {
         bench.send_ok(&[line]);
         // Shorter than the time after which a display that does not respond trips.
-        for _ in 0..200 {
+        for _ in 0..50 {
             let (_, telemetry) = bench.step();
             assert_eq!(telemetry.demand, demand_a);
         }
@@ -246,7 +247,7 @@ fn the_bridge_voltage_is_the_feed_forward_of_the_demanded_current() {
         let mut bench = TestBench::new();
         let display_c = bench.skin_c;
         (bench.display_c, bench.check_c) = (display_c, display_c);
-        bench.send_ok(&["material copper", line, "arm"]);
+        bench.send_ok(&["law model", "material copper", line, "arm"]);
         bench.steps(1000);
         bench.send_ok(&["start"]);
         let (drive, telemetry) = bench.step();
@@ -297,10 +298,22 @@ fn samples_that_stop_to_change_trip_within_50_ms() {
 }
 
 #[test]
+fn a_broken_force_sensor_trips_after_30_ms() {
+    for mut bench in bench_in_each_state() {
+        let touching = bench.state();
+        bench.force_n = -1.3;
+        bench.steps(29);
+        assert_eq!(bench.state(), touching, "the last valid force is kept");
+        assert_eq!(bench.step().0, Drive::Off);
+        assert_eq!(bench.state().fault(), Some(Fault::ForceSensor), "from {touching:?}");
+    }
+}
+
+#[test]
 fn samples_without_noise_trip_nothing() {
-    let mut bench = TestBench::presenting("copper");
-    let samples = bench.samples();
-    repeat_samples(&mut bench, &samples, 1000, 0);
+    let mut bench = TestBench::presenting_with_plate("copper");
+    bench.noise = 0;
+    bench.steps(1000);
     assert_eq!(bench.state(), StateName::Preset);
 }
 
@@ -366,12 +379,12 @@ fn a_fault_ends_a_hold() {
     let mut bench = TestBench::new();
     bench.send_ok(&["arm", "hold 41.5"]);
     bench.step();
-    bench.force_n = -1.3;
+    bench.emergency_stop = true;
     bench.step();
-    bench.force_n = 0.0;
+    bench.emergency_stop = false;
     bench.step();
     bench.send_ok(&["clear", "arm"]);
-    assert!((bench.setpoint_c() - bench.skin_c).abs() < 0.1);
+    bench.assert_reaches_setpoint(bench.skin_c);
 }
 
 /// A finger that lands during the self-test warms the display while the test cools it.

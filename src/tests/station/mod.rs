@@ -19,7 +19,8 @@ use crate::device::drive::{BoardOutputs, ComparatorTest};
 use crate::device::sense::Samples;
 use crate::device::{StateName, Station};
 use crate::protocol::CommandHandler;
-use crate::settings::{Settings, Tile};
+use crate::settings::Tile;
+use crate::tests::tuned_settings;
 
 /// Coefficient per tick of the thermistor's low-pass filter: a lag of 0.1 s.
 const SENSOR_LAG_COEFFICIENT: f64 = 0.01;
@@ -51,6 +52,8 @@ struct TestBench {
     comparator_side_differs: bool,
     /// A byte from the host arrives before every tick.
     host_alive: bool,
+    /// Set-point of the last tick.
+    last_setpoint_c: Option<f64>,
     /// The plate responds to the demanded current as the nominal tile does.
     plate_responds: bool,
     /// Noise of the converter: added to each sum once in 40 ticks.
@@ -61,8 +64,8 @@ impl TestBench {
     /// Untouched and without a fault, with telemetry on every tick, the law `pi` and the thesis's finger.
     fn new() -> Self {
         let mut bench = Self {
-            station: Station::new(&Settings::default()),
-            handler: CommandHandler::new(Settings::default()),
+            station: Station::new(&tuned_settings()),
+            handler: CommandHandler::new(tuned_settings()),
             tick: 0,
             plate_c: 30.0,
             display_c: 30.0,
@@ -78,6 +81,7 @@ impl TestBench {
             emergency_stop: false,
             comparator_side_differs: false,
             host_alive: true,
+            last_setpoint_c: None,
             plate_responds: false,
             noise: 1,
         };
@@ -205,6 +209,7 @@ impl TestBench {
         let outputs = self.station.step(&samples);
         let telemetry = self.station.telemetry_if_due().expect("streamed on every tick");
         self.tick = telemetry.tick;
+        self.last_setpoint_c = telemetry.setpoint.map(|setpoint| setpoint.to_num());
         self.demanded_a = telemetry.demand.to_num::<f64>().abs();
         if self.plate_responds {
             let demand_a = telemetry.demand.to_num::<f64>();
@@ -234,6 +239,29 @@ impl TestBench {
         let (_, telemetry) = self.step();
         assert_eq!(telemetry.state.fault(), None);
         telemetry.setpoint.expect("the bridge is driven").to_num()
+    }
+
+    /// Advances by one tick, and asserts that its set-point is `wanted_c`; under a plain law within its limits: 17 to 41.6 °C, and
+    /// not faster towards 43 °C than with 7 effective dead times, towards 14 °C than with 14. Returns whether they did not matter.
+    #[track_caller]
+    fn assert_setpoint(&mut self, wanted_c: f64) -> bool {
+        let mut limited_c = wanted_c;
+        if self.send("law") != "ok law=model" {
+            let last_c = self.last_setpoint_c.unwrap_or(self.display_c);
+            let Tile { sensor_lag_s, dead_time_s, .. } = Tile::FACTORY_DEFAULT;
+            let dead_time_ms = 1e3 * (sensor_lag_s + dead_time_s + 0.05);
+            let lowest_c = last_c + (14.0 - last_c) / (14.0 * dead_time_ms);
+            let highest_c = last_c + (43.0 - last_c) / (7.0 * dead_time_ms);
+            limited_c = wanted_c.clamp(17.0, 41.6).clamp(lowest_c, highest_c);
+        }
+        assert_close(self.setpoint_c(), limited_c);
+        limited_c == wanted_c
+    }
+
+    /// The same for as many ticks as it takes until the limits do not matter.
+    #[track_caller]
+    fn assert_reaches_setpoint(&mut self, wanted_c: f64) {
+        assert!((0..20_000).any(|_| self.assert_setpoint(wanted_c)));
     }
 
     /// The contact of this finger with an object by the thesis's equations, in `f64`.

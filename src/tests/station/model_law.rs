@@ -7,7 +7,7 @@ use super::{TestBench, assert_close};
 use crate::device::Station;
 use crate::device::command::{Command, Reply};
 use crate::device::control::Law;
-use crate::settings::Settings;
+use crate::tests::tuned_settings;
 
 impl TestBench {
     /// A station that presents `material` on a plate that responds, untouched for 5 s.
@@ -22,7 +22,7 @@ impl TestBench {
 
 #[test]
 fn a_new_station_uses_the_law_model() {
-    let mut station = Station::new(&Settings::default());
+    let mut station = Station::new(&tuned_settings());
     let law = station.execute(&Command::Law(None));
     assert_eq!(law, Ok(Reply::Law(Law::Model)));
 }
@@ -49,7 +49,7 @@ fn the_preset_accounts_for_skin_that_has_not_recovered() {
     let contact = bench.contact("granite", 24.0);
     bench.steps(5000);
     bench.force_n = 0.0;
-    bench.steps(3);
+    bench.steps(7);
     let cooled_k = 34.0 - contact.at(5.0).skin_c;
     let expected_c = recovered_c - cooled_k * (1.0 - contact.ratio / contact.weight);
     let touched_c = bench.setpoint_c();
@@ -73,7 +73,7 @@ fn another_tissue_begins_without_the_history_of_the_one_before() {
     bench.force_n = 2.0;
     bench.steps(2000);
     bench.force_n = 0.0;
-    bench.steps(3);
+    bench.steps(7);
     let cooled_k = (bench.setpoint_c() - untouched.setpoint_c()).abs();
     assert!(cooled_k > 0.05, "{cooled_k} K");
     for one in [&mut bench, &mut untouched] {

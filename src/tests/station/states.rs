@@ -34,7 +34,7 @@ fn every_transition_of_the_state_diagram_is_taken() {
     let start = |bench: &mut TestBench| {
         bench.force_n = 0.0;
         bench.send_ok(&["arm"]);
-        bench.steps(2);
+        bench.steps(6);
         bench.send_ok(&["start"]);
         bench.step();
         assert_eq!(bench.state(), StateName::Preset);
@@ -48,7 +48,7 @@ fn every_transition_of_the_state_diagram_is_taken() {
     start(&mut bench);
     land(&mut bench);
     bench.force_n = 0.0;
-    bench.steps(2);
+    bench.steps(6);
     assert_eq!(bench.state(), StateName::Preset);
 
     bench.send_ok(&["arm"]);
@@ -88,7 +88,7 @@ fn state_and_id_report_the_station_and_the_device() {
     let mut bench = TestBench::new();
     assert_eq!(
         bench.send("state"),
-        "ok state=off fault=- material=- object_c=room mode=contact setpoint_c=- body=half-space"
+        "ok state=off fault=- material=- object_c=room mode=contact setpoint_c=- body=half-space tile=tuned"
     );
     bench.send_ok(&["material abs", "object 60", "mode semi-infinite", "law model", "arm"]);
     bench.plate_responds = true;
@@ -96,11 +96,11 @@ fn state_and_id_report_the_station_and_the_device() {
     bench.steps(3000);
     assert_eq!(
         bench.send("state"),
-        "ok state=armed fault=- material=abs object_c=60.00 mode=semi-infinite setpoint_c=42.00 limited body=half-space"
+        "ok state=armed fault=- material=abs object_c=60.00 mode=semi-infinite setpoint_c=42.00 limited body=half-space tile=tuned"
     );
     assert_eq!(
         bench.send("id"),
-        "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000 protocol=1 capabilities=upload,checksum,board,self-test,raw,course,flux,contact,surface,person"
+        "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000 protocol=1 capabilities=upload,checksum,board,self-test,raw,course,flux,contact,surface,person,untuned"
     );
 }
 
@@ -129,14 +129,16 @@ fn telemetry_is_streamed_at_its_interval() {
 #[test]
 fn a_hold_ramps_from_the_present_temperature() {
     let mut bench = TestBench::new();
-    bench.send_ok(&["arm", "hold 42"]);
+    bench.plate_responds = true;
+    bench.send_ok(&["law model", "arm", "hold 42"]);
+    let start_c = bench.display_c;
     for ramp_k in [1.0, 2.0] {
         bench.steps(999);
-        super::assert_close(bench.setpoint_c(), bench.display_c + ramp_k);
+        super::assert_close(bench.setpoint_c(), start_c + ramp_k);
     }
     bench.send_ok(&["hold 20"]);
     bench.steps(999);
-    super::assert_close(bench.setpoint_c(), bench.display_c - 1.0);
+    super::assert_close(bench.setpoint_c(), start_c + 1.0);
 }
 
 #[test]
@@ -147,5 +149,5 @@ fn tune_ends_a_hold() {
     // A touch aborts the identification.
     bench.force_n = 1.0;
     bench.steps(100);
-    super::assert_close(bench.setpoint_c(), bench.skin_c);
+    bench.assert_reaches_setpoint(bench.skin_c);
 }

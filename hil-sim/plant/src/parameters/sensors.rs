@@ -1,11 +1,13 @@
 //! Parameters of sensors and converter.
 
-use super::Source::{ClassValue, DataSheet, Design, Literature, Netlist, Recalled, Thesis};
+use super::Source::{
+    ClassValue, DataSheet, Design, Estimate, Literature, Netlist, Recalled, Thesis,
+};
 use super::entry::{Entry, entry, prefixed};
 use super::tolerance::{FIXED, Tolerance, absolute, between, factor, relative};
 use crate::sensors::{
-    ConverterParams, Delay, ForceParams, MirrorParams, ReferenceParams, SensorParams,
-    ThermistorParams,
+    ConverterParams, Delay, ForceCellParams, ForceParams, MirrorParams, ReferenceParams,
+    SensorParams, ThermistorParams,
 };
 
 /// Time constant of a thermistor on the display: range in the literature for such thermistors.
@@ -101,9 +103,9 @@ fn thermistor(thermistor: &mut ThermistorParams, lag: Tolerance) -> [Entry<'_>; 
     ]
 }
 
-fn force(force: &mut ForceParams) -> [Entry<'_>; 4] {
-    let ForceParams { zero_counts, counts_per_n, lag_s, delay_s } = force;
-    [
+fn force(force: &mut ForceParams) -> Vec<Entry<'_>> {
+    let ForceParams { zero_counts, counts_per_n, lag_s, delay_s, cell } = force;
+    let mut all = vec![
         entry!(zero_counts, "counts", "level without force", relative(0.02), (0.0, 4095.0), Design,),
         entry!(counts_per_n, "counts/N", "gain", relative(0.02), (1.0, 4095.0), Design,),
         entry!(
@@ -115,6 +117,73 @@ fn force(force: &mut ForceParams) -> [Entry<'_>; 4] {
             ClassValue,
         ),
         entry!(delay_s, "s", "dead time of its interface", FIXED, (0.0, Delay::MAX_S), Design,),
+    ];
+    all.extend(prefixed("cell", force_cell(cell)));
+    all
+}
+
+fn force_cell(cell: &mut ForceCellParams) -> [Entry<'_>; 7] {
+    let ForceCellParams {
+        mass_kg,
+        compliance_m_n,
+        damping,
+        vibration_n,
+        vibration_hz,
+        drift_n_s,
+        drift_max_n,
+    } = cell;
+    [
+        entry!(
+            mass_kg,
+            "kg",
+            "mass of plate, module, sink and fan, which rest on the cell",
+            relative(0.1),
+            (0.01, 10.0),
+            Estimate("sink and fan of the reference design"),
+        ),
+        entry!(
+            compliance_m_n,
+            "m/N",
+            "deflection of the load cell; 0 is rigid. 5e-8 and 1.27e-6 resonate at 1000 and 200 Hz under 0.5 kg, 3e-5 at 41 Hz",
+            between(5e-8, 1.27e-6).logarithmic(),
+            (0.0, 1e-3),
+            ClassValue,
+        ),
+        entry!(
+            damping,
+            "1",
+            "damping of its resonance, relative to the critical one",
+            factor(2.0),
+            (1e-3, 0.9),
+            Estimate("an undamped metal structure"),
+        ),
+        entry!(
+            vibration_n,
+            "N",
+            "amplitude of the fan's vibration in the cell's force",
+            between(0.0, 5e-3),
+            (0.0, 1.0),
+            Estimate(
+                "a fan beside the stack; a rotor of 20 g of class G6.3 on it gives 0.04 N at 50 Hz"
+            ),
+        ),
+        entry!(
+            vibration_hz,
+            "Hz",
+            "frequency of that vibration",
+            between(30.0, 200.0).logarithmic(),
+            (1.0, 500.0),
+            Estimate("fans of 1800 to 12000 revolutions a minute"),
+        ),
+        entry!(
+            drift_n_s,
+            "N/s",
+            "drift of the cell's zero by warming and creep",
+            between(-2e-3, 2e-3),
+            (-0.1, 0.1),
+            ClassValue,
+        ),
+        entry!(drift_max_n, "N", "where that drift ends", FIXED, (0.0, 10.0), ClassValue,),
     ]
 }
 

@@ -5,6 +5,7 @@
 mod converter;
 mod defects;
 mod flux;
+mod force_cell;
 mod lag;
 mod params;
 mod thermistor;
@@ -16,11 +17,13 @@ pub use converter::ConverterParams;
 pub use defects::{Circuit, ForceDefect, SensorDefects, ThermistorDefect};
 pub(crate) use flux::FluxSensor;
 pub use flux::{FluxCircuit, FluxDefect, FluxParams};
+pub use force_cell::ForceCellParams;
 pub(crate) use params::BONDED;
 pub use params::{ForceParams, MirrorParams, ReferenceParams, SensorParams};
 pub use thermistor::ThermistorParams;
 
 use converter::{CODES, Converter};
+use force_cell::ForceCell;
 pub(crate) use lag::Delay;
 use lag::FirstOrderLag;
 use thermistor::{Site, Thermistor};
@@ -106,6 +109,7 @@ pub struct SensorReadings {
 pub struct Sensors {
     params: SensorParams,
     thermistors: [Thermistor; THERMISTORS],
+    force_cell: ForceCell,
     force_delay: Delay,
     force_lag: FirstOrderLag,
     /// Output of the force sensor behind its lag, N.
@@ -140,6 +144,7 @@ impl Sensors {
             thermistors: std::array::from_fn(|i| {
                 Thermistor::new(params.thermistors[i], &sites[i], excitation_v)
             }),
+            force_cell: ForceCell::new(params.force.cell, state.force_n),
             force_delay: Delay::new(params.force.delay_s, state.force_n),
             force_lag: FirstOrderLag::new(params.force.lag_s),
             force_n: state.force_n,
@@ -175,7 +180,7 @@ impl Sensors {
         for (thermistor, site) in self.thermistors.iter_mut().zip(&sites) {
             thermistor.step(step_s, site);
         }
-        let delayed_n = self.force_delay.push(state.force_n);
+        let delayed_n = self.force_delay.push(self.force_cell.step(step_s, state.force_n));
         if !self.defects.force.stuck {
             self.force_n = self.force_lag.step_response(step_s, self.force_n, delayed_n);
         }

@@ -2,6 +2,7 @@
 
 use super::THERMISTORS;
 use super::converter::ConverterParams;
+use super::force_cell::ForceCellParams;
 use super::thermistor::ThermistorParams;
 
 /// Force sensor: transducer and amplifier with a live zero.
@@ -15,6 +16,8 @@ pub struct ForceParams {
     pub lag_s: f64,
     /// Dead time of its interface, s; rounded to steps of the plant.
     pub delay_s: f64,
+    /// The load cell and what rests on it.
+    pub cell: ForceCellParams,
 }
 
 impl ForceParams {
@@ -112,7 +115,21 @@ impl SensorParams {
         ],
         divider_lag_s: 0.6e-3,
         skin_sees_contact: 0.0125,
-        force: ForceParams { zero_counts: 410.0, counts_per_n: 300.0, lag_s: 1e-3, delay_s: 0.0 },
+        force: ForceParams {
+            zero_counts: 410.0,
+            counts_per_n: 300.0,
+            lag_s: 1e-3,
+            delay_s: 0.0,
+            cell: ForceCellParams {
+                mass_kg: 0.5,
+                compliance_m_n: 0.0,
+                damping: 0.03,
+                vibration_n: 0.0,
+                vibration_hz: 50.0,
+                drift_n_s: 0.0,
+                drift_max_n: 0.15,
+            },
+        },
         mirror: MirrorParams {
             counts_per_a: 400.0,
             gain_error: 0.0,

@@ -9,7 +9,7 @@ use thermal_device::StateName;
 use thermal_device::learning::{FingerKnowledge, FluxSensorTest};
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
-use thermal_protocol::{CONTACT_MODEL_WORDS, Request};
+use thermal_protocol::{CONTACT_MODEL_WORDS, Request, TUNED_WORD, UNTUNED_WORD};
 use thermal_settings::{FluxSensor, Settings};
 
 use super::Fields;
@@ -78,6 +78,9 @@ pub struct Status {
     pub limited: bool,
     /// Word for the body of the object.
     pub body: String,
+    /// Whether the tile was identified; if not, set-points are limited to a small range and slow. `None` from firmware without
+    /// the capability `untuned`.
+    pub is_tuned: Option<bool>,
 }
 
 fn mode_word<S: Serializer>(mode: &ContactModel, serializer: S) -> Result<S::Ok, S::Error> {
@@ -99,6 +102,12 @@ impl Status {
             setpoint_c: reply.number_or_unknown("setpoint_c")?,
             limited: reply.words().any(|word| word == "limited"),
             body: reply.word("body")?.into(),
+            is_tuned: match reply.word("tile") {
+                None => None,
+                Some(TUNED_WORD) => Some(true),
+                Some(UNTUNED_WORD) => Some(false),
+                Some(_) => return None,
+            },
         })
     }
 }

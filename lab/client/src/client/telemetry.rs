@@ -6,6 +6,7 @@ use serde::Serialize;
 use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
 use thermal_device::{StateName, TelemetryFields};
+use thermal_protocol::UNTUNED_WORD;
 
 use super::fields::{knowledge, knowledge_word_if_known, number_or_unknown, state, state_word};
 
@@ -44,8 +45,10 @@ pub struct Telemetry {
     /// What is known of the finger by its flux.
     #[serde(serialize_with = "knowledge_word_if_known", skip_serializing_if = "Option::is_none")]
     pub finger: Option<FingerKnowledge>,
-    /// Whether the set-point was limited to its safe range.
+    /// Whether the set-point was limited to its range.
     pub limited: bool,
+    /// Whether the tile was never identified, unless the line says `limited` in place of it.
+    pub is_untuned: bool,
 }
 
 /// Force below which a finger counts as lifted, N.
@@ -123,6 +126,7 @@ impl Telemetry {
                 word => Some(knowledge(word)?),
             },
             limited: remark == "limited",
+            is_untuned: remark == UNTUNED_WORD,
         })
     }
 
@@ -136,11 +140,12 @@ impl Telemetry {
         line.strip_prefix("T ")?.split(' ').next()?.parse().ok()
     }
 
-    /// The last word of the line: the fault by which the device is tripped, or `limited`.
+    /// The last word of the line: the fault by which the device is tripped, `limited` or `untuned`.
     pub const fn remark(&self) -> Option<&'static str> {
         match self.state.fault() {
             Some(fault) => Some(fault.name()),
             None if self.limited => Some("limited"),
+            None if self.is_untuned => Some(UNTUNED_WORD),
             None => None,
         }
     }

@@ -152,10 +152,13 @@ fn device(ui: &mut Ui, model: &Model, state: &mut OperatorState, now: Duration) 
                 };
                 ui.label(RichText::new(word).heading().strong().color(colour));
                 ui.label(meaning);
-                if view.last.limited {
-                    ui.label(
-                        RichText::new("set-point limited to 15 to 42 °C").color(colours.warning),
-                    );
+                let warning = match view.last {
+                    last if last.limited => Some("set-point limited to its range"),
+                    last if last.is_untuned => Some("tile not tuned: send tune"),
+                    _ => None,
+                };
+                if let Some(warning) = warning {
+                    ui.label(RichText::new(warning).color(colours.warning));
                 }
             }
         }

@@ -77,6 +77,7 @@ pub fn telemetry(tick: u32, state: StateName, skin_c: f64) -> Update {
             surface_c: None,
             finger: None,
             limited: false,
+            is_untuned: false,
         },
         at: Duration::from_millis(tick.into()),
         lost_before: 0,

@@ -6,7 +6,7 @@ use thermal_settings::Settings;
 use crate::estimate::{ObserverParameters, PlateModel};
 use crate::low_pass::Coefficient;
 use crate::pi::{PiCoefficients, UpdatePeriod};
-use crate::reference::PlainLimits;
+use crate::reference::ReferenceLimits;
 
 /// Largest residual of the plate's observer, K, that is permitted on a tile that has been identified. The residual is
 /// the difference between the display's reading and the modelled reading, filtered, plus 0.5 K per ampere of the
@@ -31,8 +31,8 @@ pub struct ControlParameters {
     /// Constants of the plate's observer, on which the law `model`, the bridge voltage, and the fault `unlike-model`
     /// depend.
     pub observer: ObserverParameters,
-    /// How the reference of the laws `pi` and `pi-10hz` is limited; `None` if it is not.
-    pub plain_limits: Option<PlainLimits>,
+    /// How the reference is limited.
+    pub reference_limits: ReferenceLimits,
 }
 
 impl ControlParameters {
@@ -53,7 +53,7 @@ impl ControlParameters {
                     OBSERVER_RESIDUAL_MAX_NOMINAL_TILE
                 },
             },
-            plain_limits: PlainLimits::new(&settings.tile),
+            reference_limits: ReferenceLimits::new(&settings.tile),
         }
     }
 }

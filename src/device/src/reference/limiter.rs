@@ -1,19 +1,23 @@
-//! Limits of the reference of the plain laws, so that the true surface of the display stays within its limits although these laws
-//! overshoot.
+//! Limits of the reference, so that the true surface of the display stays within its limits although thermistors lag behind it.
 //!
-//! The law `model` knows the lag of the display's thermistor, and passes a set-point by less than 0.1 K. The laws `pi` and
-//! `pi-10hz` see the reading only, and their loop is as slow as its effective dead time: lag, dead time, and half the time between
-//! two updates. Therefore their reference approaches the limits of the surface exponentially, with a time constant of several
-//! such times; and because a finger that lands or lifts moves the surface before a slow thermistor shows it, the ends of their
-//! range are drawn in. A tile that was never identified has an unknown lag, so its reference is not limited.
+//! The law `model` knows the lag of a tile that was identified, and passes a set-point by less than 0.1 K: there its reference is not
+//! limited. The laws `pi` and `pi-10hz` see the reading only, and their loop is as slow as its effective dead time: lag, dead time,
+//! and half the time between two updates. Therefore their reference approaches the limits of the surface exponentially, with a
+//! time constant of several such times; and because a finger that lands or lifts moves the surface before a slow thermistor shows
+//! it, the ends of their range are drawn in.
+//!
+//! A tile that was never identified has an unknown lag, so its reference is limited under every law: it moves slowly, in a range so
+//! narrow that what the slowest thermistors hide does not matter.
 
 use contact_model::fixed_point::{Celsius, Fraction, saturating_product, to_fixed};
 use thermal_settings::Tile;
 
 use super::Reference;
 use crate::TICK_HZ;
+use crate::control::Law;
 use crate::safety::limits::{
     SETPOINT_MAX_C, SETPOINT_MIN_C, SURFACE_MAX_WITHOUT_FAULT, SURFACE_MIN_WITHOUT_FAULT,
+    UNTUNED_RATE_MAX_K_S, UNTUNED_SETPOINT_MAX, UNTUNED_SETPOINT_MIN,
 };
 
 /// Time constant with which the reference approaches the warm limit of the surface, in effective dead times. With
@@ -32,30 +36,56 @@ const DRAWN_IN_FROM_S: f64 = 0.2;
 const COLD_END_K: f64 = 2.0;
 const WARM_END_K: f64 = 0.4;
 
-/// Limits of the reference of the plain laws, by the tile.
+/// Limits of the reference, by the tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlainLimits {
-    /// Part of its distance from the limit of the surface by which the reference rises in a tick at most.
-    part: Fraction,
+pub struct ReferenceLimits {
+    largest_step: LargestStep,
     /// Range of the set-point, °C.
     min: Celsius,
     max: Celsius,
 }
 
-impl PlainLimits {
-    /// Limits for a tile, in floating point, so not for the tick; `None` if it was never identified.
-    pub fn new(tile: &Tile) -> Option<Self> {
+/// How far the reference moves in a tick at most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum LargestStep {
+    /// By so much, K, under every law, because the tile was never identified.
+    Untuned(Celsius),
+    /// Under the plain laws, by this part of its distance from the limit of the surface.
+    Plain(Fraction),
+}
+
+impl ReferenceLimits {
+    const UNTUNED: Self = Self {
+        largest_step: LargestStep::Untuned(Celsius::from_bits(
+            UNTUNED_RATE_MAX_K_S.to_bits() / TICK_HZ as i32,
+        )),
+        min: UNTUNED_SETPOINT_MIN,
+        max: UNTUNED_SETPOINT_MAX,
+    };
+
+    /// Limits for a tile, in floating point, so not for the tick.
+    pub fn new(tile: &Tile) -> Self {
         if !tile.is_identified() {
-            return None;
+            return Self::UNTUNED;
         }
         let dead_time_s = tile.sensor_lag_s + tile.dead_time_s + HALF_UPDATE_S;
         let drawn_in_k = (DRAWN_IN_K_S * (dead_time_s - DRAWN_IN_FROM_S)).max(0.0);
         let approach_ticks = APPROACH_PER_DEAD_TIME * dead_time_s * f64::from(TICK_HZ);
-        Some(Self {
-            part: to_fixed(1.0 / approach_ticks),
+        Self {
+            largest_step: LargestStep::Plain(to_fixed(1.0 / approach_ticks)),
             min: to_fixed(SETPOINT_MIN_C + COLD_END_K + drawn_in_k),
             max: to_fixed(SETPOINT_MAX_C - WARM_END_K - drawn_in_k),
-        })
+        }
+    }
+
+    /// Whether they are those of a tile that was never identified, which hold under every law.
+    pub const fn are_of_untuned_tile(&self) -> bool {
+        matches!(self.largest_step, LargestStep::Untuned(_))
+    }
+
+    /// Whether the reference of this law is limited.
+    pub fn hold_for(&self, law: Law) -> bool {
+        law != Law::Model || self.are_of_untuned_tile()
     }
 
     /// The reference that the display follows in place of `wanted`. It lies at most one step from `last`, the reference of the
@@ -63,14 +93,27 @@ impl PlainLimits {
     pub fn limit(&self, wanted: Reference, last: Option<Reference>, reading: Celsius) -> Reference {
         let wanted_c = wanted.setpoint.celsius();
         let last_c = last.map_or(reading, |last| last.setpoint.celsius());
-        let step = |distance: Celsius| -> Celsius {
-            saturating_product(distance.max(Celsius::ZERO), self.part)
-        };
-        let up = step(SURFACE_MAX_WITHOUT_FAULT.saturating_sub(last_c));
-        let down = step(last_c.saturating_sub(SURFACE_MIN_WITHOUT_FAULT)) >> COOLING_SLOWER_LOG2;
         let allowed_c = wanted_c.max(self.min).min(self.max);
-        let next_c = allowed_c.max(last_c.saturating_sub(down)).min(last_c.saturating_add(up));
-        Reference { limited: wanted.limited || allowed_c != wanted_c, ..Reference::at(next_c) }
+        let toward_allowed = |down: Celsius, up: Celsius| {
+            allowed_c.max(last_c.saturating_sub(down)).min(last_c.saturating_add(up))
+        };
+        let (next_c, unlimited_c) = match self.largest_step {
+            LargestStep::Untuned(step) => {
+                let next_c = toward_allowed(step, step);
+                (next_c, next_c)
+            }
+            LargestStep::Plain(part) => {
+                let step = |distance: Celsius| -> Celsius {
+                    saturating_product(distance.max(Celsius::ZERO), part)
+                };
+                let up = step(SURFACE_MAX_WITHOUT_FAULT.saturating_sub(last_c));
+                let down =
+                    step(last_c.saturating_sub(SURFACE_MIN_WITHOUT_FAULT)) >> COOLING_SLOWER_LOG2;
+                // A plain law lags behind its set-point anyway, so only the range is reported.
+                (toward_allowed(down, up), allowed_c)
+            }
+        };
+        Reference { limited: wanted.limited || unlimited_c != wanted_c, ..Reference::at(next_c) }
     }
 }
 

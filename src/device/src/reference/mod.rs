@@ -23,7 +23,7 @@ use crate::estimate::{
 };
 use crate::safety::Setpoint;
 use equivalent_forces::equivalent_forces;
-pub use limiter::PlainLimits;
+pub use limiter::ReferenceLimits;
 use setpoint_lead::SetpointLead;
 use skin_on_object::{BodiesBeforeContact, ContactPairFactors, SkinOnObject};
 

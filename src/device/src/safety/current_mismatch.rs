@@ -1,7 +1,7 @@
 //! Detects a measured current that differs from the demanded one.
 
 use super::Fault;
-use super::debounce::UpDownDebounceCounter;
+use super::UpDownDebounceCounter;
 use super::detectors::EVALUATION_INTERVAL_TICKS;
 use crate::drive::Current;
 

@@ -2,8 +2,8 @@
 
 use contact_model::fixed_point::Celsius;
 
+use super::UpDownDebounceCounter;
 use super::current_mismatch::CurrentMismatchDetector;
-use super::debounce::UpDownDebounceCounter;
 use super::frozen_sample_detector::FrozenSampleDetector;
 use super::jump_detector::JumpDetector;
 use super::limits::{SUPPLY_MAX, SUPPLY_MIN};

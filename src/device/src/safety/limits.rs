@@ -20,6 +20,13 @@ pub const SETPOINT_MAX_C: f64 = 42.0;
 pub const SETPOINT_MIN: Celsius = fixed_celsius(SETPOINT_MIN_C);
 /// Hottest set-point in fixed point, 42 °C, to which [`Setpoint`](super::Setpoint) clamps.
 pub const SETPOINT_MAX: Celsius = fixed_celsius(SETPOINT_MAX_C);
+/// Coldest set-point of a tile that was never identified, °C. With display thermistors at the slow end of the parameter box
+/// (0.5 s) and a finger that lands with 10 N, the surface passes it by 1.6 K.
+pub const UNTUNED_SETPOINT_MIN: Celsius = Celsius::lit("20");
+/// Hottest set-point of a tile that was never identified, °C.
+pub const UNTUNED_SETPOINT_MAX: Celsius = Celsius::lit("38");
+/// Largest rate, K/s, at which the set-point of such a tile moves: what a thermistor that lags by 0.5 s hides is then 0.5 K.
+pub const UNTUNED_RATE_MAX_K_S: Celsius = Celsius::lit("1");
 /// Coldest true surface of the display that the control may cause while no fault is present, °C.
 pub const SURFACE_MIN_WITHOUT_FAULT: Celsius = fixed_celsius(14.0);
 /// Warmest true surface of the display that the control may cause while no fault is present, °C.

@@ -61,6 +61,7 @@ mod trip_cause;
 mod validate_readings;
 mod wrong_way_detector;
 
+pub(crate) use debounce::UpDownDebounceCounter;
 pub use detectors::{FaultDetectors, PreviousDemandAndResidual};
 pub use fault::{Fault, ThermistorId};
 pub use fault_latch::FaultLatch;

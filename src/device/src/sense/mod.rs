@@ -1,13 +1,14 @@
 //! Sensing: converts each tick's sums of analogue-to-digital conversions to temperatures, force and current.
 
 mod calibration_tables;
+mod contact_detector;
 mod force_sensor;
 mod supply_voltage;
 mod thermistor;
 mod thermistor_average;
 
 pub use calibration_tables::CalibrationTables;
-pub use force_sensor::{CONTACT_DEBOUNCE_TICKS, ContactDetector};
+pub use contact_detector::{CONTACT_DEBOUNCE_TICKS, ContactDetector};
 pub use supply_voltage::SupplyVoltage;
 pub use thermistor::ThermistorFault;
 pub use thermistor_average::{ThermistorAverage, ThermistorAverages};
@@ -297,16 +298,25 @@ impl SampleConverter {
     }
 
     /// Moves the stored zero of the force sensor towards this tick's force signal, unless a finger touches the display
-    /// or the signal is more than 0.06 N from the zero in the settings. To be called in each tick with valid readings,
-    /// after `contact` has been updated by this tick's force.
+    /// or the signal is more than 0.21 N from the zero in the settings; takes it anew if the force sensor's zero `has_moved`. To be
+    /// called in each tick with valid readings, after `contact` has been updated by this tick's force.
     pub fn track_force_zero_unless_touching(
         &mut self,
         samples: &Samples,
         contact: &ContactDetector,
+        has_moved: bool,
     ) {
-        if !contact.touching() {
-            self.force.track_zero(samples.force, contact.is_force_nonzero());
+        if has_moved {
+            self.force.restart_zero();
         }
+        if !contact.touching() {
+            self.force.track_zero(samples.force, contact.may_be_finger());
+        }
+    }
+
+    /// Whether the force signal of the last tick was below its zero by more than 8 mN, which noise is not.
+    pub const fn is_force_below_zero(&self) -> bool {
+        self.force.is_below_zero()
     }
 
     /// Replaces the calibration of converter and thermistors from the next tick on. The force sensor's zero is not

@@ -158,6 +158,7 @@ impl Station {
             mode: self.object.mode,
             setpoint: reference.map(|reference| reference.setpoint.celsius()),
             limited: reference.is_some_and(|reference| reference.limited),
+            is_tuned: !self.reference_limits.are_of_untuned_tile(),
             body: self.object.body_name,
         }
     }

@@ -9,7 +9,9 @@ use crate::estimate::PlateEstimateBeforeReading;
 use crate::events::DeviceEventKind;
 use crate::reference::Reference;
 use crate::safety::Setpoint;
-use crate::safety::limits::{SETPOINT_MAX, SETPOINT_MIN};
+use crate::safety::limits::{
+    SETPOINT_MAX, SETPOINT_MIN, UNTUNED_RATE_MAX_K_S, UNTUNED_SETPOINT_MAX, UNTUNED_SETPOINT_MIN,
+};
 use crate::stimulus::{
     Approach, Course, CourseChunk, CourseEnd, CourseStart, FOLLOWING_ERROR_REPORTED, Hold,
     PlayOrder, Player, Stimulus, StimulusTemperatures, TemperatureKind,
@@ -27,6 +29,26 @@ impl Station {
         }
     }
 
+    /// Refuses set-points, °C, or a rate, K/s, that a tile which was never identified cannot be given.
+    fn require_within_limits_of_untuned_tile<const N: usize>(
+        &self,
+        setpoints: [Celsius; N],
+        rate_k_s: Celsius,
+    ) -> Result<(), Refused> {
+        if !self.reference_limits.are_of_untuned_tile() {
+            return Ok(());
+        }
+        for celsius in setpoints {
+            if !(UNTUNED_SETPOINT_MIN..=UNTUNED_SETPOINT_MAX).contains(&celsius) {
+                return Err(Refused::UntunedRange(celsius));
+            }
+        }
+        if rate_k_s > UNTUNED_RATE_MAX_K_S {
+            return Err(Refused::UntunedRate(rate_k_s));
+        }
+        Ok(())
+    }
+
     #[inline(never)]
     pub(super) fn execute_hold(
         &mut self,
@@ -34,6 +56,7 @@ impl Station {
         rate_k_s: Celsius,
     ) -> Result<(), Refused> {
         self.require_driven("hold")?;
+        self.require_within_limits_of_untuned_tile([target.celsius()], rate_k_s)?;
         let follows_stimulus =
             self.stimulus_has_reference && matches!(self.state, State::Stimulus(_));
         let start = match self.last.reference {
@@ -71,12 +94,13 @@ impl Station {
         let course = self.courses.loaded().ok_or(Refused::NoCourse)?;
         let base = self.base_of(course);
         let (smallest, largest) = course.extremes();
-        for extreme in [smallest, largest] {
-            let celsius = extreme.saturating_add(base);
+        let extremes = [smallest.saturating_add(base), largest.saturating_add(base)];
+        for celsius in extremes {
             if !(SETPOINT_MIN..=SETPOINT_MAX).contains(&celsius) {
                 return Err(Refused::CourseOutOfRange(celsius));
             }
         }
+        self.require_within_limits_of_untuned_tile(extremes, course.fastest_k_s())?;
         let dose = course.dose(base).repeated_on_top_of(order.play_count, self.detectors.dose());
         if dose.reaches_limit() {
             return Err(Refused::CourseDose(dose));

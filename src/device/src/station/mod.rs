@@ -33,7 +33,7 @@ use crate::estimate::{
 use crate::events::{DeviceEvent, EventReporter};
 use crate::identification::{AbortReason, NormalEquationAccumulator};
 use crate::learning::{FingerLearning, FluxParameters};
-use crate::reference::{PlainLimits, Reference, ReferenceGenerator};
+use crate::reference::{Reference, ReferenceGenerator, ReferenceLimits};
 use crate::safety::{
     self, Fault, FaultDetectors, FaultLatch, PreviousDemandAndResidual, SelfTestReport,
     SelfTestResult, SelfTestStep, ThermalDose, TripCause, ValidReadings,
@@ -67,7 +67,7 @@ pub struct Station {
     voltage: VoltageFeedforward,
     state: State,
     reference: ReferenceGenerator,
-    plain_limits: Option<PlainLimits>,
+    reference_limits: ReferenceLimits,
     estimator: Estimator,
     averages: ThermistorAverages,
     detectors: FaultDetectors,
@@ -168,7 +168,7 @@ impl Station {
             learning: flux_sensor
                 .map(|sensor| FingerLearning::new(sensor, PlaceBeforeContact::Air)),
             reference: ReferenceGenerator::default(),
-            plain_limits: parameters.plain_limits,
+            reference_limits: parameters.reference_limits,
             due: DueWork::default(),
             controller: Controller::new(&parameters, limit),
             voltage: VoltageFeedforward::new(&settings.module),
@@ -212,7 +212,7 @@ impl Station {
 
     fn set_control_parameters(&mut self, parameters: &ControlParameters) {
         self.controller.set_pi_gains(parameters);
-        self.plain_limits = parameters.plain_limits;
+        self.reference_limits = parameters.reference_limits;
         self.estimator.plate.set_parameters(&parameters.observer);
     }
 
@@ -236,8 +236,8 @@ impl Station {
             Ok(valid) => {
                 let estimate = self.detect_touch_and_update_estimates(samples, &valid);
                 let mut reference = self.reference_for_present_state(&estimate);
-                if self.controller.law() != Law::Model {
-                    self.limit_reference_of_plain_law(&mut reference, valid.display);
+                if self.reference_limits.hold_for(self.controller.law()) {
+                    self.limit_reference(&mut reference, valid.display);
                 }
                 let demand =
                     self.choose_bridge_demand(&valid, samples, &estimate, reference.as_ref());
@@ -355,8 +355,9 @@ impl Station {
         valid: &ValidReadings,
     ) -> PlateEstimateBeforeReading {
         let previously_touching = self.contact.touching();
-        self.contact.update_contact(valid.force);
-        self.sensors.track_force_zero_unless_touching(samples, &self.contact);
+        let is_below_zero = self.sensors.is_force_below_zero();
+        let zero_has_moved = self.contact.update_contact(valid.force, is_below_zero);
+        self.sensors.track_force_zero_unless_touching(samples, &self.contact, zero_has_moved);
         let touching = self.contact.touching();
         // The table is asked only in the states in which a touch changes something, which saves 30 instructions a tick.
         match (&self.state, touching) {
@@ -379,15 +380,15 @@ impl Station {
         self.estimator.update_estimates(valid, force, landed_ticks, pair, bodies)
     }
 
-    /// Limits the reference under a plain law, if that chooses the current.
+    /// Limits the reference, if the control law chooses the current.
     #[cold]
     #[inline(never)]
-    fn limit_reference_of_plain_law(&self, reference: &mut Option<Reference>, reading: Celsius) {
+    fn limit_reference(&self, reference: &mut Option<Reference>, reading: Celsius) {
         // An identification chooses its own current.
-        if let (Some(limits), Some(wanted)) = (&self.plain_limits, reference)
+        if let Some(wanted) = reference
             && !matches!(self.state, State::Armed(ArmedTask::Identify(_)))
         {
-            *wanted = limits.limit(*wanted, self.last.reference, reading);
+            *wanted = self.reference_limits.limit(*wanted, self.last.reference, reading);
         }
     }
 
@@ -633,6 +634,7 @@ impl Station {
             state: self.state.state_name(),
             setpoint: reference.map(|reference| reference.setpoint.celsius()),
             limited: reference.is_some_and(|reference| reference.limited),
+            is_tuned: !self.reference_limits.are_of_untuned_tile(),
             display: readings.display.ok(),
             sink: readings.sink.ok(),
             skin: readings.skin.ok(),

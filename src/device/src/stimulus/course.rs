@@ -90,6 +90,8 @@ pub struct Course {
     kind: TemperatureKind,
     smallest: Celsius,
     largest: Celsius,
+    /// Fastest rate between two points, K/s, less the rounding of their temperatures.
+    fastest_k_s: Celsius,
     /// Time at the largest temperature that gives the dose of the course; set by [`Self::check_whole`].
     equivalent: EquivalentTime,
 }
@@ -108,6 +110,7 @@ impl Course {
             kind,
             smallest: Celsius::MAX,
             largest: Celsius::MIN,
+            fastest_k_s: Celsius::ZERO,
             equivalent: EquivalentTime::ZERO,
         }
     }
@@ -118,6 +121,7 @@ impl Course {
         self.kind = kind;
         self.smallest = Celsius::MAX;
         self.largest = Celsius::MIN;
+        self.fastest_k_s = Celsius::ZERO;
         self.equivalent = EquivalentTime::ZERO;
     }
 
@@ -137,6 +141,7 @@ impl Course {
         self.kind = course.kind;
         self.smallest = course.smallest;
         self.largest = course.largest;
+        self.fastest_k_s = course.fastest_k_s;
         self.equivalent = course.equivalent;
         follows && self.points.len() == course.points.len()
     }
@@ -153,6 +158,7 @@ impl Course {
         if !(min..=max).contains(&point.temperature) {
             return Err(CourseError::OutOfRange);
         }
+        let mut rate_k_s = Celsius::ZERO;
         if let Some(before) = self.points.last() {
             if point.time_ms <= before.time_ms {
                 return Err(CourseError::TimeGoesBack(point.time_ms, before.time_ms));
@@ -161,16 +167,20 @@ impl Course {
             let duration_ms = point.time_ms - before.time_ms;
             // In steps of 2^-22 K per ms.
             const RATE_MAX: u64 = ((COURSE_RATE_MAX_K_S as u64) << Celsius::FRAC_NBITS) / 1000;
+            let rate = u64::from(way) * 1000 / u64::from(duration_ms);
             // One step more, so that a rate at the limit is not refused for the rounding of its temperatures.
             if u64::from(way) > (RATE_MAX + 1) * u64::from(duration_ms) {
-                let rate = u64::from(way) * 1000 / u64::from(duration_ms);
                 let half = 1 << (Celsius::FRAC_NBITS - 1);
                 return Err(CourseError::TooFast(((rate + half) >> Celsius::FRAC_NBITS) as u32));
             }
+            // One step less, for the same rounding.
+            let rate = u64::from(way.saturating_sub(1)) * 1000 / u64::from(duration_ms);
+            rate_k_s = Celsius::from_bits(rate as i32);
         }
         (self.points.push(point)).map_err(|_| CourseError::TooManyPoints)?;
         self.smallest = self.smallest.min(point.temperature);
         self.largest = self.largest.max(point.temperature);
+        self.fastest_k_s = self.fastest_k_s.max(rate_k_s);
         Ok(())
     }
 
@@ -228,6 +238,11 @@ impl Course {
     /// Smallest and largest temperature of the points, °C, or K above the skin.
     pub const fn extremes(&self) -> (Celsius, Celsius) {
         (self.smallest, self.largest)
+    }
+
+    /// Fastest rate between two points, K/s, less the rounding of their temperatures.
+    pub const fn fastest_k_s(&self) -> Celsius {
+        self.fastest_k_s
     }
 }
 

@@ -2,9 +2,8 @@ use std::vec::Vec;
 
 use super::*;
 
-fn limits(sensor_lag_s: f64) -> PlainLimits {
-    let tile = Tile { sensor_lag_s, dead_time_s: 0.02, ..Tile::FACTORY_DEFAULT };
-    PlainLimits::new(&tile).expect("another tile than the factory's")
+fn limits(sensor_lag_s: f64) -> ReferenceLimits {
+    ReferenceLimits::new(&Tile { sensor_lag_s, dead_time_s: 0.02, ..Tile::FACTORY_DEFAULT })
 }
 
 fn reference(celsius: f64) -> Reference {
@@ -12,7 +11,7 @@ fn reference(celsius: f64) -> Reference {
 }
 
 /// Set-points, °C, of so many ticks from a reading on the way to a wanted set-point.
-fn way(limits: &PlainLimits, reading_c: f64, wanted_c: f64, ticks: usize) -> Vec<f64> {
+fn way(limits: &ReferenceLimits, reading_c: f64, wanted_c: f64, ticks: usize) -> Vec<f64> {
     let mut last = None;
     let mut next = || {
         let next = limits.limit(reference(wanted_c), last, Celsius::from_num(reading_c));
@@ -65,6 +64,27 @@ fn a_wanted_set_point_that_is_near_enough_is_taken_as_it_is() {
 }
 
 #[test]
-fn a_tile_that_was_never_identified_has_no_limits() {
-    assert_eq!(PlainLimits::new(&Tile::FACTORY_DEFAULT), None);
+fn only_the_plain_laws_of_a_tile_that_was_identified_are_limited() {
+    let (tuned, untuned) = (limits(0.1), ReferenceLimits::new(&Tile::FACTORY_DEFAULT));
+    for (law, tuned_is_limited) in [(Law::Model, false), (Law::Pi, true), (Law::Pi10Hz, true)] {
+        assert_eq!(tuned.hold_for(law), tuned_is_limited, "{law:?}");
+        assert!(untuned.hold_for(law), "{law:?}");
+    }
+}
+
+/// 20 to 38 °C, 1 K/s.
+#[test]
+fn the_reference_of_a_tile_that_was_never_identified_moves_slowly_in_a_small_range() {
+    let limits = ReferenceLimits::new(&Tile::FACTORY_DEFAULT);
+    for (wanted_c, end_c, k_s) in [(42.0, 38.0, 1.0), (15.0, 20.0, -1.0)] {
+        for (tick, celsius) in way(&limits, 27.0, wanted_c, 20_000).iter().enumerate() {
+            let t_s = 1e-3 * (tick + 1) as f64;
+            let exact_c = if k_s > 0.0 { (27.0 + t_s).min(end_c) } else { (27.0 - t_s).max(end_c) };
+            assert!((celsius - exact_c).abs() < 5e-3, "{t_s} s: {celsius}, not {exact_c} °C");
+        }
+    }
+    let arrived = limits.limit(reference(30.0), Some(reference(30.0)), Celsius::ZERO);
+    assert!(!arrived.limited);
+    let on_the_way = limits.limit(reference(30.0), Some(reference(29.0)), Celsius::ZERO);
+    assert!(on_the_way.limited);
 }
