@@ -17,6 +17,8 @@ struct Bench {
     sensors: SampleConverter,
     touch: ContactDetector,
     sum: u16,
+    /// Number of the last tick.
+    number: u32,
 }
 
 impl Bench {
@@ -26,6 +28,7 @@ impl Bench {
             sensors: SampleConverter::new(&Settings::default()),
             touch: ContactDetector::default(),
             sum: 0,
+            number: 0,
         };
         bench.scan(SCANS_BEFORE);
         bench
@@ -39,10 +42,11 @@ impl Bench {
     fn tick(&mut self, force_n: f64) {
         self.plant.step(1e-3, &state(force_n));
         self.scan(SCANS_PER_TICK - SCANS_BEFORE);
+        self.number += 1;
         let samples = Samples { force: self.sum, ..Samples::default() };
         let force = self.sensors.convert_samples(&samples).force.expect("a sound sensor");
         let below_zero = self.sensors.is_force_below_zero();
-        let zero_has_moved = self.touch.update_contact(force, below_zero);
+        let zero_has_moved = self.touch.update_contact(self.number, force, below_zero);
         self.sensors.track_force_zero_unless_touching(&samples, &self.touch, zero_has_moved);
         self.sum = 0;
         self.scan(SCANS_BEFORE);

@@ -1,5 +1,6 @@
 //! The display held at an end of its range, or moved there by a host line, a correction or a finger: nothing trips.
 
+use documented_figures::assert_figure;
 use system_tests::{between, forces, host, natively, scene};
 use thermal_sim::trace::TraceRow;
 
@@ -7,10 +8,9 @@ use thermal_sim::trace::TraceRow;
 /// drawn in for them.
 #[test]
 fn a_display_that_is_held_at_an_end_of_the_range_overshoots_by_less_than_0_8_k() {
-    let slow = "[plant]\nsensors.display.lag_s = 0.5\nsensors.check.lag_s = 0.5\n";
     for law in ["pi", "pi-10hz"] {
         for (wanted_c, held_c, beyond_k) in [(42.0, 40.13, 1.0), (15.0, 18.47, -1.0)] {
-            let tables = host(&[(0.1, &format!("hold {wanted_c}"))]) + slow;
+            let tables = host(&[(0.1, &format!("hold {wanted_c}"))]) + &slow(0.5);
             let mut scene = scene("copper", 50.0, &format!("law = \"{law}\""), &tables);
             scene.object.appears_t_s = scene.duration_s;
             let outcome = natively(&scene);
@@ -38,25 +38,106 @@ fn the_plain_laws_keep_the_surface_within_its_limits_whatever_the_lag() {
     ];
     let touches = [(3.0, 10.0), (4.5, 0.0), (10.0, 10.0), (12.0, 0.0), (22.0, 10.0), (24.0, 0.0)];
     for law in ["pi", "pi-10hz"] {
-        for (lag_s, skin_c) in
-            [0.05, 0.1, 0.3, 0.5].iter().flat_map(|lag| [(lag, 28.0), (lag, 40.0)])
-        {
-            let plant = format!(
-                "[plant]\nsensors.display.lag_s = {lag_s}\nsensors.check.lag_s = {lag_s}\n"
-            );
-            let tables = forces(&touches) + &host(&lines) + &plant;
+        for (lag_s, skin_c) in lags_and_skins() {
+            let tables = forces(&touches) + &host(&lines) + &slow(lag_s);
             let mut scene = scene("copper", 32.0, &format!("law = \"{law}\""), &tables);
             (scene.skin_c, scene.object.appears_t_s) = (skin_c, scene.duration_s);
             let outcome = natively(&scene);
-            let display_c = || outcome.trace.rows().iter().map(|row| row.display_c);
-            let coldest_c = display_c().fold(f64::MAX, f64::min);
-            let warmest_c = display_c().fold(f64::MIN, f64::max);
+            let (coldest_c, warmest_c) =
+                range(outcome.trace.rows().iter().map(|row| row.display_c));
             let found = format!("{law}, {lag_s} s, {skin_c} C: {coldest_c:.2} to {warmest_c:.2} C");
             println!("{found}");
             assert!(coldest_c > 14.0 && warmest_c < 43.0, "{found}");
             // It does come near both ends.
             assert!(coldest_c < 18.6 && warmest_c > 40.0, "{found}");
         }
+    }
+}
+
+/// From the quickest to the slowest thermistors of the parameter box.
+fn lags_and_skins() -> impl Iterator<Item = (f64, f64)> {
+    [0.05, 0.1, 0.3, 0.5].into_iter().flat_map(|lag_s| [(lag_s, 28.0), (lag_s, 40.0)])
+}
+
+fn slow(lag_s: f64) -> String {
+    format!("[plant]\nsensors.display.lag_s = {lag_s}\nsensors.check.lag_s = {lag_s}\n")
+}
+
+/// Smallest and largest temperature, deg C.
+fn range(temperatures_c: impl Iterator<Item = f64>) -> (f64, f64) {
+    temperatures_c.fold((f64::MAX, f64::MIN), |(least, most), c| (least.min(c), most.max(c)))
+}
+
+/// The hottest and the coldest object, and a change of the law on the way, on a tile that was never tuned: surface and skin stay
+/// within 18 and 40.5 deg C, and what is beyond the limits of such a tile is refused.
+#[test]
+fn an_untuned_tile_stays_far_within_the_limits_whatever_the_lag() {
+    let lines = [
+        (0.2, "hold 42"),
+        (0.3, "hold 30 100"),
+        (0.4, "pulse 38 39 1 1 1"),
+        (0.5, "pulse 30 32 3 1 1"),
+        (0.6, "hold 38 1"),
+        (17.0, "hold 20 1"),
+        (20.0, "law model"),
+        (40.0, "object 60"),
+        (60.0, "object -20"),
+        (75.0, "law pi"),
+    ];
+    let touches = [
+        (3.0, 10.0),
+        (13.0, 0.0),
+        (16.0, 10.0),
+        (19.0, 0.0),
+        (37.0, 10.0),
+        (58.0, 0.0),
+        (59.0, 10.0),
+        (90.0, 0.0),
+    ];
+    for law in ["model", "pi", "pi-10hz"] {
+        for (lag_s, skin_c) in lags_and_skins().filter(|(lag_s, _)| [0.1, 0.5].contains(lag_s)) {
+            let tables = "[device]\ncommissioned = false\n".to_owned()
+                + &forces(&touches)
+                + &host(&lines)
+                + &slow(lag_s);
+            let mut scene = scene("copper", 92.0, &format!("law = \"{law}\""), &tables);
+            (scene.skin_c, scene.object.appears_t_s) = (skin_c, 40.1);
+            let outcome = natively(&scene);
+            let rows = || outcome.trace.rows().iter();
+            let (coldest_c, warmest_c) = range(rows().map(|row| row.display_c));
+            let (coldest_skin_c, warmest_skin_c) = range(rows().map(|row| row.skin_c));
+            let found = format!(
+                "{law}, {lag_s} s, {skin_c} C: {coldest_c:.2} to {warmest_c:.2} C, skin {coldest_skin_c:.2} to {warmest_skin_c:.2} C"
+            );
+            println!("{found}");
+            assert!(coldest_c > 18.0 && warmest_c < 40.5, "{found}");
+            assert!(coldest_skin_c > 18.0 && warmest_skin_c < 40.5, "{found}");
+            assert!(coldest_c < 20.5 && warmest_c > 37.5, "{found}");
+            let refused: Vec<&str> = (outcome.answers.iter())
+                .filter_map(|(_, answer)| answer.strip_prefix("err "))
+                .collect();
+            assert_eq!(
+                refused,
+                [
+                    "42.00 C needs tune first; until then 20.00 to 38.00 C are allowed",
+                    "100.00 K/s needs tune first; until then 1.00 K/s are allowed",
+                    "39.00 C needs tune first; until then 20.00 to 38.00 C are allowed",
+                    "3.00 K/s needs tune first; until then 1.00 K/s are allowed",
+                ]
+            );
+        }
+    }
+}
+
+/// What the limits of a tile that was never tuned cost: a finger that lands once the display has reached its preset.
+#[test]
+fn an_untuned_tile_is_documented_with_the_error_of_the_skin() {
+    for material in ["copper", "granite", "abs", "foam"] {
+        let tables = "[device]\ncommissioned = false\n".to_owned() + &forces(&[(12.0, 2.0)]);
+        let outcome = natively(&scene(material, 22.0, "", &tables));
+        let error_k = |row: &TraceRow| (row.skin_c - row.skin_real_c).abs();
+        let most_k = between(&outcome, 12.05, 22.0).map(error_k).fold(0.0, f64::max);
+        assert_figure(&format!("untuned.{material}"), 1e3 * most_k);
     }
 }
 
@@ -69,9 +150,7 @@ fn a_host_line_during_a_ramp_trips_nothing() {
         (0.1, "pi", "law model"),
         (0.4, "pi-10hz", "law model"),
     ] {
-        let slow =
-            format!("[plant]\nsensors.display.lag_s = {lag_s}\nsensors.check.lag_s = {lag_s}\n");
-        let tables = host(&[(3.0, "arm"), (3.5, line), (6.5, "state")]) + &slow;
+        let tables = host(&[(3.0, "arm"), (3.5, line), (6.5, "state")]) + &slow(lag_s);
         let mut scene = scene("copper", 7.0, &format!("law = \"{law}\""), &tables);
         scene.object.start_c = Some(15.0);
         let outcome = natively(&scene);

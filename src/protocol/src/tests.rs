@@ -260,12 +260,13 @@ fn the_longest_answers_fit_their_limit() {
         mode: ContactModel::SemiInfinite,
         setpoint: Some(Celsius::MIN),
         limited: true,
-        is_tuned: true,
+        is_tuned: false,
         body: ObjectBody::HalfSpace.name(),
     };
     let answer = Reply::Station(command::Reply::Status(status)).to_string();
     assert!(
-        answer.len() <= ANSWER_MAX_BYTES && answer.ends_with(" limited body=half-space"),
+        answer.len() <= ANSWER_MAX_BYTES
+            && answer.ends_with(" limited body=half-space tile=untuned"),
         "{answer}"
     );
     let unknown = refusal(&"x".repeat(LINE_MAX_BYTES));

@@ -303,7 +303,7 @@ fn a_broken_force_sensor_trips_after_30_ms() {
         let touching = bench.state();
         bench.force_n = -1.3;
         bench.steps(29);
-        assert_eq!(bench.state(), touching, "the last valid force is kept");
+        assert_eq!(bench.state(), touching, "the contact is kept");
         assert_eq!(bench.step().0, Drive::Off);
         assert_eq!(bench.state().fault(), Some(Fault::ForceSensor), "from {touching:?}");
     }

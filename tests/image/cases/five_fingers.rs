@@ -161,7 +161,7 @@ fn each_of_five_fingers_behaves_like_a_finger_alone() {
 }
 
 #[test]
-fn five_fingers_take_less_than_a_ninth_of_the_cpu() {
+fn five_fingers_take_a_ninth_of_the_cpu() {
     let (_, hand) = on_image(&five_contacts());
     let cost = hand.cost().expect("figures");
     let elf = std::fs::read(elf()).expect("the image");

@@ -66,6 +66,6 @@ fn the_set_point_of_an_object_of_44_c_is_limited_to_42_c_and_reported() {
     println!("display {warmest_c:.3} C at most");
     assert!(warmest_c < LIMIT_C + 0.03, "display {warmest_c} C");
     let answer = outcome.answers.last().map(|(_, line)| line.as_str());
-    let state = "ok state=contact fault=- material=copper object_c=44.00 mode=contact setpoint_c=42.00 limited body=half-space";
+    let state = "ok state=contact fault=- material=copper object_c=44.00 mode=contact setpoint_c=42.00 limited body=half-space tile=tuned";
     assert_eq!(answer, Some(state));
 }

@@ -148,18 +148,18 @@ pub const TILE: Stage = Stage {
             "the second display thermistor (PA1, A1) is right at room temperature and wrong at \
                  38 °C: a thermistor of another type (beta is not 3950 K)",
         ),
-        routine(Routine::Hold { keep: "cold", celsius: 17.0 }),
+        routine(Routine::Hold { keep: "cold", celsius: 20.0 }),
         held(
             "cold-display",
-            "display thermistor less reference, held at 17 °C",
-            "the display thermistor (PA0, A0) is right at room temperature and wrong at 17 °C: a \
+            "display thermistor less reference, held at 20 °C",
+            "the display thermistor (PA0, A0) is right at room temperature and wrong at 20 °C: a \
                  thermistor of another type (beta is not 3950 K)",
         ),
         held(
             "cold-check",
-            "second display thermistor less reference, held at 17 °C",
+            "second display thermistor less reference, held at 20 °C",
             "the second display thermistor (PA1, A1) is right at room temperature and wrong at \
-                 17 °C: a thermistor of another type (beta is not 3950 K)",
+                 20 °C: a thermistor of another type (beta is not 3950 K)",
         ),
     ],
 };

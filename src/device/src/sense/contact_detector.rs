@@ -43,6 +43,8 @@ const COUNTED_DETECTION_DELAY_MAX_TICKS: u32 = 32;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContactDetector {
     touching: bool,
+    /// Whether no counter counts, which saves most ticks 30 cycles.
+    is_settled: bool,
     /// Number of ticks of 1 ms in a row in which the force has been off zero (3 mN or more), up to
     /// [`COUNTED_DETECTION_DELAY_MAX_TICKS`]. During a contact it keeps its value from the contact's detection.
     off_zero_ticks: u32,
@@ -61,6 +63,7 @@ impl Default for ContactDetector {
     fn default() -> Self {
         Self {
             touching: false,
+            is_settled: false,
             off_zero_ticks: 0,
             oscillation_ticks: OSCILLATION_HOLD_TICKS,
             below_zero_ticks: 0,
@@ -72,13 +75,39 @@ impl Default for ContactDetector {
 }
 
 impl ContactDetector {
-    /// Decides from the force of this tick, N, and whether the signal is below its zero, whether a finger touches the
+    /// Decides from the number of this tick, its force, N, and whether the signal is below its zero, whether a finger touches the
     /// display. To be called in each tick with valid readings; other ticks do not count. Returns whether the force sensor's zero
     /// must be taken anew, because the force without a finger is not zero.
     ///
     /// A contact begins at 20 mN or more, at the earliest in the second tick in a row with 3 mN or more. It ends in the sixth tick in a
     /// row below 10 mN. While the force oscillates, it begins in the 18th tick, and ends when the force has swung about zero for 0.1 s.
-    pub fn update_contact(&mut self, force: Force, is_below_zero: bool) -> bool {
+    pub fn update_contact(&mut self, tick: u32, force: Force, is_below_zero: bool) -> bool {
+        let presses = force >= if self.touching { CONTACT_END_FORCE } else { NONZERO_FORCE_MIN };
+        if self.is_settled && presses == self.touching && !is_below_zero {
+            return tick.is_multiple_of(LOOK_TICKS) && self.ends_with_residue(force);
+        }
+        let zero_has_moved = self.update_unsettled(force, is_below_zero);
+        let counters =
+            [self.oscillation_ticks, self.below_zero_ticks, self.release_score, self.lifted_ticks];
+        self.is_settled = counters == [0; 4] && (self.touching || self.off_zero_ticks == 0);
+        zero_has_moved
+    }
+
+    /// Ends a contact of which a drift of the zero has left this force, N, and returns whether it did.
+    #[cold]
+    #[inline(never)]
+    fn ends_with_residue(&mut self, force: Force) -> bool {
+        let is_residue = self.touching && self.residue.look(force);
+        if is_residue {
+            *self = Self::default();
+        }
+        is_residue
+    }
+
+    /// [`Self::update_contact`] in a tick in which a counter counts.
+    #[cold]
+    #[inline(never)]
+    fn update_unsettled(&mut self, force: Force, is_below_zero: bool) -> bool {
         self.oscillation_ticks = if is_below_zero {
             OSCILLATION_HOLD_TICKS
         } else {
@@ -89,14 +118,10 @@ impl ContactDetector {
             self.release_score =
                 if low { self.release_score + 2 } else { self.release_score.saturating_sub(1) };
             self.lifted_ticks = if low && !is_below_zero { self.lifted_ticks + 1 } else { 0 };
-            let is_residue = self.residue.is_residue(force);
-            if self.lifted_ticks >= LIFT_TICKS
-                || self.release_score >= OSCILLATION_RELEASE_SCORE
-                || is_residue
-            {
+            if self.lifted_ticks >= LIFT_TICKS || self.release_score >= OSCILLATION_RELEASE_SCORE {
                 *self = Self { oscillation_ticks: self.oscillation_ticks, ..Self::default() };
             }
-            return is_residue;
+            return false;
         }
         self.off_zero_ticks = if force >= NONZERO_FORCE_MIN {
             (self.off_zero_ticks + 1).min(COUNTED_DETECTION_DELAY_MAX_TICKS)
@@ -161,7 +186,6 @@ const DRIFT_MAX: Force = Force::lit("0.16");
 /// contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct ResidualForce {
-    ticks: u32,
     /// The last three looks, N, the last one first.
     looks: [Force; 3],
     /// How far the zero can have drifted, N.
@@ -173,7 +197,6 @@ struct ResidualForce {
 impl Default for ResidualForce {
     fn default() -> Self {
         Self {
-            ticks: 0,
             looks: [Force::ZERO; 3],
             drift: CONTACT_END_FORCE,
             has_dropped: false,
@@ -183,14 +206,7 @@ impl Default for ResidualForce {
 }
 
 impl ResidualForce {
-    /// Takes the force, N, of a tick of a contact, and returns whether it is a residue.
-    fn is_residue(&mut self, force: Force) -> bool {
-        self.ticks = self.ticks.wrapping_add(1);
-        self.ticks.is_multiple_of(LOOK_TICKS) && self.look(force)
-    }
-
-    #[cold]
-    #[inline(never)]
+    /// Looks at the force, N, of a contact, and returns whether it is a residue.
     fn look(&mut self, force: Force) -> bool {
         let [last, before, first] = self.looks;
         self.looks = [force, last, before];

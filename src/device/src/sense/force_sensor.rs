@@ -55,11 +55,10 @@ pub(super) struct ForceChannel {
     /// Number of ticks of 1 ms, 0 to 256, from which the zero has been computed as their plain mean so far. From
     /// [`INITIAL_ZERO_MEAN_TICKS`] (256) on, this number stays, and the zero is tracked by a low-pass filter.
     initial_ticks: i32,
-    /// Sum of 16 conversions that corresponds to 8 mN.
+    /// Sum of 16 conversions that corresponds to -8 mN.
     below_zero: FineForceSum,
+    is_below_zero: bool,
     invalid_signal: UpDownDebounceCounter,
-    /// The force of the last valid signal, N, and whether it was below zero by more than 8 mN.
-    last: (Force, bool),
     /// Force, N, per unit of the sensor's sum of 16 conversions; nominally 1/4800 N.
     n_per_unit: Fraction,
 }
@@ -77,38 +76,44 @@ impl ForceChannel {
             min_zero: fine(zero - max_change),
             max_zero: fine(zero + max_change),
             initial_ticks: 0,
-            below_zero: fine(BELOW_ZERO_N * settings.counts_per_n * 16.0),
+            below_zero: fine(-BELOW_ZERO_N * settings.counts_per_n * 16.0),
+            is_below_zero: false,
             invalid_signal: UpDownDebounceCounter::default(),
-            last: (Force::ZERO, false),
             n_per_unit: to_fixed(1.0 / (settings.counts_per_n * 16.0)),
         }
     }
 
     /// Force on the display, N, for a sum of 16 conversions; 0 for a sum below the tracked zero. To be called in each tick. `None` if the
     /// sensor's wire is broken (sum below half of the zero in the settings) or shorted (more than 4060 counts a conversion), once
-    /// this has lasted for 30 ticks; until then the force of the last valid sum.
+    /// this has lasted for 30 ticks; until then the force of the nearest valid sum.
     pub fn force_of_sum(&mut self, sum: u16) -> Option<Force> {
         if sum < self.broken_below || sum > FORCE_SHORTED_ABOVE_SUM {
-            return self.force_of_invalid_signal();
+            return self.force_of_invalid_signal(sum);
         }
-        self.invalid_signal.count(false, INVALID_SIGNAL_DEBOUNCE_TICKS);
+        if self.invalid_signal != UpDownDebounceCounter::default() {
+            self.invalid_signal.count(false, INVALID_SIGNAL_DEBOUNCE_TICKS);
+        }
+        Some(self.force_of_valid_sum(sum))
+    }
+
+    #[inline(always)]
+    fn force_of_valid_sum(&mut self, sum: u16) -> Force {
         let change = FineForceSum::from(sum).saturating_sub(self.zero);
-        let above_zero = change.max(FineForceSum::ZERO);
-        let force = saturating_product(above_zero, self.n_per_unit);
-        self.last = (force, change < -self.below_zero);
-        Some(force)
+        self.is_below_zero = change < self.below_zero;
+        saturating_product(change.max(FineForceSum::ZERO), self.n_per_unit)
     }
 
     #[cold]
     #[inline(never)]
-    fn force_of_invalid_signal(&mut self) -> Option<Force> {
+    fn force_of_invalid_signal(&mut self, sum: u16) -> Option<Force> {
         let is_broken = self.invalid_signal.count(true, INVALID_SIGNAL_DEBOUNCE_TICKS);
-        (!is_broken).then_some(self.last.0)
+        let nearest = sum.max(self.broken_below).min(FORCE_SHORTED_ABOVE_SUM);
+        (!is_broken).then(|| self.force_of_valid_sum(nearest))
     }
 
-    /// Whether the last valid sum was below the zero by more than 8 mN, which noise is not.
+    /// Whether the sum of the last tick was below the zero by more than 8 mN, which noise is not.
     pub const fn is_below_zero(&self) -> bool {
-        self.last.1
+        self.is_below_zero
     }
 
     /// Takes the coming sums for the zero, as after switch-on.
@@ -154,13 +159,14 @@ mod tests {
 
     /// 30 ticks more invalid than valid ones; an oscillation that spends less than half of its time there is none.
     #[test]
-    fn a_wire_is_broken_or_shorted_after_30_ms_and_meanwhile_shows_the_last_force() {
-        for invalid in [sum(100.0), sum(4095.0)] {
+    fn a_wire_is_broken_or_shorted_after_30_ms_and_meanwhile_shows_the_nearest_valid_force() {
+        for (invalid, nearest_n) in [(sum(100.0), 0.0), (sum(4095.0), (4060.0 - 410.0) / 300.0)] {
             let mut channel = ForceChannel::new(&Settings::default().force);
             let one_newton = channel.force_of_sum(sum(710.0));
             for tick in 1..60 {
-                let expected = if tick < 30 { one_newton } else { None };
-                assert_eq!(channel.force_of_sum(invalid), expected, "tick {tick}");
+                let force_n = channel.force_of_sum(invalid).map(|force| force.to_num::<f64>());
+                assert_eq!(force_n.is_some(), tick < 30, "tick {tick}");
+                assert!(force_n.is_none_or(|force_n| (force_n - nearest_n).abs() < 1e-4));
             }
             assert_eq!(channel.force_of_sum(sum(710.0)), one_newton, "connected again");
             let mut channel = ForceChannel::new(&Settings::default().force);

@@ -356,7 +356,7 @@ impl Station {
     ) -> PlateEstimateBeforeReading {
         let previously_touching = self.contact.touching();
         let is_below_zero = self.sensors.is_force_below_zero();
-        let zero_has_moved = self.contact.update_contact(valid.force, is_below_zero);
+        let zero_has_moved = self.contact.update_contact(self.tick, valid.force, is_below_zero);
         self.sensors.track_force_zero_unless_touching(samples, &self.contact, zero_has_moved);
         let touching = self.contact.touching();
         // The table is asked only in the states in which a touch changes something, which saves 30 instructions a tick.
