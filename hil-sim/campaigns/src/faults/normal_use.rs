@@ -169,7 +169,7 @@ fn distrusts(outcome: &Outcome) -> Vec<(f64, String)> {
     distrusts
 }
 
-fn press(t_s: f64, force_n: f64, ramp_s: f64) -> String {
+pub(super) fn press(t_s: f64, force_n: f64, ramp_s: f64) -> String {
     format!("[[force]]\nt_s = {t_s:?}\nforce_n = {force_n:?}\nramp_s = {ramp_s:?}\n")
 }
 

@@ -139,7 +139,7 @@ fn back(draw: &mut Xoshiro256PlusPlus) -> (String, String) {
     }
 }
 
-fn log_uniform(draw: &mut Xoshiro256PlusPlus, (low, high): (f64, f64)) -> f64 {
+pub(super) fn log_uniform(draw: &mut Xoshiro256PlusPlus, (low, high): (f64, f64)) -> f64 {
     let part: f64 = draw.random();
     low * (high / low).powf(part)
 }

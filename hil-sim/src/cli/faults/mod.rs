@@ -5,6 +5,7 @@ mod five_fingers;
 mod flips;
 mod normal;
 mod pairs;
+mod sound;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -65,7 +66,7 @@ pub struct Arguments {
     flux_sensor: bool,
     /// Again the campaign of a number, or with --flips the flip; its scene goes to --out
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(..10_000_000),
-        conflicts_with_all = ["only", "scene", "moments", "fingers", "campaign", "pairs", "normal"])]
+        conflicts_with_all = ["only", "scene", "moments", "fingers", "campaign", "pairs", "normal", "sound"])]
     replay: Option<u64>,
 }
 
@@ -86,6 +87,10 @@ struct Modes {
     /// Simulated hours of normal use over the parameter box, in which nothing may trip; scenes that do go to --out
     #[arg(long, value_name = "HOURS", value_parser = clap::value_parser!(u64).range(1..=10_000))]
     normal: Option<u64>,
+    /// N random campaigns without a fault (commands, finger, device, tuned or not), in which the display's surface stays within
+    /// 14 to 43 C and the skin within 14 to 42.5 C; scenes of those in which they do not go to --out
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    sound: Option<u64>,
 }
 
 fn one_or_five(fingers: u8) -> Result<u8, String> {
@@ -186,6 +191,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         Modes { pairs: true, .. } => pairs::run(arguments, device),
         Modes { normal: Some(hours), .. } => normal::run(arguments, device, hours),
+        Modes { sound: Some(count), .. } => sound::run(arguments, device, count),
         Modes { .. } => match arguments.replay {
             Some(number) => campaign::run(arguments, device, number..number + 1),
             None => matrix(arguments, device),

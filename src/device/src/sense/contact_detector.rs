@@ -149,9 +149,14 @@ impl ContactDetector {
         self.off_zero_ticks > 0 && self.oscillation_ticks == 0
     }
 
+    /// Whether a finger touches, or the force has been off zero (3 mN or more) for longer than half a period of an oscillation: a
+    /// finger may be landing. The self-test treats this like a contact, and measures its baseline again.
+    pub const fn presses_steadily(&self) -> bool {
+        self.touching || self.off_zero_ticks >= OSCILLATION_DEBOUNCE_TICKS
+    }
+
     /// Whether the force has been off zero (3 mN or more) for at least two ticks in a row, or 18 if it oscillates, which noise seldom
-    /// causes: a finger may be landing. Stays true during a contact. The self-test treats this like a contact, and measures its
-    /// baseline again.
+    /// causes: a finger may be landing. Stays true during a contact.
     pub const fn is_force_nonzero_debounced(&self) -> bool {
         let debounce_ticks = if self.oscillation_ticks == 0 {
             CONTACT_DEBOUNCE_TICKS

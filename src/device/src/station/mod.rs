@@ -431,7 +431,7 @@ impl Station {
         let drive =
             |current| BridgeDemand::Drive { current, previous_legs: estimate.previous_legs };
         if let State::SelfTest(test) = &mut self.state {
-            let touched = self.contact.is_force_nonzero_debounced() || self.contact.touching();
+            let touched = self.contact.presses_steadily();
             let report = &mut self.self_test_report;
             return Ok(match test.step(report, self.tick, valid, samples, touched)? {
                 SelfTestStep::Off(comparator_test) => BridgeDemand::Off(comparator_test),

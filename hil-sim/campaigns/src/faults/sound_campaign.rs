@@ -1,0 +1,305 @@
+//! Campaigns without a fault: drawn commands, fingers and devices, tuned and untuned, under which the true surface of the display
+//! must stay within narrower limits than with a fault.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use contact_model::material::MATERIALS;
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::seq::IndexedRandom;
+use rand::{RngExt, SeedableRng};
+use serde::Serialize;
+use thermal_device::control::Law;
+use thermal_plant::parameters::stream_seed;
+use thermal_sim::SceneRunner;
+use thermal_sim::metrics::Extremes;
+use thermal_sim::scene::Scene;
+
+use super::drawn_course::course_tables;
+use super::normal_use::press;
+use super::scene_text::host_line;
+use super::touch::log_uniform;
+use crate::fidelity::PlantDraw;
+
+/// True surface of the display without a fault, °C.
+const SURFACE_C: (f64, f64) = (14.0, 43.0);
+/// Skin without a fault, °C.
+const SKIN_C: (f64, f64) = (14.0, 42.5);
+/// Length of a campaign, s.
+const DURATION_S: f64 = 30.0;
+/// Consecutive campaigns on one device, in one room, because commissioning a device takes longer than a campaign.
+const ON_ONE_DEVICE: u64 = 8;
+/// Time constant of both thermistors of the display, s, drawn uniformly, so that slow ones are not rare.
+const LAG_S: std::ops::RangeInclusive<f64> = 0.02..=0.5;
+/// Temperature of the coolant, °C.
+const COOLANT_C: std::ops::RangeInclusive<f64> = 20.0..=40.0;
+/// Compliances of the load cell, m/N, drawn with a uniform logarithm: resonance at 1000 to 41 Hz under 0.5 kg.
+const COMPLIANCE_M_N: (f64, f64) = (5e-8, 3e-5);
+/// Vibration of the fan in the cell's force, N, and its frequency, Hz.
+const VIBRATION_N: (f64, f64) = (1e-3, 0.05);
+const VIBRATION_HZ: (f64, f64) = (30.0, 200.0);
+/// Drift of the cell's zero, N/s, either way.
+const DRIFT_N_S: f64 = 2e-3;
+/// Forces, N, drawn with a uniform logarithm.
+const FORCE_N: (f64, f64) = (0.1, 10.0);
+const SKINS_C: std::ops::RangeInclusive<f64> = 28.0..=40.0;
+const ROOMS_C: std::ops::RangeInclusive<f64> = 15.0..=30.0;
+
+/// A drawn device, finger and sequence of commands, without a fault.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SoundCampaign {
+    /// Number of the campaign, from 0.
+    pub number: u64,
+    /// Text of its scene.
+    pub text: String,
+    group: Group,
+}
+
+/// What the summary has a line for: whether the tile was tuned, and the law at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+struct Group {
+    tuned: bool,
+    law: &'static str,
+}
+
+impl SoundCampaign {
+    /// Draws a campaign; it depends only on seed and number.
+    pub fn new(seed: u64, number: u64) -> Self {
+        let device_number = number / ON_ONE_DEVICE;
+        let device = PlantDraw::in_use(seed, device_number);
+        let of_device = stream_seed(seed, &format!("sound device {device_number}"));
+        let mut of_device = Xoshiro256PlusPlus::seed_from_u64(of_device);
+        let tuned = device_number % 2 == 0;
+        let room_c = of_device.random_range(ROOMS_C);
+        let mut plant: BTreeMap<String, f64> = device.plant.iter().cloned().collect();
+        let lag_s = of_device.random_range(LAG_S);
+        for (key, value) in [
+            ("display.lag_s", lag_s),
+            ("check.lag_s", lag_s),
+            ("force.cell.compliance_m_n", log_uniform(&mut of_device, COMPLIANCE_M_N)),
+            ("force.cell.vibration_n", log_uniform(&mut of_device, VIBRATION_N)),
+            ("force.cell.vibration_hz", log_uniform(&mut of_device, VIBRATION_HZ)),
+            ("force.cell.drift_n_s", of_device.random_range(-DRIFT_N_S..=DRIFT_N_S)),
+        ] {
+            plant.insert(format!("sensors.{key}"), value);
+        }
+        plant.insert("tile.coolant_k".into(), of_device.random_range(COOLANT_C) - room_c);
+
+        let own = stream_seed(seed, &format!("sound campaign {number}"));
+        let mut draw = Xoshiro256PlusPlus::seed_from_u64(own);
+        let (law, _) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
+        let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
+        let appears_s = [0.0, DURATION_S][usize::from(draw.random_bool(0.5))];
+        let mut text = format!(
+            "duration_s = {DURATION_S:?}\nskin_c = {:?}\nroom_c = {room_c:?}\nseed = {}\nlaw = \"{law}\"\n\
+             [device]\ncommissioned = {tuned}\n[object]\nmaterial = \"{material}\"\nstart_c = {:?}\n\
+             appears_t_s = {appears_s:?}\n",
+            draw.random_range(SKINS_C),
+            device.seed,
+            draw.random_range(18.0..=41.0),
+        );
+        text += &forces(&mut draw);
+        let mut t_s = draw.random_range(0.05..=1.0);
+        while t_s < DURATION_S - 0.5 {
+            text += &commands(&mut draw, t_s);
+            t_s += log_uniform(&mut draw, (0.02, 12.0));
+        }
+        text += "[plant]\n";
+        for (key, value) in &plant {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{key} = {value:?}");
+        }
+        Self { number, text, group: Group { tuned, law } }
+    }
+
+    /// Runs the campaign.
+    ///
+    /// # Errors
+    /// The scene is not valid, or the device stopped.
+    pub fn run(&self, device: &dyn SceneRunner) -> anyhow::Result<SoundResult> {
+        let scene = Scene::parse(&self.text, "campaign".as_ref())?;
+        let (outcome, figures) = device.run(&scene)?;
+        let mut surface_c = Extremes { min: f64::INFINITY, max: f64::NEG_INFINITY };
+        for row in outcome.trace.rows() {
+            surface_c.min = surface_c.min.min(row.display_c);
+            surface_c.max = surface_c.max.max(row.display_c);
+        }
+        let mut trips: Vec<_> = figures.faults.into_iter().map(|tripped| tripped.fault).collect();
+        trips.extend(figures.resets.iter().map(|_| "reset".into()));
+        Ok(SoundResult {
+            number: self.number,
+            group: self.group,
+            surface_c,
+            skin_c: figures.skin_c,
+            trips,
+        })
+    }
+}
+
+/// Landings and lifts of the finger.
+fn forces(draw: &mut Xoshiro256PlusPlus) -> String {
+    let mut text = String::new();
+    let mut t_s = draw.random_range(0.1..=4.0);
+    while t_s < DURATION_S - 1.0 {
+        let ramp_s = log_uniform(draw, (0.001, 0.3));
+        text += &press(t_s, log_uniform(draw, FORCE_N), ramp_s);
+        t_s += ramp_s + log_uniform(draw, (0.3, 10.0));
+        if draw.random_bool(0.7) && t_s < DURATION_S - 1.0 {
+            text += &press(t_s, 0.0, log_uniform(draw, (0.001, 0.05)));
+            t_s += 0.05 + log_uniform(draw, (0.3, 5.0));
+        }
+    }
+    text
+}
+
+/// A command, or some that belong together; the device may refuse them.
+fn commands(draw: &mut Xoshiro256PlusPlus, t_s: f64) -> String {
+    // Temperatures at the ends of the range are the ones that matter.
+    let temperature_c = |draw: &mut Xoshiro256PlusPlus| {
+        *[15.0, 15.0, 20.0, 38.0, 42.0, 42.0, draw.random_range(15.0..=42.0)]
+            .choose(draw)
+            .unwrap_or(&30.0)
+    };
+    let line = match draw.random_range(0..9) {
+        0 | 1 => {
+            let rate_k_s = log_uniform(draw, (0.3, 100.0));
+            format!("hold {:.3} {rate_k_s:.3}", temperature_c(draw))
+        }
+        2 => format!("hold {:.3}", temperature_c(draw)),
+        3 => {
+            let rate_k_s = log_uniform(draw, (1.0, 100.0));
+            let hold_s = log_uniform(draw, (0.1, 3.0));
+            let (base_c, peak_c) = (temperature_c(draw), temperature_c(draw));
+            format!("pulse {base_c:.3} {peak_c:.3} {rate_k_s:.3} {hold_s:.3} {hold_s:.3}")
+        }
+        4 => {
+            let object_c =
+                *[-20.0, 60.0, draw.random_range(10.0..=45.0)].choose(draw).unwrap_or(&30.0);
+            let start = host_line("start", t_s);
+            return host_line(&format!("object {object_c:.3}"), t_s) + &start;
+        }
+        5 => {
+            let (law, _) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
+            format!("law {law}")
+        }
+        6 => return course_tables(draw.random(), t_s, DURATION_S, None),
+        7 => return host_line("abort", t_s) + &host_line("arm", t_s),
+        _ => "arm".into(),
+    };
+    host_line(&line, t_s)
+}
+
+/// Result of a campaign without a fault.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SoundResult {
+    /// Number of the campaign.
+    pub number: u64,
+    #[serde(flatten)]
+    group: Group,
+    /// True surface of the display, °C.
+    pub surface_c: Extremes,
+    /// Skin, °C.
+    pub skin_c: Extremes,
+    /// Faults by which the device tripped, and resets.
+    pub trips: Vec<String>,
+}
+
+impl SoundResult {
+    /// Whether surface and skin stayed within their limits, and nothing tripped.
+    pub fn holds(&self) -> bool {
+        let within =
+            |found: Extremes, (least, most): (f64, f64)| found.min >= least && found.max <= most;
+        within(self.surface_c, SURFACE_C) && within(self.skin_c, SKIN_C) && self.trips.is_empty()
+    }
+}
+
+/// Table of the extreme temperatures by tuning and law, followed by every campaign that broke a limit.
+pub fn sound_table(runs: &[SoundResult]) -> String {
+    let mut groups: BTreeMap<Group, Vec<&SoundResult>> = BTreeMap::new();
+    for run in runs {
+        groups.entry(run.group).or_default().push(run);
+    }
+    let mut text = format!(
+        "{:<10}{:<10}{:>8}{:>24}{:>24}{:>8}\n",
+        "tile", "law first", "runs", "surface, C", "skin, C", "broken"
+    );
+    for (group, runs) in groups {
+        let range = |of: fn(&SoundResult) -> Extremes| {
+            let least = runs.iter().map(|run| of(run).min).fold(f64::INFINITY, f64::min);
+            let most = runs.iter().map(|run| of(run).max).fold(f64::NEG_INFINITY, f64::max);
+            format!("{least:.2} to {most:.2}")
+        };
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{:<10}{:<10}{:>8}{:>24}{:>24}{:>8}",
+            if group.tuned { "tuned" } else { "untuned" },
+            group.law,
+            runs.len(),
+            range(|run| run.surface_c),
+            range(|run| run.skin_c),
+            runs.iter().filter(|run| !run.holds()).count(),
+        );
+    }
+    for run in runs.iter().filter(|run| !run.holds()) {
+        let _ = writeln!(
+            text,
+            "number {}: surface {:.2} to {:.2} C, skin {:.2} to {:.2} C, {}",
+            run.number,
+            run.surface_c.min,
+            run.surface_c.max,
+            run.skin_c.min,
+            run.skin_c.max,
+            if run.trips.is_empty() { "no trip".into() } else { run.trips.join(", ") },
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_campaign_is_a_scene_without_faults_and_half_of_them_untuned() {
+        let scene = |number| {
+            let campaign = SoundCampaign::new(5, number);
+            Scene::parse(&campaign.text, "campaign".as_ref()).expect("a scene")
+        };
+        let scenes: Vec<_> = (0..160).map(scene).collect();
+        assert!(scenes.iter().all(|scene| scene.faults.is_empty() && scene.injections.is_empty()));
+        assert_eq!(scenes.iter().filter(|scene| scene.commissioned).count(), 80);
+        for part in ["hold ", "pulse ", "object ", "law ", "upload ", "abort", "arm"] {
+            let with = |scene: &&Scene| scene.host.iter().any(|host| host.line.starts_with(part));
+            assert!(scenes.iter().filter(with).count() > 20, "{part}");
+        }
+    }
+
+    #[test]
+    fn campaigns_repeat_by_seed_and_number_and_differ_between_them() {
+        assert_eq!(SoundCampaign::new(5, 3), SoundCampaign::new(5, 3));
+        assert_ne!(SoundCampaign::new(5, 3).text, SoundCampaign::new(5, 4).text);
+        assert_ne!(SoundCampaign::new(5, 3).text, SoundCampaign::new(6, 3).text);
+    }
+
+    #[test]
+    fn a_surface_or_skin_beyond_its_limits_and_a_trip_break_the_claim() {
+        let within = SoundResult {
+            number: 0,
+            group: Group { tuned: true, law: "model" },
+            surface_c: Extremes { min: 14.0, max: 43.0 },
+            skin_c: Extremes { min: 14.0, max: 42.5 },
+            trips: Vec::new(),
+        };
+        assert!(within.holds());
+        for broken in [
+            SoundResult { surface_c: Extremes { min: 13.99, max: 30.0 }, ..within.clone() },
+            SoundResult { surface_c: Extremes { min: 20.0, max: 43.01 }, ..within.clone() },
+            SoundResult { skin_c: Extremes { min: 20.0, max: 42.51 }, ..within.clone() },
+            SoundResult { trips: vec!["dose".into()], ..within.clone() },
+        ] {
+            assert!(!broken.holds());
+            assert!(sound_table(&[within.clone(), broken]).contains("number 0: "));
+        }
+    }
+}
