@@ -170,6 +170,10 @@ pub const fn fault_words(fault: Fault) -> FaultWords {
             "the multiplexers did not select the finger whose turn it was",
             "a select line is broken or shorted: look at the connector between controller and sensor board",
         ),
+        Fault::SkinOnPlate => (
+            "the skin thermistor cools and warms with the display",
+            "it sits on the plate: fix it to the finger, 2 to 3 mm beside the contact",
+        ),
     };
     FaultWords { meaning, remedy }
 }

@@ -51,6 +51,8 @@ pub struct SensorDefects {
     pub thermistors: [ThermistorDefect; THERMISTORS],
     /// Index of the thermistor, with its pull-up, that is connected to each thermistor channel.
     pub connected: [usize; THERMISTORS],
+    /// The skin thermistor sits on the display's plate in place of the finger.
+    pub skin_on_plate: bool,
     /// Force sensor.
     pub force: ForceDefect,
     /// Current at which the output of the current mirror is frozen, A.
@@ -62,6 +64,7 @@ impl SensorDefects {
     pub const NONE: Self = Self {
         thermistors: [ThermistorDefect::NONE; THERMISTORS],
         connected: [0, 1, 2, 3, 4],
+        skin_on_plate: false,
         force: ForceDefect { open: false, stuck: false, offset_n: 0.0 },
         mirror_stuck_a: None,
     };

@@ -138,7 +138,7 @@ impl Sensors {
     /// Sensors in steady state; the seed determines non-linearity and noise of the converter.
     pub fn new(params: SensorParams, state: &SensorInputs, seed: u64) -> Self {
         let excitation_v = params.reference.volt * params.reference.excitation_duty.sqrt();
-        let sites = sites(&params, state);
+        let sites = sites(&params, state, false);
         let mut sensors = Self {
             params,
             thermistors: std::array::from_fn(|i| {
@@ -176,7 +176,7 @@ impl Sensors {
     /// Advances by a step, s, to the inputs `state` at its end: temperatures moved linearly, the force was constant. The
     /// following conversions interpolate the levels between start and end of the step.
     pub fn step(&mut self, step_s: f64, state: &SensorInputs) {
-        let sites = sites(&self.params, state);
+        let sites = sites(&self.params, state, self.defects.skin_on_plate);
         for (thermistor, site) in self.thermistors.iter_mut().zip(&sites) {
             thermistor.step(step_s, site);
         }
@@ -315,9 +315,12 @@ impl Sensors {
 }
 
 /// Surroundings of each thermistor.
-fn sites(params: &SensorParams, state: &SensorInputs) -> [Site; THERMISTORS] {
-    let edge_c =
-        state.skin_before_c + params.skin_sees_contact * (state.skin_c - state.skin_before_c);
+fn sites(params: &SensorParams, state: &SensorInputs, skin_on_plate: bool) -> [Site; THERMISTORS] {
+    let edge_c = if skin_on_plate {
+        state.display_c
+    } else {
+        state.skin_before_c + params.skin_sees_contact * (state.skin_c - state.skin_before_c)
+    };
     let surfaces_c = [state.display_c, state.display_c, state.sink_c, edge_c, state.room_c];
     surfaces_c.map(|surface_c| Site { surface_c, room_c: state.room_c })
 }

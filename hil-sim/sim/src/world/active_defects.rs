@@ -39,6 +39,7 @@ impl ActiveDefects {
                 }
             }
             FaultKind::AdcStuck => self.frozen = [true; Channel::ALL.len()],
+            FaultKind::SkinOnPlate => sensors.skin_on_plate = true,
             FaultKind::ForceOpen => sensors.force.open = true,
             FaultKind::ForceStuck => sensors.force.stuck = true,
             FaultKind::ForceOffset => sensors.force.offset_n += value,

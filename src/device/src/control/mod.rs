@@ -18,8 +18,11 @@ use crate::safety::limits::COOLING_DERATING_SINK_TEMPERATURE;
 /// (39.5 °C): by 1/2 (2^-1, this power of two) of the current limit per kelvin, so to zero at 41.5 °C.
 const COOLING_LIMIT_FRACTION_LOST_PER_K_SHIFT: u32 = 1;
 
-/// A plain law takes over once the display's reading has stayed this near to the set-point, K, for so many ticks.
+/// A plain law takes over once the display's reading has stayed this near to the set-point, K, and the current this near to its
+/// value, A, for so many ticks: it goes on from the current, and one that answers a landing would take a display with a slow
+/// thermistor by 5 K beyond its set-point.
 const TAKE_OVER_WITHIN: Celsius = Celsius::lit("0.5");
+const TAKE_OVER_CURRENT_WITHIN: Current = Current::lit("0.5");
 const TAKE_OVER_TICKS: u16 = 256;
 
 /// Control law that chooses the module's current from the reference and the readings of the display's thermistor;
@@ -60,14 +63,22 @@ impl Law {
 #[derive(Clone, Debug)]
 pub struct Controller {
     law: Law,
-    /// The law that the host has chosen, if it has not taken over yet, and the ticks for which the display has been near its
-    /// set-point meanwhile.
-    next_law: Option<(Law, u16)>,
+    /// The law that the host has chosen, if it has not taken over yet.
+    next_law: Option<NextLaw>,
     pi_10hz: Pi,
     pi: Pi,
     /// Current of the last tick, A (positive cools), chosen by the law or set by [`Self::track_current`]. A
     /// proportional-integral law that is newly selected starts from it.
     current: Current,
+}
+
+/// A plain law that waits for its turn.
+#[derive(Clone, Copy, Debug)]
+struct NextLaw {
+    law: Law,
+    /// Ticks for which the display has been near its set-point, and the current near `from`, A.
+    ticks: u16,
+    from: Current,
 }
 
 impl Controller {
@@ -98,33 +109,39 @@ impl Controller {
 
     /// The law that was selected last, which may have to take over yet.
     pub fn selected_law(&self) -> Law {
-        self.next_law.map_or(self.law, |(law, _)| law)
+        self.next_law.map_or(self.law, |next| next.law)
     }
 
     /// Selects `law`. The law `model` takes over at once, because it continues from the observer, which follows the current
     /// under every law. A proportional-integral law starts from the present current, and one that moves a display which is on its
-    /// way would take it beyond its set-point: such a law takes over when the display has come near its set-point, or when no
-    /// law chooses the current.
+    /// way would take it beyond its set-point: such a law takes over when the display has come near its set-point and the current
+    /// is steady, or when no law chooses the current.
     pub fn select_law(&mut self, law: Law) {
         self.next_law = None;
         match law {
             Law::Model => self.law = law,
-            Law::Pi | Law::Pi10Hz if law != self.law => self.next_law = Some((law, 0)),
+            Law::Pi | Law::Pi10Hz if law != self.law => {
+                self.next_law = Some(NextLaw { law, ticks: 0, from: self.current });
+            }
             Law::Pi | Law::Pi10Hz => {}
         }
     }
 
-    /// Takes the selected law over if the display, whose reading is given, is near its set-point and has been for some time.
+    /// Takes the selected law over if the display, whose reading is given, has been near its set-point for some time, with a steady
+    /// current.
     #[cold]
     #[inline(never)]
     fn take_over_if_settled(&mut self, reference: &Reference, display: Celsius) {
-        let Some((law, ticks)) = self.next_law else {
+        let Some(next) = &mut self.next_law else {
             return;
         };
         let is_near = reference.setpoint.celsius().abs_diff(display) <= TAKE_OVER_WITHIN;
-        let ticks = if is_near { ticks.saturating_add(1) } else { 0 };
-        self.next_law = Some((law, ticks));
-        if ticks >= TAKE_OVER_TICKS {
+        if is_near && self.current.abs_diff(next.from) <= TAKE_OVER_CURRENT_WITHIN {
+            next.ticks = next.ticks.saturating_add(1);
+        } else {
+            *next = NextLaw { ticks: 0, from: self.current, ..*next };
+        }
+        if next.ticks >= TAKE_OVER_TICKS {
             self.track_current(self.current);
         }
     }
@@ -140,8 +157,8 @@ impl Controller {
     /// current (bumpless transfer); the law `model` continues from the observer instead.
     pub fn track_current(&mut self, current: Current) {
         self.current = current;
-        if let Some((law, _)) = self.next_law.take() {
-            self.law = law;
+        if let Some(next) = self.next_law.take() {
+            self.law = next.law;
         }
         self.pi_10hz.track_current(current);
         self.pi.track_current(current);
