@@ -58,7 +58,10 @@ impl RandomCampaign {
         let place = scenes[draw.random_range(0..scenes.len())];
         let point = place.injection_point(draw.random(), draw.random());
         let mut touch = Touch::new(stream_seed(own, "touch"), place.object().0);
-        let takes_course = !place.is_commanded() && place.has_tripped_before().is_none();
+        // A faulty trigger input starts a course that waits for an edge, as it must.
+        let takes_course = !place.is_commanded()
+            && place.has_tripped_before().is_none()
+            && !fault_case.fault.kind().starts_with("trigger-");
         if takes_course && draw.random_bool(WITH_COURSE) {
             touch.tables +=
                 &course_tables(stream_seed(own, "course"), COURSE_S, COURSE_UNTIL_S, None);
