@@ -54,6 +54,21 @@ fn the_plain_laws_keep_the_surface_within_its_limits_whatever_the_lag() {
     }
 }
 
+/// A law that is chosen so that it would take over while the law `model` answers a landing with 5 A: it waits until the current is
+/// steady, and the surface does not follow that current to 11.5 deg C.
+#[test]
+fn a_plain_law_that_is_chosen_before_a_landing_takes_over_after_it() {
+    for chosen_s in [2.73, 2.74, 2.75, 2.76, 2.8] {
+        let lines = [(0.1, "hold 16.5 20"), (chosen_s, "law pi-10hz")];
+        let tables = forces(&[(3.0, 4.0), (3.6, 0.15)]) + &host(&lines) + &slow(0.35);
+        let mut scene = scene("copper", 5.0, "", &tables);
+        scene.object.appears_t_s = scene.duration_s;
+        let outcome = natively(&scene);
+        let (coldest_c, _) = range(outcome.trace.rows().iter().map(|row| row.display_c));
+        assert!(coldest_c > 15.5, "chosen at {chosen_s} s: {coldest_c:.2} C");
+    }
+}
+
 /// From the quickest to the slowest thermistors of the parameter box.
 fn lags_and_skins() -> impl Iterator<Item = (f64, f64)> {
     [0.05, 0.1, 0.3, 0.5].into_iter().flat_map(|lag_s| [(lag_s, 28.0), (lag_s, 40.0)])

@@ -182,9 +182,10 @@ fn hil_sim(copy: &Path, command: &str) -> Vec<OsString> {
 
 /// Unit tests of the copy, by package and name, with the overflow checks of their profile.
 fn unit_tests(copy: &Path, (package, name): (&str, &str), options: &[&str]) -> Invocation {
-    // The tests of the image are no unit tests, and link the emulator.
+    // The tests of the image, which link the emulator, and of the whole system are no unit tests.
     let kind: &[&str] = match package {
         "image-tests" => &["--profile", SUITE, "--test", "image"],
+        "system-tests" => &["--profile", SUITE, "--test", "native"],
         _ => &["--lib"],
     };
     let target = workspace().join(FOLDER).join("target");

@@ -289,6 +289,11 @@ pub const RUN: Stage = Stage {
         )
         .step(),
         manual("Release the emergency stop.", &["release stop"]),
+        manual(
+            "This page covers what the device and a meter can show. Before a finger touches it, measure what \
+             docs/before-a-finger.md lists, with a surface probe and a leakage tester, and keep the values with this page.",
+            &[],
+        ),
         read(
             "seen-hottest",
             "hottest reading of the display in this stage",
