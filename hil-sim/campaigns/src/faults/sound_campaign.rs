@@ -69,7 +69,7 @@ impl SoundCampaign {
         let device = PlantDraw::in_use(seed, device_number);
         let of_device = stream_seed(seed, &format!("sound device {device_number}"));
         let mut of_device = Xoshiro256PlusPlus::seed_from_u64(of_device);
-        let tuned = device_number % 2 == 0;
+        let tuned = device_number.is_multiple_of(2);
         let room_c = of_device.random_range(ROOMS_C);
         let mut plant: BTreeMap<String, f64> = device.plant.iter().cloned().collect();
         let lag_s = of_device.random_range(LAG_S);
