@@ -59,10 +59,12 @@ const DISPLAY_RESPONSE_MIN: Celsius = Celsius::lit("0.05");
 /// one trips by [`Fault::NoResponse`]. A typical display falls by 0.54 K, so more than this is caused by something else
 /// than the pulse.
 const DISPLAY_RESPONSE_MAX: Celsius = Celsius::lit("1.5");
-/// Inverse of the smallest share of the display's fall by which a skin thermistor that falls with it trips the station by
-/// [`Fault::SkinOnPlate`]. On the plate, with time constants of 0.15 to 0.6 s, it falls by 0.39 to 0.85 of the plate's fall; on a finger that
-/// rests on the display by less than 0.3, because it sees at most 0.35 of the contact.
-const SKIN_RESPONSE_SHARE_INVERSE: i64 = 3;
+/// Smallest dip of the skin's reading between the two pulses, K, that trips the station by [`Fault::SkinOnPlate`]. On the plate, with time
+/// constants of 0.15 to 0.6 s, it is 0.1 to 0.25 K; on a finger that rests on the display 0.02 K, because it sees at most 0.35 of the contact.
+/// Noise makes 6 mK RMS of it.
+const SKIN_DIP_MIN: Celsius = Celsius::lit("0.05");
+/// Largest dip, K: one that is larger is not the display's. The thermistor was taken off or put on.
+const SKIN_DIP_MAX: Celsius = Celsius::lit("0.6");
 /// Largest magnitude of a reported response, K: what has two digits.
 const REPORTED_RESPONSE_MAX: Celsius = Celsius::lit("99");
 /// Ticks of 1 ms that the self-test waits after a finger has landed or lifted before its baseline begins, because the
@@ -75,9 +77,9 @@ const SETTLING_WAITS_TOTAL_TRIP_TICKS: u16 = 20 * WAIT_AFTER_LANDING_OR_LIFTING_
 /// just above the contact threshold falls below the threshold by noise now and then.
 const LIFTED_AFTER_TICKS: u8 = 32;
 
-/// Sums of the readings of the first and the second display thermistor and that of the skin, in units of 2^-22 °C, over one half of
-/// the self-test's baseline.
-type BaselineSums = [i64; 3];
+/// Sums of the readings of the first and the second display thermistor, in units of 2^-22 °C, over one half of the
+/// self-test's baseline.
+type DisplayReadingSums = [i64; 2];
 
 /// What the self-test demands in one tick. The station turns it into the outputs to bridge and comparator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,8 +100,12 @@ pub struct SelfTest {
     /// Next tick of the self-test's sequence, 0 to 744. It stays at the end of the comparator's tests, 80, while the
     /// display settles after a landing or lifting, and is set back to 80 when a finger lands or lifts later.
     tick: u16,
-    first_half: BaselineSums,
-    second_half: BaselineSums,
+    first_half: DisplayReadingSums,
+    second_half: DisplayReadingSums,
+    /// Sum of the skin thermistor's readings over the baseline, and its reading at the end of the pause between the pulses, in units of
+    /// 2^-22 °C.
+    skin_before: i64,
+    skin_between: i64,
     /// Sum of the measured current, as magnitude, over the second half (100 ticks) of the present pulse so far, in
     /// units of 2^-24 A. At the end of the pulse the mean is checked.
     current_sum: i64,
@@ -132,7 +138,7 @@ impl SelfTest {
     /// [`Fault::CurrentLow`], [`Fault::CurrentHigh`]: the mean measured current of a pulse is below 0.4 A or above 2 A.
     /// [`Fault::Polarity`]: the cooling pulse has warmed the display. [`Fault::NoResponse`]: a display reading has not
     /// fallen by 0.05 to 1.5 K after the cooling pulse, or fingers that landed and lifted have delayed the baseline by
-    /// 20 s in all. [`Fault::SkinOnPlate`]: the skin's reading has fallen with the display's.
+    /// 20 s in all. [`Fault::SkinOnPlate`]: the skin's reading has dipped with the display's.
     pub fn step(
         &mut self,
         report: &mut SelfTestReport,
@@ -160,8 +166,8 @@ impl SelfTest {
         }
         let tick = self.tick;
         self.tick += 1;
-        let read = [readings.display, readings.check, readings.skin];
-        let read = read.map(|reading| reading.to_bits().into());
+        let [display @ .., skin] = [readings.display, readings.check, readings.skin]
+            .map(|reading| i64::from(reading.to_bits()));
         if tick < COMPARATOR_TEST_TICKS {
             let test = comparator_test::run_tick(report, tick, samples, readings.supply)?;
             return Ok(SelfTestStep::Off(test));
@@ -169,9 +175,10 @@ impl SelfTest {
         if tick < BASELINE_END_TICK {
             let is_first = tick < COMPARATOR_TEST_TICKS + TICKS_PER_BASELINE_HALF;
             let half = if is_first { &mut self.first_half } else { &mut self.second_half };
-            for (sum, reading) in half.iter_mut().zip(read) {
+            for (sum, reading) in half.iter_mut().zip(display) {
                 *sum += reading;
             }
+            self.skin_before += skin;
             return Ok(BRIDGE_OFF_WITHOUT_COMPARATOR_TEST);
         }
         if tick < COOLING_PULSE_END_TICK {
@@ -185,13 +192,15 @@ impl SelfTest {
             return Ok(SelfTestStep::Drive(Current::ZERO));
         }
         if tick == RESPONSE_CHECK_TICK {
-            self.check_responses(report, read)?;
+            self.check_display_response(report, display)?;
+            self.skin_between = skin;
         }
         if tick < WARMING_PULSE_END_TICK {
             self.add_current_in_second_pulse_half(tick - RESPONSE_CHECK_TICK, readings.current);
             return Ok(SelfTestStep::Drive(PULSE_CURRENT.saturating_neg()));
         }
         self.check_pulse_current(&mut report.warming_current)?;
+        self.check_skin_response(skin)?;
         Ok(SelfTestStep::Passed)
     }
 
@@ -231,28 +240,36 @@ impl SelfTest {
         }
     }
 
-    /// Checks the response to the cooling pulse, against the straight line through the means of the baseline's two halves: both
-    /// thermistors of the display must read 0.05 to 1.5 K below it, and the skin's must not have moved with them. `read` holds the
-    /// present readings, in units of 2^-22 °C. A reading of the display more than 0.05 K above the line is
-    /// [`Fault::Polarity`]; any other failure there is [`Fault::NoResponse`].
-    fn check_responses(&self, report: &mut SelfTestReport, read: [i64; 3]) -> Result<(), Fault> {
+    /// Checks that the skin's thermistor has not dipped with the display between the pulses; `after` is its reading after the warming
+    /// pulse, in units of 2^-22 °C. A dip is the difference from the mean of before and after, so that a slow drift is none.
+    fn check_skin_response(&self, after: i64) -> Result<(), Fault> {
+        const DIP_ON_PLATE: RangeInclusive<i64> =
+            SKIN_DIP_MIN.to_bits() as i64..=SKIN_DIP_MAX.to_bits() as i64;
+        let before = self.skin_before / i64::from(2 * TICKS_PER_BASELINE_HALF);
+        let dip = (before + after) / 2 - self.skin_between;
+        if DIP_ON_PLATE.contains(&dip) { Err(Fault::SkinOnPlate) } else { Ok(()) }
+    }
+
+    /// Checks the display's response to the cooling pulse: both thermistors must read 0.05 to 1.5 K below the straight
+    /// line through the means of the baseline's two halves. `display` holds the present readings of the first and the
+    /// second display thermistor, in units of 2^-22 °C. A reading more than 0.05 K above the line is
+    /// [`Fault::Polarity`]; any other failure is [`Fault::NoResponse`].
+    fn check_display_response(
+        &self,
+        report: &mut SelfTestReport,
+        display: [i64; 2],
+    ) -> Result<(), Fault> {
         const DISPLAY_RESPONSE_MIN_RAW: i64 = DISPLAY_RESPONSE_MIN.to_bits() as i64;
         const DISPLAY_RESPONSE_RAW_MIN_TO_MAX: RangeInclusive<i64> =
             DISPLAY_RESPONSE_MIN_RAW..=DISPLAY_RESPONSE_MAX.to_bits() as i64;
         let half = i64::from(TICKS_PER_BASELINE_HALF);
         let ticks =
             i64::from(RESPONSE_CHECK_TICK - (BASELINE_END_TICK - TICKS_PER_BASELINE_HALF / 2));
-        let response = |first: i64, second: i64, reading: i64| {
-            second / half + (second - first) * ticks / (half * half) - reading
-        };
-        let ([first @ .., first_skin], [second @ .., second_skin], [display @ .., skin]) =
-            (self.first_half, self.second_half, read);
-        let halves = first.into_iter().zip(second);
+        let halves = self.first_half.iter().zip(&self.second_half);
         let reported = report.responses.iter_mut();
-        let mut smallest = i64::MAX;
         for (((first, second), reading), reported) in halves.zip(display).zip(reported) {
-            let response = response(first, second, reading);
-            smallest = smallest.min(response);
+            let expected = second / half + (second - first) * ticks / (half * half);
+            let response = expected - reading;
             let response_k = Celsius::saturating_from_num(I42F22::from_bits(response));
             *reported = Some(response_k.clamp(-REPORTED_RESPONSE_MAX, REPORTED_RESPONSE_MAX));
             if response < -DISPLAY_RESPONSE_MIN_RAW {
@@ -262,8 +279,6 @@ impl SelfTest {
                 return Err(Fault::NoResponse);
             }
         }
-        let skin = response(first_skin, second_skin, skin);
-        let moves_with_display = smallest / SKIN_RESPONSE_SHARE_INVERSE..=2 * smallest;
-        if moves_with_display.contains(&skin) { Err(Fault::SkinOnPlate) } else { Ok(()) }
+        Ok(())
     }
 }
