@@ -172,6 +172,9 @@ def test_replies_are_read() -> None:
     )
     assert (status.state, status.fault, status.object_c) == (State.TRIPPED, "host-silent", -3.5)
     assert (status.limited, status.body, status.setpoint_c) == (True, "slab", None)
+    assert status.tuned is None
+    armed = "state=armed fault=- material=- object_c=room mode=contact setpoint_c=34.00 body=half-space tile="
+    assert [Status.read(Fields(armed + tile)).tuned for tile in ("tuned", "untuned")] == [True, False]
     assert Cause.read(Fields("cause=-")) is None
     assert FluxReport.read(Fields("flux=none")) is None
     flux = FluxReport.read(

@@ -31,8 +31,8 @@ const DURATION_S: f64 = 30.0;
 const ON_ONE_DEVICE: u64 = 8;
 /// Time constant of both thermistors of the display, s, drawn uniformly, so that slow ones are not rare.
 const LAG_S: std::ops::RangeInclusive<f64> = 0.02..=0.5;
-/// Temperature of the coolant, °C.
-const COOLANT_C: std::ops::RangeInclusive<f64> = 20.0..=40.0;
+/// Largest temperature of the coolant, °C; the box draws it relative to the room.
+const COOLANT_MAX_C: f64 = 40.0;
 /// Compliances of the load cell, m/N, drawn with a uniform logarithm: resonance at 1000 to 41 Hz under 0.5 kg.
 const COMPLIANCE_M_N: (f64, f64) = (5e-8, 3e-5);
 /// Vibration of the fan in the cell's force, N, and its frequency, Hz.
@@ -83,7 +83,9 @@ impl SoundCampaign {
         ] {
             plant.insert(format!("sensors.{key}"), value);
         }
-        plant.insert("tile.coolant_k".into(), of_device.random_range(COOLANT_C) - room_c);
+        if let Some(coolant_k) = plant.get_mut("tile.coolant_k") {
+            *coolant_k = coolant_k.min(COOLANT_MAX_C - room_c);
+        }
 
         let own = stream_seed(seed, &format!("sound campaign {number}"));
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(own);
