@@ -438,6 +438,19 @@ fn every_fault_of_the_device_is_known_in_its_state() {
         let status = client.ask(&QueryState).unwrap();
         assert_eq!(status.state, StateName::Tripped(*fault));
         assert_eq!((status.object_c, status.limited), (Some(24.0), true));
+        assert_eq!(status.is_tuned, None, "firmware without the capability `untuned`");
+    }
+}
+
+#[test]
+fn whether_the_tile_was_tuned_is_read() {
+    for (word, is_tuned) in [("tuned", true), ("untuned", false)] {
+        let mut client = FakeDevice::client(move |_| {
+            answers(&format!(
+                "ok state=armed fault=- material=- object_c=room mode=contact setpoint_c=34.00 body=half-space tile={word}"
+            ))
+        });
+        assert_eq!(client.ask(&QueryState).unwrap().is_tuned, Some(is_tuned));
     }
 }
 

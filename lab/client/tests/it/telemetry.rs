@@ -64,12 +64,18 @@ fn what_the_device_does_not_know_and_why_it_tripped_is_read() {
     client
         .link()
         .sends(2, "T 6 preset 15.00000 15.2000 24.10 33.20 24.00 0.000 6.000 5.900 9 limited");
+    client
+        .link()
+        .sends(3, "T 7 armed 33.20000 33.2000 24.10 33.20 24.00 0.000 0.100 0.100 9 untuned");
     let wait = Duration::from_millis(5);
     let tripped = client.next_telemetry(wait).unwrap().unwrap();
     assert_eq!(tripped.finger, Some(3));
     assert_eq!(tripped.telemetry.fault(), Some(Fault::DisplayOpen));
     assert_eq!((tripped.telemetry.display_c, tripped.telemetry.force_n), (None, None));
-    assert!(client.next_telemetry(wait).unwrap().unwrap().telemetry.limited);
+    let limited = client.next_telemetry(wait).unwrap().unwrap().telemetry;
+    assert!(limited.limited && !limited.is_untuned);
+    let untuned = client.next_telemetry(wait).unwrap().unwrap().telemetry;
+    assert!(untuned.is_untuned && !untuned.limited && untuned.remark() == Some("untuned"));
 }
 
 #[test]

@@ -44,6 +44,13 @@ impl<L: Link> Executor<'_, L> {
             all_settings.push(settings(&mut self.client, address).map_err(ends)?);
         }
         self.recorder.device(&DeviceReport { identity, settings: all_settings })?;
+        let presenting = plan.trials.iter().flat_map(|trial| &trial.presented);
+        let mut presenting: Vec<u8> = presenting.filter_map(Presented::device_finger).collect();
+        presenting.sort_unstable();
+        presenting.dedup();
+        for finger in presenting {
+            self.require_tuned(finger)?;
+        }
         // Another program may have left it driven.
         self.switch_off()?;
         self.clear_trips()?;
@@ -97,6 +104,18 @@ impl<L: Link> Executor<'_, L> {
             }
         }
         Ok(())
+    }
+
+    /// Refuses a tile that was never tuned, whose set-points move too slowly for what a session presents.
+    fn require_tuned(&mut self, finger: u8) -> Result<(), SessionEnd> {
+        let address = self.fingers.address(finger);
+        let status = self.client.ask_finger(address, &QueryState).map_err(ends)?;
+        match status.is_tuned {
+            Some(false) => Err(SessionEnd::Unsuitable(format!(
+                "the tile of its finger {finger} was never tuned, so that it moves by 1 K/s only; commission it first (thermal-lab commission)"
+            ))),
+            Some(true) | None => Ok(()),
+        }
     }
 
     /// The fault by which a finger of the device has tripped.
