@@ -31,8 +31,8 @@ const DURATION_S: f64 = 30.0;
 const ON_ONE_DEVICE: u64 = 8;
 /// Time constant of both thermistors of the display, s, drawn uniformly, so that slow ones are not rare.
 const LAG_S: std::ops::RangeInclusive<f64> = 0.02..=0.5;
-/// Largest temperature of the coolant, °C; the box draws it relative to the room.
-const COOLANT_MAX_C: f64 = 40.0;
+/// Range of the coolant, °C, which the box draws relative to the room. A colder one leaves a display at rest below its limit.
+const COOLANT_C: (f64, f64) = (16.0, 40.0);
 /// Compliances of the load cell, m/N, drawn with a uniform logarithm: resonance at 1000 to 41 Hz under 0.5 kg.
 const COMPLIANCE_M_N: (f64, f64) = (5e-8, 3e-5);
 /// Vibration of the fan in the cell's force, N, and its frequency, Hz.
@@ -84,7 +84,7 @@ impl SoundCampaign {
             plant.insert(format!("sensors.{key}"), value);
         }
         if let Some(coolant_k) = plant.get_mut("tile.coolant_k") {
-            *coolant_k = coolant_k.min(COOLANT_MAX_C - room_c);
+            *coolant_k = coolant_k.clamp(COOLANT_C.0 - room_c, COOLANT_C.1 - room_c);
         }
 
         let own = stream_seed(seed, &format!("sound campaign {number}"));
