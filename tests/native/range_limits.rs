@@ -9,7 +9,7 @@ use thermal_sim::trace::TraceRow;
 #[test]
 fn a_display_that_is_held_at_an_end_of_the_range_overshoots_by_less_than_0_8_k() {
     for law in ["pi", "pi-10hz"] {
-        for (wanted_c, held_c, beyond_k) in [(42.0, 39.93, 1.0), (15.0, 18.47, -1.0)] {
+        for (wanted_c, held_c, beyond_k) in [(42.0, 39.53, 1.0), (15.0, 18.47, -1.0)] {
             let tables = host(&[(0.1, &format!("hold {wanted_c}"))]) + &slow(0.5);
             let mut scene = scene("copper", 50.0, &format!("law = \"{law}\""), &tables);
             scene.object.appears_t_s = scene.duration_s;
@@ -49,7 +49,7 @@ fn the_plain_laws_keep_the_surface_within_its_limits_whatever_the_lag() {
             println!("{found}");
             assert!(coldest_c > 14.0 && warmest_c < 43.0, "{found}");
             // It does come near both ends.
-            assert!(coldest_c < 18.6 && warmest_c > 40.0, "{found}");
+            assert!(coldest_c < 18.6 && warmest_c > 39.5, "{found}");
         }
     }
 }

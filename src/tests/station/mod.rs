@@ -241,7 +241,7 @@ impl TestBench {
         telemetry.setpoint.expect("the bridge is driven").to_num()
     }
 
-    /// Advances by one tick, and asserts that its set-point is `wanted_c`; under a plain law within its limits: 17 to 41.4 °C, and
+    /// Advances by one tick, and asserts that its set-point is `wanted_c`; under a plain law within its limits: 17 to 41 °C, and
     /// not faster towards 43 °C than with 7 effective dead times, towards 14 °C than with 14. Returns whether they did not matter.
     #[track_caller]
     fn assert_setpoint(&mut self, wanted_c: f64) -> bool {
@@ -252,7 +252,7 @@ impl TestBench {
             let dead_time_ms = 1e3 * (sensor_lag_s + dead_time_s + 0.05);
             let lowest_c = last_c + (14.0 - last_c) / (14.0 * dead_time_ms);
             let highest_c = last_c + (43.0 - last_c) / (7.0 * dead_time_ms);
-            limited_c = wanted_c.clamp(17.0, 41.4).clamp(lowest_c, highest_c);
+            limited_c = wanted_c.clamp(17.0, 41.0).clamp(lowest_c, highest_c);
         }
         assert_close(self.setpoint_c(), limited_c);
         limited_c == wanted_c

@@ -34,7 +34,7 @@ const DRAWN_IN_FROM_S: f64 = 0.2;
 /// By how much more the ends are drawn in, K. A finger is warmer than a cold display by twice as much as it is colder than a warm
 /// one, and more current cools less, so its landing and its lift disturb more at the cold end.
 const COLD_END_K: f64 = 2.0;
-const WARM_END_K: f64 = 0.6;
+const WARM_END_K: f64 = 1.0;
 
 /// Limits of the reference, by the tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
