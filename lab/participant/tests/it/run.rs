@@ -63,3 +63,21 @@ pub fn run(name: &str, session: &Session, options: BenchOptions, trials: usize) 
     executor.run(&plan, Schedule::new(session, &plan)).expect("the session ends by itself");
     Ran { records: recorder.records().to_vec(), observations: bench.observations() }
 }
+
+/// The class values, which are those of a tile that was never identified.
+#[test]
+fn a_device_that_was_never_tuned_presents_no_session() {
+    let (session, code, seed) = (session("p5-real-and-simulated.toml", &[]), "01", 1);
+    let plan = Plan::new(&session, code, seed).expect("a plan");
+    let bench = Bench::new(&session, &plan, code, seed, BenchOptions::default()).expect("a bench");
+    let untuned = "set tile 2.957 0.0585 0.103 0.1 0.016";
+    let answer = Client::new(bench.link()).query(untuned).expect("an answer");
+    assert_eq!(answer, "ok");
+    let name = folder("never-tuned");
+    let mut recorder =
+        Recorder::create(&name, &session, &plan, (code, seed), true).expect("a recorder");
+    let mut people = bench.people();
+    let executor = Executor::new(&session, Client::new(bench.link()), &mut people, &mut recorder);
+    let end = executor.run(&plan, Schedule::new(&session, &plan)).expect_err("an untuned tile");
+    assert!(end.to_string().contains("never tuned"), "{end}");
+}
