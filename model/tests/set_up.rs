@@ -22,7 +22,7 @@ proptest! {
         };
         prop_assert!(is_between(response.skin()) && is_between(response.object()));
         prop_assert!((response.object() <= response.skin() + Celsius::DELTA * 8) == (object <= skin + 1e-6)
-            || (response.object() - response.skin()).abs() < Celsius::DELTA * 8);
+            || (response.object() - response.skin()).abs() <= Celsius::DELTA * 8);
     }
 }
 
