@@ -145,6 +145,14 @@ pub struct Figures {
 }
 
 impl Figures {
+    /// Names of the faults by which the device tripped, and `reset` for each reset.
+    pub fn trips_and_resets(&self) -> Vec<String> {
+        let trips = self.faults.iter().map(|tripped| tripped.fault.clone());
+        trips.chain(self.resets.iter().map(|_| "reset".into())).collect()
+    }
+}
+
+impl Figures {
     /// Largest skin error from 50 ms after each landing on, mK.
     pub fn skin_max_mk(&self) -> Option<f64> {
         self.skin_error_mk?.max_after_50ms

@@ -92,7 +92,7 @@ class Sample:
 
     @property
     def untuned(self) -> bool:
-        """Whether the tile was never identified, unless the line says `limited` in place of it."""
+        """Whether the line says that the tile was never identified; a line that says `limited` does not tell."""
         return self.remark == "untuned"
 
 

@@ -138,9 +138,7 @@ impl UseSession {
                 failure: Some(format!("{error:#}")),
             },
             Ok((outcome, figures)) => {
-                let mut trips: Vec<_> =
-                    (figures.faults.into_iter()).map(|tripped| tripped.fault).collect();
-                trips.extend(figures.resets.iter().map(|_| "reset".into()));
+                let trips = figures.trips_and_resets();
                 SessionResult {
                     number: self.number,
                     skin_c: Some(figures.skin_c),

@@ -120,20 +120,13 @@ impl SoundCampaign {
     /// The scene is not valid, or the device stopped.
     pub fn run(&self, device: &dyn SceneRunner) -> anyhow::Result<SoundResult> {
         let scene = Scene::parse(&self.text, "campaign".as_ref())?;
-        let (outcome, figures) = device.run(&scene)?;
-        let mut surface_c = Extremes { min: f64::INFINITY, max: f64::NEG_INFINITY };
-        for row in outcome.trace.rows() {
-            surface_c.min = surface_c.min.min(row.display_c);
-            surface_c.max = surface_c.max.max(row.display_c);
-        }
-        let mut trips: Vec<_> = figures.faults.into_iter().map(|tripped| tripped.fault).collect();
-        trips.extend(figures.resets.iter().map(|_| "reset".into()));
+        let (_, figures) = device.run(&scene)?;
         Ok(SoundResult {
             number: self.number,
             group: self.group,
-            surface_c,
+            surface_c: figures.display_c,
             skin_c: figures.skin_c,
-            trips,
+            trips: figures.trips_and_resets(),
         })
     }
 }

@@ -51,7 +51,7 @@ pub struct SensorDefects {
     pub thermistors: [ThermistorDefect; THERMISTORS],
     /// Index of the thermistor, with its pull-up, that is connected to each thermistor channel.
     pub connected: [usize; THERMISTORS],
-    /// The skin thermistor sits on the display's plate in place of the finger.
+    /// The skin thermistor sits on the display's plate instead of on the finger.
     pub skin_on_plate: bool,
     /// Force sensor.
     pub force: ForceDefect,

@@ -47,7 +47,7 @@ pub struct Telemetry {
     pub finger: Option<FingerKnowledge>,
     /// Whether the set-point was limited to its range.
     pub limited: bool,
-    /// Whether the tile was never identified, unless the line says `limited` in place of it.
+    /// Whether the line says that the tile was never identified; a line that says `limited` does not tell.
     pub is_untuned: bool,
 }
 

@@ -1,5 +1,7 @@
 //! The begin of a session: which device is this, and is it ready?
 
+use std::collections::BTreeSet;
+
 use thermal_client::client::{ClientError, PlainCommand, QueryCause, QueryIdentity, QueryState};
 use thermal_client::commissioning::settings;
 use thermal_client::link::Link;
@@ -23,10 +25,10 @@ impl<L: Link> Executor<'_, L> {
             )));
         }
         let stations = plan.trials.iter().flat_map(|trial| &trial.presented);
-        let displays = stations.filter_map(Presented::device_finger).max();
+        let displays: BTreeSet<u8> = stations.filter_map(Presented::device_finger).collect();
         let sensors = plan.trials.iter().map(|trial| self.session.skin_sensors(trial));
         let needed = [
-            ("it presents something on", displays),
+            ("it presents something on", displays.last().copied()),
             ("it measures the skin by", sensors.flatten().max()),
         ];
         for (what, last) in needed {
@@ -44,11 +46,7 @@ impl<L: Link> Executor<'_, L> {
             all_settings.push(settings(&mut self.client, address).map_err(ends)?);
         }
         self.recorder.device(&DeviceReport { identity, settings: all_settings })?;
-        let presenting = plan.trials.iter().flat_map(|trial| &trial.presented);
-        let mut presenting: Vec<u8> = presenting.filter_map(Presented::device_finger).collect();
-        presenting.sort_unstable();
-        presenting.dedup();
-        for finger in presenting {
+        for finger in displays {
             self.require_tuned(finger)?;
         }
         // Another program may have left it driven.

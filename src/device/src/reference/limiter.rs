@@ -78,17 +78,17 @@ impl ReferenceLimits {
         }
     }
 
-    /// Whether they are those of a tile that was never identified, which hold under every law.
+    /// Whether they are those of a tile that was never identified, which apply to every law.
     pub const fn are_of_untuned_tile(&self) -> bool {
         matches!(self.largest_step, LargestStep::Untuned(_))
     }
 
     /// Whether the reference of this law is limited.
-    pub fn hold_for(&self, law: Law) -> bool {
+    pub fn apply_to(&self, law: Law) -> bool {
         law != Law::Model || self.are_of_untuned_tile()
     }
 
-    /// The reference that the display follows in place of `wanted`. It lies at most one step from `last`, the reference of the
+    /// The reference that the display follows instead of `wanted`. It lies at most one step from `last`, the reference of the
     /// previous tick. If that tick had none, it starts from the reading of the display's thermistor, °C.
     pub fn limit(&self, wanted: Reference, last: Option<Reference>, reading: Celsius) -> Reference {
         let wanted_c = wanted.setpoint.celsius();
@@ -97,10 +97,10 @@ impl ReferenceLimits {
         let toward_allowed = |down: Celsius, up: Celsius| {
             allowed_c.max(last_c.saturating_sub(down)).min(last_c.saturating_add(up))
         };
-        let (next_c, unlimited_c) = match self.largest_step {
+        let (next_c, is_limited) = match self.largest_step {
             LargestStep::Untuned(step) => {
                 let next_c = toward_allowed(step, step);
-                (next_c, next_c)
+                (next_c, next_c != wanted_c)
             }
             LargestStep::Plain(part) => {
                 let step = |distance: Celsius| -> Celsius {
@@ -110,10 +110,10 @@ impl ReferenceLimits {
                 let down =
                     step(last_c.saturating_sub(SURFACE_MIN_WITHOUT_FAULT)) >> COOLING_SLOWER_LOG2;
                 // A plain law lags behind its set-point anyway, so only the range is reported.
-                (toward_allowed(down, up), allowed_c)
+                (toward_allowed(down, up), allowed_c != wanted_c)
             }
         };
-        Reference { limited: wanted.limited || unlimited_c != wanted_c, ..Reference::at(next_c) }
+        Reference { limited: wanted.limited || is_limited, ..Reference::at(next_c) }
     }
 }
 

@@ -79,8 +79,8 @@ pub struct Reference {
     /// check the reading against it, and the host gets it in status and telemetry. With the law `model`, in a contact
     /// for which the closed form of Eq. 6-12 is not valid, it contains the correction of the target.
     pub setpoint: Setpoint,
-    /// Whether the set-point had to be limited, because the computed one was outside the safe range of 15 to 42 °C;
-    /// reported to the host. A limited target does not count.
+    /// Whether the set-point had to be limited, because the computed one was outside the safe range of 15 to 42 °C or
+    /// beyond what [`ReferenceLimits`] allow; reported to the host. A limited target does not count.
     pub limited: bool,
     /// Target, 15 to 42 °C, to which the law `model` controls. It differs from the set-point only with this law and the
     /// contact model with contact resistance. During contact it is the temperature by Eq. 6-12 plus a correction, which

@@ -178,7 +178,7 @@ faults! {
     /// With five fingers: the multiplexers did not select the finger whose samples were taken, because one of their
     /// select lines is broken or shorted.
     SelectLines = "select-lines",
-    /// The self-test has moved the skin's thermistor together with the display: it sits on the plate in place of the finger, so
+    /// The self-test has moved the skin's thermistor together with the display: it sits on the plate instead of on the finger, so
     /// that an armed display would follow itself.
     SkinOnPlate = "skin-on-plate",
 }

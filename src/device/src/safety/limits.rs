@@ -20,8 +20,8 @@ pub const SETPOINT_MAX_C: f64 = 42.0;
 pub const SETPOINT_MIN: Celsius = fixed_celsius(SETPOINT_MIN_C);
 /// Hottest set-point in fixed point, 42 °C, to which [`Setpoint`](super::Setpoint) clamps.
 pub const SETPOINT_MAX: Celsius = fixed_celsius(SETPOINT_MAX_C);
-/// Coldest set-point of a tile that was never identified, °C. With display thermistors at the slow end of the parameter box
-/// (0.5 s) and a finger that lands with 10 N, the surface passes it by 1.6 K.
+/// Coldest set-point of a tile that was never identified, °C. In campaigns without a fault, with thermistors that lag by up to 0.5 s
+/// and fingers of up to 10 N, the surface passed it by 1.5 K at most.
 pub const UNTUNED_SETPOINT_MIN: Celsius = Celsius::lit("20");
 /// Hottest set-point of a tile that was never identified, °C.
 pub const UNTUNED_SETPOINT_MAX: Celsius = Celsius::lit("38");

@@ -43,7 +43,7 @@ const COUNTED_DETECTION_DELAY_MAX_TICKS: u32 = 32;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContactDetector {
     touching: bool,
-    /// Whether no counter counts, which saves most ticks 30 cycles.
+    /// Whether no counter counts: the mean tick on granite then takes 11 of 3578 cycles less, the longest 105 of 4765 more.
     is_settled: bool,
     /// Number of ticks of 1 ms in a row in which the force has been off zero (3 mN or more), up to
     /// [`COUNTED_DETECTION_DELAY_MAX_TICKS`]. During a contact it keeps its value from the contact's detection.

@@ -236,7 +236,7 @@ impl Station {
             Ok(valid) => {
                 let estimate = self.detect_touch_and_update_estimates(samples, &valid);
                 let mut reference = self.reference_for_present_state(&estimate);
-                if self.reference_limits.hold_for(self.controller.law()) {
+                if self.reference_limits.apply_to(self.controller.law()) {
                     self.limit_reference(&mut reference, valid.display);
                 }
                 let demand =

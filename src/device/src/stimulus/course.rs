@@ -167,15 +167,16 @@ impl Course {
             let duration_ms = point.time_ms - before.time_ms;
             // In steps of 2^-22 K per ms.
             const RATE_MAX: u64 = ((COURSE_RATE_MAX_K_S as u64) << Celsius::FRAC_NBITS) / 1000;
-            let rate = u64::from(way) * 1000 / u64::from(duration_ms);
+            let rate = |way: u32| u64::from(way) * 1000 / u64::from(duration_ms);
             // One step more, so that a rate at the limit is not refused for the rounding of its temperatures.
             if u64::from(way) > (RATE_MAX + 1) * u64::from(duration_ms) {
                 let half = 1 << (Celsius::FRAC_NBITS - 1);
-                return Err(CourseError::TooFast(((rate + half) >> Celsius::FRAC_NBITS) as u32));
+                return Err(CourseError::TooFast(
+                    ((rate(way) + half) >> Celsius::FRAC_NBITS) as u32,
+                ));
             }
             // One step less, for the same rounding.
-            let rate = u64::from(way.saturating_sub(1)) * 1000 / u64::from(duration_ms);
-            rate_k_s = Celsius::from_bits(rate as i32);
+            rate_k_s = Celsius::from_bits(rate(way.saturating_sub(1)) as i32);
         }
         (self.points.push(point)).map_err(|_| CourseError::TooManyPoints)?;
         self.smallest = self.smallest.min(point.temperature);

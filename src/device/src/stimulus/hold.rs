@@ -6,6 +6,7 @@ use super::line::temperature_on_line;
 use super::{Approach, STIMULUS_LEAD_TICKS, StimulusTemperatures};
 use crate::TICK_HZ;
 use crate::safety::Setpoint;
+use crate::safety::limits::UNTUNED_RATE_MAX_K_S;
 
 /// A running command `hold`: the set-point on its way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,9 +20,12 @@ pub struct Hold {
     approach: Approach,
 }
 
+// A tile that was never identified accepts a `hold` without a rate.
+const _: () = assert!(Hold::DEFAULT_RATE_K_S.to_bits() <= UNTUNED_RATE_MAX_K_S.to_bits());
+
 impl Hold {
-    /// Rate of `hold` without one, K/s. Slow enough for every law and thermistor: the PI laws overshoot faster steps, and
-    /// near 42 °C may trip at 43 °C. At 1 K/s the two display thermistors also agree closely enough for the detectors.
+    /// Rate of `hold` without one, K/s. Slow enough for every law and thermistor, and for a tile that was never identified; the two
+    /// display thermistors also agree closely enough for the detectors.
     pub const DEFAULT_RATE_K_S: Celsius = Celsius::ONE;
 
     /// Moves from `start`, °C, clamped to 15 to 42 °C, to `target` at this rate, K/s, above zero. The last tick may be

@@ -22,7 +22,7 @@ named_enum! {
         ReferenceOff = "reference-off",
         /// Every channel repeats its last code.
         AdcStuck = "adc-stuck",
-        /// The skin thermistor sits on the display's plate in place of the finger, and follows the plate.
+        /// The skin thermistor sits on the display's plate instead of on the finger, and follows the plate.
         SkinOnPlate = "skin-on-plate",
         /// The force sensor's wire is open: its pin is at ground.
         ForceOpen = "force-open",

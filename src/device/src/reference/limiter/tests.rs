@@ -67,8 +67,8 @@ fn a_wanted_set_point_that_is_near_enough_is_taken_as_it_is() {
 fn only_the_plain_laws_of_a_tile_that_was_identified_are_limited() {
     let (tuned, untuned) = (limits(0.1), ReferenceLimits::new(&Tile::FACTORY_DEFAULT));
     for (law, tuned_is_limited) in [(Law::Model, false), (Law::Pi, true), (Law::Pi10Hz, true)] {
-        assert_eq!(tuned.hold_for(law), tuned_is_limited, "{law:?}");
-        assert!(untuned.hold_for(law), "{law:?}");
+        assert_eq!(tuned.apply_to(law), tuned_is_limited, "{law:?}");
+        assert!(untuned.apply_to(law), "{law:?}");
     }
 }
 
