@@ -68,7 +68,9 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
             let pulse = "pulse 24 40 20 0.1 20";
             let with_course = |play: &str| {
                 let course = format!("{pulse} {play}");
-                device_after(&["stream 10", "events on", "arm", &course], 0.0, 50)
+                // An untuned tile refuses so fast a course.
+                let tuned = "set tile 2.957 0.0585 0.104 0.1 0.016";
+                device_after(&[tuned, "stream 10", "events on", "arm", &course], 0.0, 50)
             };
             let playing = with_course("now 100");
             let waiting = with_course("landing 3 neutral");
