@@ -8,7 +8,7 @@ use std::process::{Child, ChildStdout, Command, Stdio};
 use thermal_lab::client::Client;
 use thermal_lab::commissioning::commission;
 use thermal_lab::link::{ServedLink, ServedOperator};
-use thermal_sim::commissioning::settings_for_device;
+use thermal_sim::commissioning::{settings_for_device, settings_for_scene};
 use thermal_sim::scene::Scene;
 
 use super::refused;
@@ -99,6 +99,35 @@ fn a_served_device_is_commissioned_over_tcp_as_by_the_simulated_operator() {
     let scene = Scene::read(SCENE.as_ref()).expect("a scene");
     let operators = settings_for_device(&scene.params, scene.room_c, scene.seed);
     assert_eq!(record.settings, operators.expect("commissioned"));
+}
+
+#[test]
+fn a_device_that_is_served_commissioned_is_tuned_before_its_first_client() {
+    for (finger, fingers) in [("", "1"), ("@4 ", "5")] {
+        for (tile, options) in [("untuned", &[][..]), ("tuned", &["--commissioned"])] {
+            let tcp = ["--tcp", "127.0.0.1:0", "--fingers", fingers];
+            let mut served = Served::start(&[&tcp, options].concat());
+            let stream = TcpStream::connect(served.place()).expect("a connection");
+            let answer = query(stream, &format!("{finger}state\n"));
+            assert!(answer.ends_with(&format!(" tile={tile}\n")), "{fingers}: {answer}");
+        }
+    }
+}
+
+#[test]
+fn a_commissioned_device_on_the_bench_has_the_settings_of_its_scene() {
+    let scene = "../scenes/worst-case-box.toml";
+    let listen = ["--tcp", "127.0.0.1:0", "--surroundings", "127.0.0.1:0"];
+    let mut served = Served::start(&[&[scene, "--commissioned"][..], &listen].concat());
+    let (device, surroundings) = (served.place(), served.line("surroundings on "));
+    let link = ServedLink::connect(device, surroundings).expect("a connection");
+    let mut client = Client::new(link);
+    let scene = Scene::read(scene.as_ref()).expect("a scene");
+    let settings = settings_for_scene(&scene).expect("commissioned");
+    for (number, expected) in (1..).zip(&settings) {
+        let line = client.command(&format!("settings {number}"));
+        assert_eq!(line.as_ref().ok(), Some(expected), "{number}: {line:?}");
+    }
 }
 
 #[cfg(unix)]

@@ -30,10 +30,6 @@ BUFFER_ROWS = 65_536
 """Rows of telemetry that are kept until they are taken: a minute at 1 kHz."""
 
 
-_NOMINAL_TILE = "set tile 2.957 0.0585 0.104 0.1 0.016"
-"""What `tune` finds at the nominal simulated device; an untuned tile is slow and has a small range."""
-
-
 class Finger(Commands):
     """One finger of a device, from `Display.finger`."""
 
@@ -156,6 +152,7 @@ class Display(Commands):
         speed: Speed = "1",
         *,
         surroundings: bool = False,
+        commissioned: bool = True,
         checksums: bool = True,
         stream_ms: int | None = None,
         fields: Iterable[TelemetryField] = TELEMETRY_FIELDS,
@@ -169,13 +166,14 @@ class Display(Commands):
         A scene brings fingers that land (its time zero is 8 s after power-up). With `surroundings`, for one finger,
         `display.simulator.press(2.0)` presses with 2 N instead. At `speed="max"` the device's time passes as fast as it goes: a
         driven display would trip by `host-silent` between two keep-alive lines, so telemetry is off there unless `stream_ms`
-        says otherwise, and with it the guard. Without a scene the tile is the nominal one, and counts as tuned.
+        says otherwise, and with it the guard. The device is calibrated and tuned; `commissioned=False` gives one as it leaves the
+        factory, which is slow and has a small range.
         """
-        simulator = Simulator(hil_sim, scene, fingers, speed, surroundings)
+        simulator = Simulator(hil_sim, scene, fingers, speed, surroundings, commissioned)
         if stream_ms is None:
             stream_ms = 0 if speed == "max" else STREAM_MS
         try:
-            display = cls(
+            return cls(
                 TcpLink(simulator.address),
                 checksums=checksums,
                 stream_ms=stream_ms,
@@ -186,9 +184,6 @@ class Display(Commands):
                 simulator=simulator,
                 real_time=speed == "1",
             )
-            if scene is None:
-                display._connection.tell(_NOMINAL_TILE)
-            return display
         except BaseException:
             simulator.stop()
             raise

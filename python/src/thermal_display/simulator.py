@@ -55,6 +55,7 @@ class Simulator:
         fingers: Literal[1, 5] = 1,
         speed: Speed = "1",
         surroundings: bool = False,
+        commissioned: bool = True,
     ) -> None:
         command = [find_hil_sim(hil_sim), "serve"]
         if scene is not None:
@@ -64,6 +65,8 @@ class Simulator:
         command += ["--engine", "native", "--tcp", "127.0.0.1:0", "--fingers", str(fingers), "--speed", speed]
         if surroundings:
             command += ["--surroundings", "127.0.0.1:0"]
+        if commissioned:
+            command.append("--commissioned")
         if os.name == "posix":
             command = ["sh", "-c", _ENDS_WITH_PARENT, "sh", *command]
         self._errors = tempfile.TemporaryFile()

@@ -86,6 +86,11 @@ impl<E: Engine> OneFinger<E> {
         Self { engine, scene, ms: 0 }
     }
 
+    /// What runs the device, for a device that leaves its scene.
+    pub fn into_engine(self) -> E {
+        self.engine
+    }
+
     fn inject(&mut self, half: u64, at: impl Fn(u32) -> bool) -> Result<(), NotInjected> {
         let (faults, zero_ms) = (&self.scene.injections, self.scene.settle_ms());
         inject_due(&mut self.engine, faults.iter(), zero_ms, half, at)

@@ -9,6 +9,7 @@ mod client;
 mod clock;
 mod device;
 mod in_step;
+mod set_up;
 mod tcp;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,6 +21,7 @@ pub use device::{
     FiveFingers, OneFinger, ServeError, ServedDevice, read_scene, scenes_of_five_fingers,
 };
 pub use in_step::serve_in_step;
+pub use set_up::set_up;
 pub use tcp::{TcpLine, TcpLineError};
 
 use crate::engine::BAUD;

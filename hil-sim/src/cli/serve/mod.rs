@@ -14,13 +14,13 @@ use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
 use thermal_sim::World;
 use thermal_sim::board::{Board, BoardBench, LossyLine};
-use thermal_sim::commissioning::{CommissioningSetup, SimulatedSurroundings};
+use thermal_sim::commissioning::{CommissioningSetup, SimulatedSurroundings, settings_for_scene};
 use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, NativeFiveFingers};
 use thermal_sim::scene::{FaultKind, Scene};
 use thermal_sim::serve::{
-    ClientLine, Clock, FiveFingers, OneFinger, ServedDevice, Speed, TcpLine, read_scene,
-    scenes_of_five_fingers, serve, serve_in_step,
+    self, ClientLine, Clock, FiveFingers, OneFinger, ServedDevice, Speed, TcpLine, read_scene,
+    scenes_of_five_fingers, serve_in_step,
 };
 
 use super::engine::{self, EngineKind};
@@ -43,6 +43,10 @@ pub struct Arguments {
     /// Number of fingers of the device, 1 or 5; the scene is around each
     #[arg(long, default_value_t = 1, value_parser = fingers)]
     fingers: usize,
+    /// Give the device its settings of calibration and tuning first, and those that the scene says; else it is new from the
+    /// factory, and an untuned one is slow and has a small range
+    #[arg(long, conflicts_with = "board")]
+    commissioned: bool,
     /// What runs the device's logic
     #[arg(long, value_enum, default_value_t = EngineKind::DEFAULT)]
     engine: EngineKind,
@@ -121,6 +125,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         surroundings,
         board,
         announcement,
+        commissioned: arguments.commissioned,
         speed: match arguments.speed {
             SpeedArgument::RealTime => Speed::RealTime,
             SpeedArgument::Max => Speed::Max,
@@ -165,6 +170,12 @@ fn note_host_lines(scene: &Scene) {
     }
 }
 
+/// Gives a device its settings.
+fn set_up<D: ServedDevice>(device: &mut D, settings: &[String]) -> Result<(), Failure> {
+    let lines = settings.iter().map(String::as_str);
+    serve::set_up(device, lines).context("--commissioned").map_err(Failure::run)
+}
+
 /// A line and where it is.
 type Place = (Box<dyn ClientLine>, String);
 
@@ -191,6 +202,8 @@ struct Server<'a> {
     board: Option<Board>,
     /// Where these are, as it is printed when the device runs.
     announcement: String,
+    /// Whether its settings are those of commissioning.
+    commissioned: bool,
     speed: Speed,
     stop: &'a AtomicBool,
 }
@@ -201,9 +214,10 @@ impl Server<'_> {
         scene: Scene,
         start: impl FnOnce(World) -> Result<E, Failure>,
     ) -> Result<(), Failure> {
+        let settings = self.settings(&scene)?;
         let Some(mut surroundings_line) = self.surroundings.take() else {
             let world = World::new(&scene).map_err(Failure::input)?;
-            return self.serve(OneFinger::new(start(world)?, scene));
+            return self.serve(OneFinger::new(start(world)?, scene), &settings);
         };
         let (world, mut surroundings, lost_bytes_interval) = match self.board.take() {
             Some(board) => {
@@ -216,8 +230,9 @@ impl Server<'_> {
                 (setup.in_use(), SimulatedSurroundings::new(&setup), None)
             }
         };
-        let engine = start(world.map_err(Failure::input)?)?;
-        let mut engine = LossyLine::new(engine, lost_bytes_interval);
+        let mut device = OneFinger::new(start(world.map_err(Failure::input)?)?, scene);
+        set_up(&mut device, &settings)?;
+        let mut engine = LossyLine::new(device.into_engine(), lost_bytes_interval);
         self.announce()?;
         let mut clock = Clock::start(self.speed);
         let lines: [&mut dyn ClientLine; 2] = [&mut *self.line, &mut *surroundings_line];
@@ -246,13 +261,27 @@ impl Server<'_> {
         let worlds = worlds.map_err(Failure::input)?;
         let worlds = <[World; FINGERS]>::try_from(worlds)
             .map_err(|_| Failure::run(anyhow!("a world for each finger")))?;
-        self.serve(FiveFingers::new(start(worlds)?, scenes))
+        let mut settings = Vec::new();
+        for (finger, scene) in scenes.iter().enumerate() {
+            let lines = self.settings(scene)?;
+            settings.extend(lines.into_iter().map(|line| format!("@{finger} {line}")));
+        }
+        self.serve(FiveFingers::new(start(worlds)?, scenes), &settings)
     }
 
-    fn serve<D: ServedDevice>(mut self, mut device: D) -> Result<(), Failure> {
+    /// The lines that set the device of a scene up.
+    fn settings(&self, scene: &Scene) -> Result<Vec<String>, Failure> {
+        if !self.commissioned {
+            return Ok(Vec::new());
+        }
+        settings_for_scene(scene).context("--commissioned").map_err(Failure::run)
+    }
+
+    fn serve<D: ServedDevice>(mut self, mut device: D, settings: &[String]) -> Result<(), Failure> {
+        set_up(&mut device, settings)?;
         self.announce()?;
         let mut clock = Clock::start(self.speed);
-        serve(&mut device, &mut *self.line, &mut clock, self.stop).map_err(Failure::run)
+        serve::serve(&mut device, &mut *self.line, &mut clock, self.stop).map_err(Failure::run)
     }
 
     fn announce(&self) -> Result<(), Failure> {

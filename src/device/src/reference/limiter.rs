@@ -57,7 +57,8 @@ enum LargestStep {
 impl ReferenceLimits {
     const UNTUNED: Self = Self {
         largest_step: LargestStep::Untuned(Celsius::from_bits(
-            UNTUNED_RATE_MAX_K_S.to_bits() / TICK_HZ as i32,
+            // Rounded up, so that the fastest ramp that `hold` allows is not limited.
+            UNTUNED_RATE_MAX_K_S.to_bits() / TICK_HZ as i32 + 1,
         )),
         min: UNTUNED_SETPOINT_MIN,
         max: UNTUNED_SETPOINT_MAX,

@@ -88,3 +88,18 @@ fn the_reference_of_a_tile_that_was_never_identified_moves_slowly_in_a_small_ran
     let on_the_way = limits.limit(reference(30.0), Some(reference(29.0)), Celsius::ZERO);
     assert!(on_the_way.limited);
 }
+
+/// Else `hold` at the fastest ramp that it allows would report a limit on the whole way.
+#[test]
+fn a_ramp_of_1_k_s_is_not_limited_on_a_tile_that_was_never_identified() {
+    let limits = ReferenceLimits::new(&Tile::FACTORY_DEFAULT);
+    for rate_k_s in [1.0, -1.0] {
+        let mut last = reference(29.0);
+        for tick in 1..=8000 {
+            let wanted = reference(29.0 + rate_k_s * 1e-3 * f64::from(tick));
+            let next = limits.limit(wanted, Some(last), Celsius::ZERO);
+            assert_eq!(next, wanted, "{rate_k_s} K/s, tick {tick}");
+            last = next;
+        }
+    }
+}
