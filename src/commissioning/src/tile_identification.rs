@@ -48,6 +48,10 @@ const PLAUSIBLE_MEASURED_TO_DEMANDED_RATIOS: RangeInclusive<f64> = 0.5..=1.5;
 /// [`IdentificationError::OutOfRange`]. A disturbance of the display, such as a touch too light for the force sensor,
 /// distorts the dead time before the other parameters.
 static PLAUSIBLE_DEAD_TIME: Range = Range { name: "dead time", unit: "s", min: 0.004, max: 0.04 };
+/// Lags of the display's thermistor that an identified tile can have; another ends the identification with
+/// [`IdentificationError::OutOfRange`]. Up to 0.5 s the surface stays within its limits under every law; a thermistor that lags more is
+/// loose, and hides what the surface does.
+static CONTROLLABLE_LAG: Range = Range { name: "lag", unit: "s", min: 0.001, max: 0.6 };
 /// Largest RMS residual of the fit as a fraction of the fitted signal, which is the time integral of the change of the
 /// display's reading. Above it the identification ends with [`IdentificationError::ModelMismatch`]; quantisation by the
 /// converter alone leaves 0.007.
@@ -115,9 +119,11 @@ pub fn tile_from_normal_equations(
         lag * m,
         fitted[GAIN_TIMES_DEAD_TIME_INDEX] / gain + ACTUATION_DELAY_S,
     ]);
-    let implausible_dead_time = (!PLAUSIBLE_DEAD_TIME.contains(tile.dead_time_s))
-        .then_some((&PLAUSIBLE_DEAD_TIME, tile.dead_time_s));
-    match tile.first_value_out_of_range().or(implausible_dead_time) {
+    let mut implausible =
+        [(&CONTROLLABLE_LAG, tile.sensor_lag_s), (&PLAUSIBLE_DEAD_TIME, tile.dead_time_s)]
+            .into_iter()
+            .filter(|(range, value)| !range.contains(*value));
+    match tile.first_value_out_of_range().or_else(|| implausible.next()) {
         Some((allowed, value)) => Err(IdentificationError::OutOfRange(allowed, value)),
         None => Ok(tile),
     }

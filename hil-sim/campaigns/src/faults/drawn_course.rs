@@ -12,9 +12,6 @@ use super::scene_text;
 const ABSOLUTE_C: (f64, f64) = (15.0, 41.0);
 /// Range of relative temperatures, K above a skin of 34 °C.
 const RELATIVE_K: (f64, f64) = (-19.0, 7.0);
-/// Range of temperatures, °C, for the laws `pi` and `pi-10hz`: after a step of 15 K with the slowest thermistors the second one
-/// overshoots by 3 K, and below 13 and above 43 °C the device trips.
-const OVERSHOOTING_C: (f64, f64) = (18.0, 39.0);
 /// Most points, so that a course is loaded within 60 ms.
 const POINTS_MAX: usize = 12;
 /// Range of the time between two points, s, drawn with a uniform logarithm.
@@ -25,25 +22,15 @@ const TIMES_MAX: u32 = 20;
 const TRIGGER_AFTER_S: (f64, f64) = (0.1, 6.0);
 
 /// Tables of a scene in which the host uploads and plays a drawn course from this time, s, on, with an edge at the trigger
-/// input if the course waits for one before `end_s`. With a skin, °C, the course stays within the range of a law that overshoots.
-pub(super) fn course_tables(
-    seed: u64,
-    t_s: f64,
-    end_s: f64,
-    skin_if_overshooting_c: Option<f64>,
-) -> String {
+/// input if the course waits for one before `end_s`.
+pub(super) fn course_tables(seed: u64, t_s: f64, end_s: f64) -> String {
     let mut draw = Xoshiro256PlusPlus::seed_from_u64(seed);
     let is_absolute = draw.random_bool(0.5);
-    let (temperatures, (mut low, mut high)) = if is_absolute {
+    let (temperatures, (low, high)) = if is_absolute {
         (TemperatureKind::Absolute, ABSOLUTE_C)
     } else {
         (TemperatureKind::AboveSkin, RELATIVE_K)
     };
-    if let Some(skin_c) = skin_if_overshooting_c {
-        let zero_c = if is_absolute { 0.0 } else { skin_c };
-        low = low.max(OVERSHOOTING_C.0 - zero_c);
-        high = high.min(OVERSHOOTING_C.1 - zero_c);
-    }
     let mut points = vec![(0.0, draw.random_range(low..=high))];
     for _ in 1..draw.random_range(2..=POINTS_MAX) {
         let (before_s, before) = points[points.len() - 1];
@@ -78,7 +65,7 @@ mod tests {
     /// 200 draws miss one of six shares of a third or more with a probability below 1e-30.
     #[test]
     fn every_kind_of_course_is_drawn() {
-        let draws: Vec<_> = (0..200).map(|seed| course_tables(seed, 0.1, 9.0, None)).collect();
+        let draws: Vec<_> = (0..200).map(|seed| course_tables(seed, 0.1, 9.0)).collect();
         for part in ["absolute", "relative", "now", "landing", "[[trigger]]", "neutral", "hold"] {
             let count = draws.iter().filter(|tables| tables.contains(part)).count();
             assert!(count > 30, "{part}: {count}");
@@ -91,7 +78,7 @@ mod tests {
             let text = format!(
                 "duration_s = 7\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"copper\"\nappears_t_s = 7\n\
                  [[force]]\nt_s = 1\nforce_n = 2\n{}{}",
-                course_tables(seed, 0.1, 7.0, None),
+                course_tables(seed, 0.1, 7.0),
                 scene_text::host_line("events on", 0.05),
             );
             let scene = Scene::parse(&text, "course".as_ref()).expect("a scene");

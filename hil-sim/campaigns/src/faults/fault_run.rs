@@ -10,7 +10,7 @@ use thermal_sim::run::Outcome;
 use thermal_sim::scene::{FaultKind, Scene, ScheduledFault};
 
 use super::assessment::RunAssessment;
-use super::{FaultCase, InjectedFault, InjectionPoint, Touch, scene_text};
+use super::{DrawnDevice, FaultCase, InjectedFault, InjectionPoint, Touch, scene_text};
 
 /// Questions at the end and their times before it, s. The state is queried twice because a reset can truncate a line of
 /// telemetry, which then merges with the first answer.
@@ -42,7 +42,8 @@ fn fault_free_run(
     scene: &Scene,
 ) -> anyhow::Result<Option<Outcome>> {
     let mut fault_free = scene.clone();
-    let needed = point.scene.has_tuned_model()
+    let needed = scene.commissioned
+        && point.scene.has_tuned_model()
         && fault_case.symptoms.iter().any(|sign| sign.needs_fault_free_run());
     match fault_case.fault {
         _ if fault_case.learning.is_some_and(|one| one.assumes) => {
@@ -86,7 +87,7 @@ pub struct FaultRun {
 }
 
 impl FaultRun {
-    /// Runs a fault case; `None` if the fault does not apply to the engine.
+    /// Runs a fault case on the nominal device, whose converter has this seed; `None` if the fault does not apply to the engine.
     ///
     /// # Errors
     /// The scene is not valid.
@@ -96,14 +97,19 @@ impl FaultRun {
         point: InjectionPoint,
         seed: u64,
     ) -> anyhow::Result<Option<Self>> {
-        let text = scene_text(
-            &[(fault_case.fault, point.t_s)],
-            point,
-            fault_case.after_s,
-            seed,
-            &[],
-            &fault_case.touch(seed),
-        );
+        let nominal = (&DrawnDevice::nominal(seed), &fault_case.touch(seed));
+        Self::run_on(device, fault_case, point, nominal)
+    }
+
+    /// Runs a fault case on a drawn device under a drawn finger; `None` if the fault does not apply to the engine.
+    pub(super) fn run_on(
+        device: &dyn SceneRunner,
+        fault_case: &FaultCase,
+        point: InjectionPoint,
+        drawn: (&DrawnDevice, &Touch),
+    ) -> anyhow::Result<Option<Self>> {
+        let fault = [(fault_case.fault, point.t_s)];
+        let text = scene_text(&fault, point, fault_case.after_s, drawn);
         Self::run_text(device, fault_case, point, &text)
     }
 
@@ -136,17 +142,14 @@ impl FaultRun {
     }
 }
 
-/// The text of the scene with faults at their times, s, and with the questions at the end. `plant` has plant parameters
-/// that are not nominal, `touch` what touches; the seed is that of the converter.
+/// The text of the scene with faults at their times, s, and with the questions at the end.
 pub(super) fn scene_text(
     faults: &[(InjectedFault, f64)],
     point: InjectionPoint,
     after_s: f64,
-    seed: u64,
-    plant: &[(String, f64)],
-    touch: &Touch,
+    (device, touch): (&DrawnDevice, &Touch),
 ) -> String {
-    let (mut text, end_s) = point.scene.text(seed, point.t_s, after_s, touch);
+    let (mut text, end_s) = point.scene.text(device, point.t_s, after_s, touch);
     for (fault, t_s) in faults {
         text += &scene_text::fault_text(fault, *t_s);
     }
@@ -156,8 +159,6 @@ pub(super) fn scene_text(
     }
     text += "[plant]\n";
     text += &touch.plant;
-    for (key, value) in plant {
-        text += &format!("{key} = {value:?}\n");
-    }
+    text += &device.plant_keys();
     text
 }

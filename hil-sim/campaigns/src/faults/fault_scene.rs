@@ -9,7 +9,7 @@ use thermal_device::safety::Fault;
 use thermal_device::stimulus::TemperatureKind;
 use thermal_sim::named_enum;
 
-use super::{Touch, scene_text};
+use super::{DrawnDevice, Touch, scene_text};
 
 named_enum! {
     /// A scene, named after its state when the fault comes. At the end of each, the finger rests on the display.
@@ -65,15 +65,15 @@ named_enum! {
     }
 }
 
-/// Forces: time in s, N.
-type Forces = &'static [(f64, f64)];
+/// Times, s, and whether the finger is pressed from then on.
+type Forces = &'static [(f64, bool)];
 
-const LANDING: Forces = &[(1.0, 2.0)];
-const RESTING: Forces = &[(0.2, 2.0)];
-const LATE: Forces = &[(6.0, 2.0)];
-const LATER: Forces = &[(15.0, 2.0)];
+const LANDING: Forces = &[(1.0, true)];
+const RESTING: Forces = &[(0.2, true)];
+const LATE: Forces = &[(6.0, true)];
+const LATER: Forces = &[(15.0, true)];
 const REPLACING: Forces =
-    &[(0.5, 2.0), (1.5, 0.0), (2.5, 2.0), (3.5, 0.0), (4.5, 2.0), (5.5, 0.0), (6.5, 2.0)];
+    &[(0.5, true), (1.5, false), (2.5, true), (3.5, false), (4.5, true), (5.5, false), (6.5, true)];
 
 /// Times of faults relative to an edge, ms.
 const AROUND_MS: [i32; 12] = [-20, -3, -2, -1, 0, 1, 2, 3, 5, 10, 25, 60];
@@ -161,6 +161,11 @@ impl FaultScene {
         matches!(self, Self::Course | Self::CourseBare | Self::CourseTrigger | Self::CourseLanding)
     }
 
+    /// Whether an untuned device refuses what the host says.
+    pub(super) const fn needs_tuned(self) -> bool {
+        self.has_course() || matches!(self, Self::HeldWarm | Self::HeldCold)
+    }
+
     /// Whether the host prescribes what an armed display does, instead of an object.
     pub(super) const fn is_commanded(self) -> bool {
         self.has_course() || matches!(self, Self::HeldWarm | Self::HeldCold | Self::Tuning)
@@ -182,7 +187,7 @@ impl FaultScene {
         upload.chain([play.into()]).collect()
     }
 
-    /// Whether the control law uses a tuned model of the tile, so that the display follows a fault-free run closely.
+    /// Whether the control law uses the model of the tile, so that the display of a tuned one follows a fault-free run closely.
     pub(super) const fn has_tuned_model(self) -> bool {
         matches!(self.law(), Law::Model) && self.is_commissioned() && !matches!(self, Self::Tuning)
     }
@@ -220,9 +225,17 @@ impl FaultScene {
         InjectionPoint { scene: self, t_s: f64::from(t_ms) / 1e3 }
     }
 
-    /// The text of the scene, with this finger and object, that continues for `after_s` after a fault at `t_s`, and the end of
-    /// the scene, s.
-    pub fn text(self, seed: u64, t_s: f64, after_s: f64, touch: &Touch) -> (String, f64) {
+    /// The text of the scene, with this device, finger and object, that continues for `after_s` after a fault at `t_s`, and the
+    /// end of the scene, s.
+    pub(super) fn text(
+        self,
+        device: &DrawnDevice,
+        t_s: f64,
+        after_s: f64,
+        touch: &Touch,
+    ) -> (String, f64) {
+        let device =
+            DrawnDevice { tuned: device.tuned && self.is_commissioned(), ..device.clone() };
         let duration_s = (t_s + after_s).max(SHORTEST_S);
         let (material, object_c) = self.object();
         let appears_s = match self {
@@ -232,17 +245,18 @@ impl FaultScene {
             _ => 0.0,
         };
         let mut text = format!(
-            "duration_s = {duration_s:?}\nskin_c = 34\nroom_c = 24\nseed = {seed}\nlaw = \"{}\"\nmode = \"{}\"\n[device]\n\
-             commissioned = {}\n{}[object]\nmaterial = \"{material}\"\nstart_c = {object_c:?}\n\
+            "duration_s = {duration_s:?}\nskin_c = {:?}\nlaw = \"{}\"\nmode = \"{}\"\n{}{}[object]\nmaterial = \"{material}\"\nstart_c = {object_c:?}\n\
              appears_t_s = {appears_s:?}\n{}{}",
+            touch.skin_c,
             self.law().name(),
             self.mode(),
-            self.is_commissioned(),
+            device.keys(),
             touch.device,
             touch.object,
             touch.tables,
         );
-        for (t_s, force_n) in self.timing().0 {
+        for (t_s, is_pressed) in self.timing().0 {
+            let force_n = if *is_pressed { touch.force_n } else { 0.0 };
             text += &format!("[[force]]\nt_s = {t_s:?}\nforce_n = {force_n:?}\n");
         }
         if self.has_tripped_before().is_some() {

@@ -17,8 +17,8 @@ use thermal_sim::trace::TraceRow;
 use super::assessment::{RunAssessment, works_at_end};
 use super::fault_run::scene_text;
 use super::{
-    Breach, FaultCase, FaultRun, FaultScene, FaultSummary, InjectedFault, InjectionPoint, Touch,
-    fault_cases, list,
+    Breach, DrawnDevice, FaultCase, FaultRun, FaultScene, FaultSummary, InjectedFault,
+    InjectionPoint, Touch, fault_cases, list,
 };
 
 /// Scenes of the fingers, in which they are in contact when a fault comes.
@@ -143,7 +143,8 @@ impl FiveFingerRun {
             let faults = if has_fault { &fault[..] } else { &[] };
             let after_s = fault_free_until.map_or(AFTER_S, |end_s| end_s - point.t_s);
             let seed = stream_seed(self.seed, &format!("finger {finger}")) >> 1;
-            let text = scene_text(faults, point, after_s, seed, &[], &Touch::default());
+            let nominal = (&DrawnDevice::nominal(seed), &Touch::default());
+            let text = scene_text(faults, point, after_s, nominal);
             let mut scene = Scene::parse(&text, Path::new(point.scene.name()))?;
             let floods = |fault: &&mut ScheduledFault| is_of_one_host(fault.fault.kind);
             for flood in scene.faults.iter_mut().filter(floods) {

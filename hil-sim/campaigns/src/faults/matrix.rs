@@ -2,8 +2,12 @@
 
 use serde::Serialize;
 use thermal_plant::parameters::stream_seed;
+use thermal_sim::SceneRunner;
 
-use super::{FaultCase, FaultRun, FaultScene, InjectionPoint};
+use super::{DrawnDevice, FaultCase, FaultRun, FaultScene, InjectionPoint, Touch};
+
+/// Drawn devices of a matrix; each tuned one must be commissioned.
+const DEVICES: u64 = 16;
 
 /// The part of the matrix to run.
 #[derive(Clone, Debug)]
@@ -12,16 +16,16 @@ pub struct MatrixPlan {
     pub fault_cases: Vec<FaultCase>,
     /// Scenes.
     pub scenes: Vec<FaultScene>,
-    /// Number of runs of each fault case.
+    /// Number of runs of each fault case. Every other one is on a drawn device, tuned or not, under a drawn finger.
     pub moments: usize,
     /// Seed of every draw and of the device's converter.
     pub seed: u64,
 }
 
 impl MatrixPlan {
-    /// The runs: index of the fault case, and scene and time. The scenes in which a fault is worst come first, the others in
-    /// random order; with more runs than scenes they repeat.
-    pub fn runs(&self) -> Vec<(usize, InjectionPoint)> {
+    /// The runs. The scenes in which a fault is worst come first, the others in random order; with more runs than scenes they
+    /// repeat.
+    pub fn runs(&self) -> Vec<MatrixRun> {
         let mut runs = Vec::new();
         for (row, fault_case) in self.fault_cases.iter().enumerate() {
             let name = fault_case.fault.to_string();
@@ -36,10 +40,49 @@ impl MatrixPlan {
             });
             for (k, place) in scenes.iter().cycle().take(self.moments).enumerate() {
                 let seed = stream_seed(self.seed, &format!("{name} {k}"));
-                runs.push((row, place.injection_point(seed, k % 2 == 0)));
+                let point = place.injection_point(seed, k % 2 == 0);
+                runs.push(self.run_at(row, point, (k % 2 == 1).then_some(seed)));
             }
         }
         runs
+    }
+
+    /// A run on the nominal device, or on one that a seed draws. Of a learnt finger more is expected than a drawn one allows.
+    fn run_at(&self, row: usize, point: InjectionPoint, drawn: Option<u64>) -> MatrixRun {
+        let fault_case = self.fault_cases[row];
+        let drawn = drawn.filter(|_| fault_case.learning.is_none());
+        let (device, touch) = match drawn {
+            None => (DrawnDevice::nominal(self.seed), fault_case.touch(self.seed)),
+            Some(seed) => {
+                let number = seed % DEVICES;
+                let of_kind = if point.scene.needs_tuned() { number & !1 } else { number };
+                let (material, _) = point.scene.object();
+                (DrawnDevice::new(self.seed, of_kind), Touch::new(seed, material))
+            }
+        };
+        MatrixRun { row, fault_case, point, device, touch }
+    }
+}
+
+/// One fault at one time of one scene, on one device under one finger.
+#[derive(Clone, Debug)]
+pub struct MatrixRun {
+    /// Index of the fault case.
+    pub row: usize,
+    fault_case: FaultCase,
+    point: InjectionPoint,
+    device: DrawnDevice,
+    touch: Touch,
+}
+
+impl MatrixRun {
+    /// Runs it; `None` if the fault does not apply to the engine.
+    ///
+    /// # Errors
+    /// The scene is not valid.
+    pub fn run(&self, engine: &dyn SceneRunner) -> anyhow::Result<Option<FaultRun>> {
+        let drawn = (&self.device, &self.touch);
+        FaultRun::run_on(engine, &self.fault_case, self.point, drawn)
     }
 }
 

@@ -14,6 +14,7 @@
 
 mod assessment;
 mod drawn_course;
+mod drawn_device;
 mod fault_case;
 mod fault_run;
 mod fault_scene;
@@ -33,6 +34,7 @@ mod table;
 mod touch;
 
 pub use assessment::{Breach, RunAssessment};
+pub use drawn_device::DrawnDevice;
 pub use fault_case::{ExpectedReaction, FaultCase, InjectedFault, LearningExpected};
 pub use fault_run::FaultRun;
 pub use fault_scene::{FaultScene, InjectionPoint};
@@ -41,7 +43,7 @@ pub use flips::{
     BitFlip, FlipEffect, FlipRegion, FlipResult, FlippableMemory, ReferenceRun, flip_table,
 };
 pub use list::fault_cases;
-pub use matrix::{FaultSummary, MatrixPlan};
+pub use matrix::{FaultSummary, MatrixPlan, MatrixRun};
 pub use normal_use::{SessionResult, UseSession, session_table};
 pub use page::{HTML, page};
 pub use pairs::{FaultPair, PairResult, pair_table, pairs};

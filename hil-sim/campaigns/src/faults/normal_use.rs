@@ -14,15 +14,13 @@ use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
 use super::drawn_course::course_tables;
-use super::{Touch, scene_text};
-use crate::fidelity::PlantDraw;
+use super::touch::{FORCE_N, LAYERED_SKIN_MAX_C, SKINS_C, log_uniform};
+use super::{DrawnDevice, Touch, scene_text};
 
 /// Length of a session, s, after the time in which the device is armed and settles.
 const SESSION_S: f64 = 120.0;
 /// Length including that time, s.
 const WHOLE_S: f64 = 128.0;
-/// Consecutive sessions on one device, which is commissioned before the first.
-const ON_ONE_DEVICE: u64 = 8;
 /// Fraction of sessions in which the display is held at a temperature, as for calibration.
 const HELD: f64 = 0.125;
 /// Fraction of sessions in which the host plays courses, one after the other, in place of an object.
@@ -33,8 +31,6 @@ const PLAYED_EVERY_S: f64 = 20.0;
 const ASKED_EVERY_S: f64 = 0.25;
 /// Noise of a conversion, counts: the whole range of the parameter, which is not among the drawn ones.
 const NOISE_COUNTS: std::ops::RangeInclusive<f64> = 0.4..=1.2;
-/// Range of the forces, N, drawn with a uniform logarithm.
-const FORCE_N: (f64, f64) = (0.1, 5.0);
 
 /// A session with a fault-free device.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,10 +52,9 @@ impl UseSession {
     pub fn new(seed: u64, number: u64, with_flux_sensor: bool) -> Self {
         let mut draw =
             Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, &format!("session {number}")));
-        let device = PlantDraw::in_use(seed, number / ON_ONE_DEVICE);
+        let mut device = DrawnDevice::new(seed, number / DrawnDevice::CAMPAIGNS);
         let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
-        let (law_word, law) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
-        let skin_c = draw.random_range(30.0..=36.0);
+        let (law, _) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
         let object_c = draw.random_range(17.0..=41.0);
         let held_c = draw.random_bool(HELD).then(|| draw.random_range(15.0..=42.0));
         let course_seed = stream_seed(seed, &format!("session {number} course"));
@@ -73,21 +68,25 @@ impl UseSession {
         };
         let touch_seed = stream_seed(seed, &format!("session {number} touch"));
         let touch = if with_flux_sensor {
-            let mut touch = Touch::learnt(touch_seed);
+            let skin_c = draw.random_range(*SKINS_C.start()..=LAYERED_SKIN_MAX_C);
+            let mut touch = Touch { skin_c, ..Touch::learnt(touch_seed) };
             touch.draw_flux_errors(device.seed);
             touch
         } else {
             Touch::new(touch_seed, material)
         };
         let mut text = format!(
-            "duration_s = {SESSION_S:?}\nskin_c = {skin_c:?}\nroom_c = 24\nseed = {}\nlaw = \"{law_word}\"\n[device]\n{}\
+            "duration_s = {SESSION_S:?}\nskin_c = {:?}\nlaw = \"{law}\"\n{}{}\
              [object]\nmaterial = \"{material}\"\nstart_c = {object_c:?}\nappears_t_s = {appears_s:?}\n{}{}",
-            device.seed, touch.device, touch.object, touch.tables
+            touch.skin_c,
+            device.keys(),
+            touch.device,
+            touch.object,
+            touch.tables
         );
         let mut t_s = draw.random_range(0.1..=3.0);
         while t_s < SESSION_S - 1.0 {
-            let part: f64 = draw.random();
-            let force_n = FORCE_N.0 * (FORCE_N.1 / FORCE_N.0).powf(part);
+            let force_n = log_uniform(&mut draw, FORCE_N);
             let ramp_s = draw.random_range(0.001..=0.3);
             text += &press(t_s, force_n, ramp_s);
             t_s += ramp_s + draw.random_range(0.3..=15.0);
@@ -100,11 +99,10 @@ impl UseSession {
             text += &scene_text::host_line(&format!("hold {held_c:.3}"), 0.1);
         }
         if plays {
-            let skin_if_overshooting_c = matches!(law, Law::Pi | Law::Pi10Hz).then_some(skin_c);
             for part in 0..(SESSION_S / PLAYED_EVERY_S) as u32 {
                 let seed = stream_seed(course_seed, &format!("part {part}"));
                 let t_s = 0.1 + f64::from(part) * PLAYED_EVERY_S;
-                text += &course_tables(seed, t_s, SESSION_S, skin_if_overshooting_c);
+                text += &course_tables(seed, t_s, SESSION_S);
             }
         }
         if with_flux_sensor {
@@ -114,12 +112,10 @@ impl UseSession {
         }
         let mut device_draw = Xoshiro256PlusPlus::seed_from_u64(stream_seed(device.seed, "noise"));
         let noise_counts = device_draw.random_range(NOISE_COUNTS);
+        device.plant.insert("sensors.converter.noise_counts".into(), noise_counts);
         text += "[plant]\n";
         text += &touch.plant;
-        text += &format!("sensors.converter.noise_counts = {noise_counts:?}\n");
-        for (key, value) in &device.plant {
-            text += &format!("{key} = {value:?}\n");
-        }
+        text += &device.plant_keys();
         Self { number, text }
     }
 
@@ -226,7 +222,7 @@ mod tests {
         for number in 0..300 {
             let session = UseSession::new(5, number, number % 2 == 0);
             let scene = Scene::parse(&session.text, "session".as_ref()).expect("a scene");
-            assert!(scene.faults.is_empty() && scene.injections.is_empty() && scene.commissioned);
+            assert!(scene.faults.is_empty() && scene.injections.is_empty());
             assert!(scene.forces.iter().any(|force| force.force_n >= 0.1));
             assert_eq!(scene.duration_s + scene.settle_s, WHOLE_S);
         }

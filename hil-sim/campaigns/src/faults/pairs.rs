@@ -9,8 +9,8 @@ use thermal_sim::scene::FaultKind;
 
 use super::table::failing_run_text;
 use super::{
-    Breach, ExpectedReaction, FaultCase, FaultRun, FaultScene, InjectedFault, InjectionPoint,
-    Touch, fault_cases, fault_run,
+    Breach, DrawnDevice, ExpectedReaction, FaultCase, FaultRun, FaultScene, InjectedFault,
+    InjectionPoint, Touch, fault_cases, fault_run,
 };
 
 /// Time of the latent fault, s: after the first self-test and before every injection time.
@@ -72,14 +72,8 @@ impl FaultPair {
     pub fn text(&self, seed: u64) -> String {
         let Self { latent, active, point } = self;
         let faults = [(latent.fault, LATENT_S), (active.fault, point.t_s)];
-        fault_run::scene_text(
-            &faults,
-            *point,
-            latent.after_s.max(active.after_s),
-            seed,
-            &[],
-            &Touch::default(),
-        )
+        let nominal = (&DrawnDevice::nominal(seed), &Touch::default());
+        fault_run::scene_text(&faults, *point, latent.after_s.max(active.after_s), nominal)
     }
 
     /// Runs the pair; `None` if a fault does not apply to the engine. A trip caused by the latent fault is correct.

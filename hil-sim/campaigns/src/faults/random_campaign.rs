@@ -11,10 +11,9 @@ use thermal_sim::SceneRunner;
 use super::drawn_course::course_tables;
 use super::table::failing_run_text;
 use super::{
-    Breach, FaultCase, FaultRun, FaultScene, InjectedFault, InjectionPoint, Touch, fault_cases,
-    fault_run,
+    Breach, DrawnDevice, FaultCase, FaultRun, FaultScene, InjectedFault, InjectionPoint, Touch,
+    fault_cases, fault_run,
 };
-use crate::fidelity::PlantDraw;
 
 /// Share of the campaigns in whose scene the host would present an object in which it plays a course.
 const WITH_COURSE: f64 = 0.3;
@@ -24,8 +23,6 @@ const WITH_FLUX_SENSOR: f64 = 0.25;
 const COURSE_S: f64 = 0.012;
 /// End of the shortest scene, s.
 const COURSE_UNTIL_S: f64 = 7.0;
-/// Consecutive campaigns on one device, because commissioning a device takes longer than a campaign.
-const ON_ONE_DEVICE: u64 = 8;
 
 /// One fault at one time of one scene, on one drawn device under one drawn finger.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +34,7 @@ pub struct RandomCampaign {
     /// Scene and time of the fault.
     pub point: InjectionPoint,
     /// The device and its plant.
-    pub device: PlantDraw,
+    pub device: DrawnDevice,
     /// The finger and the object.
     pub touch: Touch,
 }
@@ -53,18 +50,21 @@ impl RandomCampaign {
             has_processor || !matches!(fault_case.fault, InjectedFault::Processor(_))
         });
         let mut fault_case = all[draw.random_range(0..all.len())];
+        let device = DrawnDevice::new(seed, number / DrawnDevice::CAMPAIGNS);
         let mut scenes = FaultScene::ALL.to_vec();
-        scenes.retain(|place| !fault_case.never_at.contains(place));
+        scenes.retain(|place| {
+            !fault_case.never_at.contains(place) && (device.tuned || !place.needs_tuned())
+        });
         let place = scenes[draw.random_range(0..scenes.len())];
         let point = place.injection_point(draw.random(), draw.random());
         let mut touch = Touch::new(stream_seed(own, "touch"), place.object().0);
         // A faulty trigger input starts a course that waits for an edge, as it must.
-        let takes_course = !place.is_commanded()
+        let takes_course = device.tuned
+            && !place.is_commanded()
             && place.has_tripped_before().is_none()
             && !fault_case.fault.kind().starts_with("trigger-");
         if takes_course && draw.random_bool(WITH_COURSE) {
-            touch.tables +=
-                &course_tables(stream_seed(own, "course"), COURSE_S, COURSE_UNTIL_S, None);
+            touch.tables += &course_tables(stream_seed(own, "course"), COURSE_S, COURSE_UNTIL_S);
         }
         let flux_seed = stream_seed(own, "flux sensor");
         let has_sensor = Xoshiro256PlusPlus::seed_from_u64(flux_seed).random_bool(WITH_FLUX_SENSOR);
@@ -72,27 +72,14 @@ impl RandomCampaign {
         if fault_case.learning.take().is_some() || has_sensor {
             touch.fit_flux_sensor(flux_seed);
         }
-        Self {
-            number,
-            fault_case,
-            point,
-            device: PlantDraw::in_use(seed, number / ON_ONE_DEVICE),
-            touch,
-        }
+        Self { number, fault_case, point, device, touch }
     }
 
     /// Text of the scene.
     pub fn text(&self) -> String {
         let faults = [(self.fault_case.fault, self.point.t_s)];
-        let PlantDraw { seed, plant, .. } = &self.device;
-        fault_run::scene_text(
-            &faults,
-            self.point,
-            self.fault_case.after_s,
-            *seed,
-            plant,
-            &self.touch,
-        )
+        let drawn = (&self.device, &self.touch);
+        fault_run::scene_text(&faults, self.point, self.fault_case.after_s, drawn)
     }
 
     /// Runs the campaign; `None` if the fault does not apply to the engine.

@@ -70,8 +70,7 @@ pub(super) fn host_line(line: &str, t_s: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::faults::fault_cases;
-    use crate::faults::{FaultScene, InjectionPoint};
+    use crate::faults::{DrawnDevice, FaultScene, InjectionPoint, fault_cases};
     use thermal_sim::scene::Scene;
 
     #[test]
@@ -82,9 +81,7 @@ mod tests {
                 &[(fault_case.fault, 1.25)],
                 point,
                 fault_case.after_s,
-                7,
-                &[],
-                &fault_case.touch(7),
+                (&DrawnDevice::nominal(7), &fault_case.touch(7)),
             );
             let scene = Scene::parse(&text, "slew".as_ref())
                 .unwrap_or_else(|error| panic!("{error}\n{text}"));

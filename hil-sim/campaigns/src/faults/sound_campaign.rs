@@ -15,11 +15,11 @@ use thermal_sim::SceneRunner;
 use thermal_sim::metrics::Extremes;
 use thermal_sim::scene::Scene;
 
+use super::DrawnDevice;
 use super::drawn_course::course_tables;
 use super::normal_use::press;
 use super::scene_text::host_line;
-use super::touch::log_uniform;
-use crate::fidelity::PlantDraw;
+use super::touch::{FORCE_N, SKINS_C, log_uniform};
 
 /// True surface of the display without a fault, °C.
 const SURFACE_C: (f64, f64) = (14.0, 43.0);
@@ -27,23 +27,6 @@ const SURFACE_C: (f64, f64) = (14.0, 43.0);
 const SKIN_C: (f64, f64) = (14.0, 42.5);
 /// Length of a campaign, s.
 const DURATION_S: f64 = 30.0;
-/// Consecutive campaigns on one device, in one room, because commissioning a device takes longer than a campaign.
-const ON_ONE_DEVICE: u64 = 8;
-/// Time constant of both thermistors of the display, s, drawn uniformly, so that slow ones are not rare.
-const LAG_S: std::ops::RangeInclusive<f64> = 0.02..=0.5;
-/// Range of the coolant, °C, which the box draws relative to the room. A colder one leaves a display at rest below its limit.
-const COOLANT_C: (f64, f64) = (16.0, 40.0);
-/// Compliances of the load cell, m/N, drawn with a uniform logarithm: resonance at 1000 to 41 Hz under 0.5 kg.
-const COMPLIANCE_M_N: (f64, f64) = (5e-8, 3e-5);
-/// Vibration of the fan in the cell's force, N, and its frequency, Hz.
-const VIBRATION_N: (f64, f64) = (1e-3, 0.05);
-const VIBRATION_HZ: (f64, f64) = (30.0, 200.0);
-/// Drift of the cell's zero, N/s, either way.
-const DRIFT_N_S: f64 = 2e-3;
-/// Forces, N, drawn with a uniform logarithm.
-const FORCE_N: (f64, f64) = (0.1, 10.0);
-const SKINS_C: std::ops::RangeInclusive<f64> = 28.0..=40.0;
-const ROOMS_C: std::ops::RangeInclusive<f64> = 15.0..=30.0;
 
 /// A drawn device, finger and sequence of commands, without a fault.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,39 +48,17 @@ struct Group {
 impl SoundCampaign {
     /// Draws a campaign; it depends only on seed and number.
     pub fn new(seed: u64, number: u64) -> Self {
-        let device_number = number / ON_ONE_DEVICE;
-        let device = PlantDraw::in_use(seed, device_number);
-        let of_device = stream_seed(seed, &format!("sound device {device_number}"));
-        let mut of_device = Xoshiro256PlusPlus::seed_from_u64(of_device);
-        let tuned = device_number.is_multiple_of(2);
-        let room_c = of_device.random_range(ROOMS_C);
-        let mut plant: BTreeMap<String, f64> = device.plant.iter().cloned().collect();
-        let lag_s = of_device.random_range(LAG_S);
-        for (key, value) in [
-            ("display.lag_s", lag_s),
-            ("check.lag_s", lag_s),
-            ("force.cell.compliance_m_n", log_uniform(&mut of_device, COMPLIANCE_M_N)),
-            ("force.cell.vibration_n", log_uniform(&mut of_device, VIBRATION_N)),
-            ("force.cell.vibration_hz", log_uniform(&mut of_device, VIBRATION_HZ)),
-            ("force.cell.drift_n_s", of_device.random_range(-DRIFT_N_S..=DRIFT_N_S)),
-        ] {
-            plant.insert(format!("sensors.{key}"), value);
-        }
-        if let Some(coolant_k) = plant.get_mut("tile.coolant_k") {
-            *coolant_k = coolant_k.clamp(COOLANT_C.0 - room_c, COOLANT_C.1 - room_c);
-        }
-
+        let device = DrawnDevice::new(seed, number / DrawnDevice::CAMPAIGNS);
         let own = stream_seed(seed, &format!("sound campaign {number}"));
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(own);
         let (law, _) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
         let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
         let appears_s = [0.0, DURATION_S][usize::from(draw.random_bool(0.5))];
         let mut text = format!(
-            "duration_s = {DURATION_S:?}\nskin_c = {:?}\nroom_c = {room_c:?}\nseed = {}\nlaw = \"{law}\"\n\
-             [device]\ncommissioned = {tuned}\n[object]\nmaterial = \"{material}\"\nstart_c = {:?}\n\
-             appears_t_s = {appears_s:?}\n",
+            "duration_s = {DURATION_S:?}\nskin_c = {:?}\nlaw = \"{law}\"\n{}[object]\nmaterial = \"{material}\"\n\
+             start_c = {:?}\nappears_t_s = {appears_s:?}\n",
             draw.random_range(SKINS_C),
-            device.seed,
+            device.keys(),
             draw.random_range(18.0..=41.0),
         );
         text += &forces(&mut draw);
@@ -107,27 +68,27 @@ impl SoundCampaign {
             t_s += log_uniform(&mut draw, (0.02, 12.0));
         }
         text += "[plant]\n";
-        for (key, value) in &plant {
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "{key} = {value:?}");
-        }
-        Self { number, text, group: Group { tuned, law } }
+        text += &device.plant_keys();
+        Self { number, text, group: Group { tuned: device.tuned, law } }
     }
 
     /// Runs the campaign.
-    ///
-    /// # Errors
-    /// The scene is not valid, or the device stopped.
-    pub fn run(&self, device: &dyn SceneRunner) -> anyhow::Result<SoundResult> {
-        let scene = Scene::parse(&self.text, "campaign".as_ref())?;
-        let (_, figures) = device.run(&scene)?;
-        Ok(SoundResult {
+    pub fn run(&self, device: &dyn SceneRunner) -> SoundResult {
+        let run = || -> anyhow::Result<_> {
+            let scene = Scene::parse(&self.text, "campaign".as_ref())?;
+            Ok(device.run(&scene)?.1)
+        };
+        let (extremes, failures) = match run() {
+            Ok(figures) => (Some((figures.display_c, figures.skin_c)), figures.trips_and_resets()),
+            Err(error) => (None, vec![format!("{error:#}")]),
+        };
+        SoundResult {
             number: self.number,
             group: self.group,
-            surface_c: figures.display_c,
-            skin_c: figures.skin_c,
-            trips: figures.trips_and_resets(),
-        })
+            surface_c: extremes.map(|(surface_c, _)| surface_c),
+            skin_c: extremes.map(|(_, skin_c)| skin_c),
+            failures,
+        }
     }
 }
 
@@ -177,7 +138,7 @@ fn commands(draw: &mut Xoshiro256PlusPlus, t_s: f64) -> String {
             let (law, _) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
             format!("law {law}")
         }
-        6 => return course_tables(draw.random(), t_s, DURATION_S, None),
+        6 => return course_tables(draw.random(), t_s, DURATION_S),
         7 => return host_line("abort", t_s) + &host_line("arm", t_s),
         _ => "arm".into(),
     };
@@ -191,20 +152,21 @@ pub struct SoundResult {
     pub number: u64,
     #[serde(flatten)]
     group: Group,
-    /// True surface of the display, °C.
-    pub surface_c: Extremes,
-    /// Skin, °C.
-    pub skin_c: Extremes,
-    /// Faults by which the device tripped, and resets.
-    pub trips: Vec<String>,
+    /// True surface of the display, °C; null if the campaign did not come to its end.
+    pub surface_c: Option<Extremes>,
+    /// Skin, °C; null if the campaign did not come to its end.
+    pub skin_c: Option<Extremes>,
+    /// Faults by which the device tripped, and resets; or why the campaign or the commissioning of its device ended.
+    pub failures: Vec<String>,
 }
 
 impl SoundResult {
-    /// Whether surface and skin stayed within their limits, and nothing tripped.
+    /// Whether surface and skin stayed within their limits, and nothing failed.
     pub fn holds(&self) -> bool {
-        let within =
-            |found: Extremes, (least, most): (f64, f64)| found.min >= least && found.max <= most;
-        within(self.surface_c, SURFACE_C) && within(self.skin_c, SKIN_C) && self.trips.is_empty()
+        let within = |found: Option<Extremes>, (least, most): (f64, f64)| {
+            found.is_some_and(|found| found.min >= least && found.max <= most)
+        };
+        within(self.surface_c, SURFACE_C) && within(self.skin_c, SKIN_C) && self.failures.is_empty()
     }
 }
 
@@ -219,9 +181,10 @@ pub fn sound_table(runs: &[SoundResult]) -> String {
         "tile", "law first", "runs", "surface, C", "skin, C", "broken"
     );
     for (group, runs) in groups {
-        let range = |of: fn(&SoundResult) -> Extremes| {
-            let least = runs.iter().map(|run| of(run).min).fold(f64::INFINITY, f64::min);
-            let most = runs.iter().map(|run| of(run).max).fold(f64::NEG_INFINITY, f64::max);
+        let range = |of: fn(&SoundResult) -> Option<Extremes>| {
+            let known = || runs.iter().filter_map(|run| of(run));
+            let least = known().map(|one| one.min).fold(f64::INFINITY, f64::min);
+            let most = known().map(|one| one.max).fold(f64::NEG_INFINITY, f64::max);
             format!("{least:.2} to {most:.2}")
         };
         // Writing to a String cannot fail.
@@ -237,16 +200,12 @@ pub fn sound_table(runs: &[SoundResult]) -> String {
         );
     }
     for run in runs.iter().filter(|run| !run.holds()) {
-        let _ = writeln!(
-            text,
-            "number {}: surface {:.2} to {:.2} C, skin {:.2} to {:.2} C, {}",
-            run.number,
-            run.surface_c.min,
-            run.surface_c.max,
-            run.skin_c.min,
-            run.skin_c.max,
-            if run.trips.is_empty() { "no trip".into() } else { run.trips.join(", ") },
-        );
+        let of = |what, found: Option<Extremes>| {
+            found.map(|found| format!("{what} {:.2} to {:.2} C", found.min, found.max))
+        };
+        let ranges = [of("surface", run.surface_c), of("skin", run.skin_c)].into_iter().flatten();
+        let parts: Vec<_> = ranges.chain(run.failures.iter().cloned()).collect();
+        let _ = writeln!(text, "number {}: {}", run.number, parts.join(", "));
     }
     text
 }
@@ -282,16 +241,18 @@ mod tests {
         let within = SoundResult {
             number: 0,
             group: Group { tuned: true, law: "model" },
-            surface_c: Extremes { min: 14.0, max: 43.0 },
-            skin_c: Extremes { min: 14.0, max: 42.5 },
-            trips: Vec::new(),
+            surface_c: Some(Extremes { min: 14.0, max: 43.0 }),
+            skin_c: Some(Extremes { min: 14.0, max: 42.5 }),
+            failures: Vec::new(),
         };
         assert!(within.holds());
+        let range = |min, max| Some(Extremes { min, max });
         for broken in [
-            SoundResult { surface_c: Extremes { min: 13.99, max: 30.0 }, ..within.clone() },
-            SoundResult { surface_c: Extremes { min: 20.0, max: 43.01 }, ..within.clone() },
-            SoundResult { skin_c: Extremes { min: 20.0, max: 42.51 }, ..within.clone() },
-            SoundResult { trips: vec!["dose".into()], ..within.clone() },
+            SoundResult { surface_c: range(13.99, 30.0), ..within.clone() },
+            SoundResult { surface_c: range(20.0, 43.01), ..within.clone() },
+            SoundResult { skin_c: range(20.0, 42.51), ..within.clone() },
+            SoundResult { surface_c: None, ..within.clone() },
+            SoundResult { failures: vec!["dose".into()], ..within.clone() },
         ] {
             assert!(!broken.holds());
             assert!(sound_table(&[within.clone(), broken]).contains("number 0: "));

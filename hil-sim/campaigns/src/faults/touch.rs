@@ -23,9 +23,21 @@ const LAYERS_BELOW_MAX: usize = 3;
 /// The key of `[device]` by which a heat-flux sensor is fitted.
 const FLUX_SENSOR: &str = "flux_sensor = true\n";
 
-/// Parts of a scene's text about finger and object. The default leaves both as they are: the thesis's finger, an endless object.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// Skins at rest, °C, drawn uniformly.
+pub(super) const SKINS_C: std::ops::RangeInclusive<f64> = 28.0..=40.0;
+/// Warmest skin of a layered finger, °C: in a cold room a warmer one needs a core beyond 45 °C, which the plant refuses.
+pub(super) const LAYERED_SKIN_MAX_C: f64 = 36.0;
+/// Forces, N, drawn with a uniform logarithm.
+pub(super) const FORCE_N: (f64, f64) = (0.1, 10.0);
+
+/// Parts of a scene's text about finger and object. The default is the thesis's finger at 34 °C, pressed with 2 N, and an endless
+/// object.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Touch {
+    /// Skin at rest, °C.
+    pub(super) skin_c: f64,
+    /// Force with which it presses, N.
+    pub(super) force_n: f64,
     /// Keys of `[object]`.
     pub(super) object: String,
     /// Keys of `[device]`.
@@ -36,22 +48,40 @@ pub struct Touch {
     pub(super) plant: String,
 }
 
+impl Default for Touch {
+    fn default() -> Self {
+        Self {
+            skin_c: 34.0,
+            force_n: 2.0,
+            object: String::new(),
+            device: String::new(),
+            tables: String::new(),
+            plant: String::new(),
+        }
+    }
+}
+
 impl Touch {
-    /// Draws finger and object; half of the draws leave both as they are. The touched material is that of the scene.
+    /// Draws finger and object. Half of the draws leave tissue, contact and object as they are. The touched material is that of the
+    /// scene.
     pub fn new(seed: u64, material: &str) -> Self {
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let skin_c = draw.random_range(SKINS_C);
+        let pressed = Self { skin_c, force_n: log_uniform(&mut draw, FORCE_N), ..Self::default() };
         if draw.random_bool(0.5) {
-            return Self::default();
+            return pressed;
         }
         // A scene file holds 63 bits.
         let seed = seed >> 1;
         let tissue = ["layered", "layered", "homogeneous"][draw.random_range(0..3)];
         let words = AssumedFinger::PROTOCOL_WORDS;
         let (assumed, _) = words[draw.random_range(0..words.len())];
+        let skin_c = if tissue == "layered" { skin_c.min(LAYERED_SKIN_MAX_C) } else { skin_c };
         let mut touch = Self {
+            skin_c,
             device: format!("finger = \"{assumed}\"\n"),
             tables: format!("[finger]\ntissue = \"{tissue}\"\ndraw = {seed}\n"),
-            ..Self::default()
+            ..pressed
         };
         if draw.random_bool(0.5) {
             touch.plant = format!("contact.draw = {seed}\n");
@@ -153,7 +183,7 @@ mod tests {
     fn half_of_the_draws_have_another_finger_and_most_of_these_another_object() {
         let draws: Vec<_> = (0..400).map(|seed| Touch::new(seed, "copper")).collect();
         let share = |part: fn(&Touch) -> bool| draws.iter().filter(|one| part(one)).count();
-        assert!((150..250).contains(&share(|one| *one == Touch::default())));
+        assert!((150..250).contains(&share(|one| one.tables.is_empty())));
         let parts: [fn(&Touch) -> bool; 8] = [
             |one| one.tables.contains("object slab"),
             |one| one.object.contains("thickness_m") && !one.object.contains("told"),

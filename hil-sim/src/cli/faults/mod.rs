@@ -276,9 +276,8 @@ fn outlines(
     plan: &MatrixPlan,
     device: &dyn SceneRunner,
 ) -> anyhow::Result<Vec<FaultSummary>> {
-    let trials = each(arguments, "faults", device.name(), &plan.runs(), |(row, point)| {
-        let fault_case = &plan.fault_cases[*row];
-        Ok((*row, FaultRun::run(device, fault_case, *point, plan.seed)?))
+    let trials = each(arguments, "faults", device.name(), &plan.runs(), |run| {
+        Ok((run.row, run.run(device)?))
     });
     let mut by_row: Vec<Vec<FaultRun>> = plan.fault_cases.iter().map(|_| Vec::new()).collect();
     for (row, trial) in trials? {

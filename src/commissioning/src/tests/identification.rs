@@ -207,6 +207,22 @@ fn each_reason_to_abort_is_reported() {
     );
 }
 
+#[test]
+fn a_thermistor_that_lags_too_much_is_refused() {
+    for (lag_s, is_refused) in [(0.5, false), (0.58, false), (0.62, true), (1.0, true), (2.0, true)]
+    {
+        let found = Plant::new(Tile { sensor_lag_s: lag_s, ..TILE }).identify(UNTOUCHED);
+        assert_eq!(found.is_err(), is_refused, "{lag_s} s: {found:?}");
+        let Err(error) = found else { continue };
+        let SessionError::Identification(IdentificationError::OutOfRange(range, value)) = &error
+        else {
+            panic!("{lag_s} s: {error:?}")
+        };
+        assert_eq!((range.name, range.max), ("lag", 0.6), "{lag_s} s");
+        assert!((value / lag_s - 1.0).abs() < 0.04, "{lag_s} s: {value} s");
+    }
+}
+
 /// No measured current overflows a sum.
 #[test]
 fn defects_are_told_apart_from_a_tile() {

@@ -142,11 +142,14 @@ impl ContactDetector {
         self.touching
     }
 
-    /// Whether the force of the last call of [`Self::update_contact`] may be that of a finger: off zero, 3 mN or more, and not
-    /// oscillating. While it is without a contact, the zero of the force sensor is tracked with a time constant of 16 s instead of
-    /// 0.26 s.
-    pub const fn may_be_finger(&self) -> bool {
-        self.off_zero_ticks > 0 && self.oscillation_ticks == 0
+    /// Whether `force`, N, that of the last call of [`Self::update_contact`], may be that of a finger: 20 mN or more, or off zero, 3 mN
+    /// or more, for longer than half a period of an oscillation; and not oscillating. While it is without a contact, the zero of the
+    /// force sensor is tracked with a time constant of 16 s instead of 0.26 s. If the zero followed the upper half of a small vibration
+    /// slowly and the lower one quickly, it would settle near the lowest force, and the rest would look like a finger.
+    pub fn may_be_finger(&self, force: Force) -> bool {
+        self.off_zero_ticks > 0
+            && self.oscillation_ticks == 0
+            && (force >= CONTACT_BEGIN_FORCE || self.off_zero_ticks >= OSCILLATION_DEBOUNCE_TICKS)
     }
 
     /// Whether a finger touches, or the force has been off zero (3 mN or more) for longer than half a period of an oscillation: a

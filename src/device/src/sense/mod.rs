@@ -299,10 +299,11 @@ impl SampleConverter {
 
     /// Moves the stored zero of the force sensor towards this tick's force signal, unless a finger touches the display
     /// or the signal is more than 0.21 N from the zero in the settings; takes it anew if the force sensor's zero `has_moved`. To be
-    /// called in each tick with valid readings, after `contact` has been updated by this tick's force.
+    /// called in each tick with valid readings, after `contact` has been updated by this tick's `force`, N.
     pub fn track_force_zero_unless_touching(
         &mut self,
         samples: &Samples,
+        force: Force,
         contact: &ContactDetector,
         has_moved: bool,
     ) {
@@ -310,7 +311,7 @@ impl SampleConverter {
             self.force.restart_zero();
         }
         if !contact.touching() {
-            self.force.track_zero(samples.force, contact.may_be_finger());
+            self.force.track_zero(samples.force, contact.may_be_finger(force));
         }
     }
 

@@ -357,7 +357,12 @@ impl Station {
         let previously_touching = self.contact.touching();
         let is_below_zero = self.sensors.is_force_below_zero();
         let zero_has_moved = self.contact.update_contact(self.tick, valid.force, is_below_zero);
-        self.sensors.track_force_zero_unless_touching(samples, &self.contact, zero_has_moved);
+        self.sensors.track_force_zero_unless_touching(
+            samples,
+            valid.force,
+            &self.contact,
+            zero_has_moved,
+        );
         let touching = self.contact.touching();
         // The table is asked only in the states in which a touch changes something, which saves 30 instructions a tick.
         match (&self.state, touching) {
@@ -388,7 +393,8 @@ impl Station {
         if let Some(wanted) = reference
             && !matches!(self.state, State::Armed(ArmedTask::Identify(_)))
         {
-            *wanted = self.reference_limits.limit(*wanted, self.last.reference, reading);
+            let (law, last) = (self.controller.law(), self.last.reference);
+            *wanted = self.reference_limits.limit(law, *wanted, last, reading);
         }
     }
 

@@ -23,8 +23,8 @@ pub use region::{FlipRegion, FlippableMemory};
 pub use table::flip_table;
 
 use super::{
-    Breach, ExpectedReaction, FaultCase, FaultScene, InjectedFault, InjectionPoint, RunAssessment,
-    Symptom, Touch, fault_run,
+    Breach, DrawnDevice, ExpectedReaction, FaultCase, FaultScene, InjectedFault, InjectionPoint,
+    RunAssessment, Symptom, Touch, fault_run,
 };
 use thermal_sim::SceneRunner;
 use thermal_sim::processor::NotInjected;
@@ -62,7 +62,8 @@ const SIGNS: &[Symptom] = &[
 fn text(place: FaultScene, flip: &[(InjectedFault, f64)]) -> String {
     let (_, to_s) = bit_flip::span(place);
     let end = InjectionPoint { scene: place, t_s: to_s };
-    fault_run::scene_text(flip, end, WATCHED_S, CONVERTER, &[], &Touch::default())
+    let nominal = (&DrawnDevice::nominal(CONVERTER), &Touch::default());
+    fault_run::scene_text(flip, end, WATCHED_S, nominal)
 }
 
 /// The run of a scene without a flip.

@@ -14,7 +14,7 @@ fn reference(celsius: f64) -> Reference {
 fn way(limits: &ReferenceLimits, reading_c: f64, wanted_c: f64, ticks: usize) -> Vec<f64> {
     let mut last = None;
     let mut next = || {
-        let next = limits.limit(reference(wanted_c), last, Celsius::from_num(reading_c));
+        let next = limits.limit(Law::Pi, reference(wanted_c), last, Celsius::from_num(reading_c));
         last = Some(next);
         next.setpoint.celsius().to_num()
     };
@@ -47,7 +47,7 @@ fn the_range_ends_where_a_finger_that_lifts_cannot_take_the_surface_beyond_its_l
         for (wanted_c, end_c) in [(15.0, min_c), (42.0, max_c)] {
             let last = way(&limits, 27.0, wanted_c, 60_000).pop().expect("a tick");
             assert!((last - end_c).abs() < 1e-5, "{lag_s} s, {wanted_c} °C: {last} °C");
-            let limited = limits.limit(reference(wanted_c), None, Celsius::ZERO).limited;
+            let limited = limits.limit(Law::Pi, reference(wanted_c), None, Celsius::ZERO).limited;
             assert_eq!(limited, (wanted_c - end_c).abs() > 1e-9, "{lag_s} s, {wanted_c} °C");
         }
     }
@@ -58,17 +58,37 @@ fn a_wanted_set_point_that_is_near_enough_is_taken_as_it_is() {
     let limits = limits(0.1);
     for wanted_c in [30.0, 30.001, 29.9995] {
         let wanted = reference(wanted_c);
-        assert_eq!(limits.limit(wanted, Some(reference(30.0)), Celsius::ZERO), wanted);
-        assert_eq!(limits.limit(wanted, None, Celsius::lit("30")), wanted);
+        assert_eq!(limits.limit(Law::Pi, wanted, Some(reference(30.0)), Celsius::ZERO), wanted);
+        assert_eq!(limits.limit(Law::Pi, wanted, None, Celsius::lit("30")), wanted);
     }
 }
 
 #[test]
-fn only_the_plain_laws_of_a_tile_that_was_identified_are_limited() {
-    let (tuned, untuned) = (limits(0.1), ReferenceLimits::new(&Tile::FACTORY_DEFAULT));
-    for (law, tuned_is_limited) in [(Law::Model, false), (Law::Pi, true), (Law::Pi10Hz, true)] {
-        assert_eq!(tuned.apply_to(law), tuned_is_limited, "{law:?}");
-        assert!(untuned.apply_to(law), "{law:?}");
+fn only_the_plain_laws_of_a_quick_tile_that_was_identified_are_limited() {
+    let others = [limits(0.2), limits(0.5), ReferenceLimits::new(&Tile::FACTORY_DEFAULT)];
+    for (law, quick_is_limited) in [(Law::Model, false), (Law::Pi, true), (Law::Pi10Hz, true)] {
+        assert_eq!(limits(0.13).apply_to(law), quick_is_limited, "{law:?}");
+        assert!(others.iter().all(|limits| limits.apply_to(law)), "{law:?}");
+    }
+}
+
+/// By 1 K for each second of dead time beyond 0.2 s, and at once.
+#[test]
+fn under_the_law_model_a_slow_tile_has_a_smaller_range() {
+    let limits = limits(0.5);
+    for (wanted_c, allowed_c) in [(15.0, 15.37), (15.4, 15.4), (41.6, 41.6), (42.0, 41.63)] {
+        for target_c in [15.0f64, 30.0, 42.0] {
+            let wanted = Reference::limited_to_safe_range(
+                Celsius::from_num(wanted_c),
+                Celsius::from_num(target_c),
+            );
+            let found = limits.limit(Law::Model, wanted, None, Celsius::ZERO);
+            let [setpoint_c, found_c] =
+                [found.setpoint, found.target].map(|setpoint| setpoint.celsius().to_num::<f64>());
+            assert!((setpoint_c - allowed_c).abs() < 1e-5, "{wanted_c} °C: {setpoint_c} °C");
+            assert!((found_c - target_c.clamp(15.37, 41.63)).abs() < 1e-5, "{target_c} °C");
+            assert_eq!(found.limited, wanted_c != allowed_c, "{wanted_c} °C");
+        }
     }
 }
 
@@ -83,9 +103,9 @@ fn the_reference_of_a_tile_that_was_never_identified_moves_slowly_in_a_small_ran
             assert!((celsius - exact_c).abs() < 5e-3, "{t_s} s: {celsius}, not {exact_c} °C");
         }
     }
-    let arrived = limits.limit(reference(30.0), Some(reference(30.0)), Celsius::ZERO);
+    let arrived = limits.limit(Law::Pi, reference(30.0), Some(reference(30.0)), Celsius::ZERO);
     assert!(!arrived.limited);
-    let on_the_way = limits.limit(reference(30.0), Some(reference(29.0)), Celsius::ZERO);
+    let on_the_way = limits.limit(Law::Pi, reference(30.0), Some(reference(29.0)), Celsius::ZERO);
     assert!(on_the_way.limited);
 }
 
@@ -97,7 +117,7 @@ fn a_ramp_of_1_k_s_is_not_limited_on_a_tile_that_was_never_identified() {
         let mut last = reference(29.0);
         for tick in 1..=8000 {
             let wanted = reference(29.0 + rate_k_s * 1e-3 * f64::from(tick));
-            let next = limits.limit(wanted, Some(last), Celsius::ZERO);
+            let next = limits.limit(Law::Pi, wanted, Some(last), Celsius::ZERO);
             assert_eq!(next, wanted, "{rate_k_s} K/s, tick {tick}");
             last = next;
         }
