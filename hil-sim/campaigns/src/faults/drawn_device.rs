@@ -13,6 +13,7 @@ use crate::fidelity::PlantDraw;
 
 /// Time constant of both thermistors of the display, s, drawn uniformly, so that slow ones are not rare.
 const LAG_S: std::ops::RangeInclusive<f64> = 0.02..=0.5;
+const LAGS: [&str; 2] = ["sensors.display.lag_s", "sensors.check.lag_s"];
 /// Range of the coolant, °C, which the box draws relative to the room. A colder one leaves a display at rest below its limit.
 const COOLANT_C: (f64, f64) = (16.0, 40.0);
 const COOLANT: &str = "tile.coolant_k";
@@ -56,8 +57,8 @@ impl DrawnDevice {
         let mut plant: BTreeMap<_, _> = plant.into_iter().collect();
         let room_c = draw.random_range(ROOMS_C);
         let lag_s = draw.random_range(LAG_S);
-        for sensor in ["display", "check"] {
-            plant.insert(format!("sensors.{sensor}.lag_s"), lag_s);
+        for key in LAGS {
+            plant.insert(key.into(), lag_s);
         }
         for (key, value) in [
             ("compliance_m_n", log_uniform(&mut draw, COMPLIANCE_M_N)),
@@ -71,6 +72,11 @@ impl DrawnDevice {
             *coolant_k = coolant_k.clamp(COOLANT_C.0 - room_c, COOLANT_C.1 - room_c);
         }
         Self { seed, tuned: number.is_multiple_of(2), room_c, plant }
+    }
+
+    /// Time constant of both thermistors of the display, s, if it was drawn.
+    pub(super) fn lag_s(&self) -> Option<f64> {
+        self.plant.get(LAGS[0]).copied()
     }
 
     /// Keys of a scene outside its tables, and those of `[device]`, with which they end.
@@ -100,7 +106,7 @@ mod tests {
     fn half_of_the_devices_are_untuned_and_their_thermistors_slow_and_quick() {
         let devices: Vec<_> = (0..100).map(|number| DrawnDevice::new(7, number)).collect();
         assert_eq!(devices.iter().filter(|device| device.tuned).count(), 50);
-        let lag_s = |device: &DrawnDevice| device.plant["sensors.display.lag_s"];
+        let lag_s = |device: &DrawnDevice| device.lag_s().expect("a drawn lag");
         for slow in [false, true] {
             let count = devices.iter().filter(|device| (lag_s(device) > 0.26) == slow).count();
             assert!((30..70).contains(&count), "{count}");

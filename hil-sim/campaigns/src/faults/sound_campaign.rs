@@ -38,11 +38,20 @@ pub struct SoundCampaign {
     group: Group,
 }
 
-/// What the summary has a line for: whether the tile was tuned, and the law at the start.
+/// What the summary has a line for: whether the tile was tuned, the law at the start, and the lag of the display's thermistors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 struct Group {
     tuned: bool,
     law: &'static str,
+    lag: &'static str,
+}
+
+/// Longest lag of each band, s, and how the band is printed.
+const LAG_BANDS: [(f64, &str); 3] = [(0.15, "to 0.15 s"), (0.3, "to 0.3 s"), (0.5, "to 0.5 s")];
+
+fn lag_band(lag_s: f64) -> &'static str {
+    let band = LAG_BANDS.into_iter().find(|(longest_s, _)| lag_s <= *longest_s);
+    band.map_or("longer", |(_, name)| name)
 }
 
 impl SoundCampaign {
@@ -69,7 +78,15 @@ impl SoundCampaign {
         }
         text += "[plant]\n";
         text += &device.plant_keys();
-        Self { number, text, group: Group { tuned: device.tuned, law } }
+        Self {
+            number,
+            text,
+            group: Group {
+                tuned: device.tuned,
+                law,
+                lag: lag_band(device.lag_s().unwrap_or_default()),
+            },
+        }
     }
 
     /// Runs the campaign.
@@ -177,8 +194,8 @@ pub fn sound_table(runs: &[SoundResult]) -> String {
         groups.entry(run.group).or_default().push(run);
     }
     let mut text = format!(
-        "{:<10}{:<10}{:>8}{:>24}{:>24}{:>8}\n",
-        "tile", "law first", "runs", "surface, C", "skin, C", "broken"
+        "{:<10}{:<10}{:<12}{:>8}{:>24}{:>24}{:>8}\n",
+        "tile", "law first", "lag", "runs", "surface, C", "skin, C", "broken"
     );
     for (group, runs) in groups {
         let range = |of: fn(&SoundResult) -> Option<Extremes>| {
@@ -190,9 +207,10 @@ pub fn sound_table(runs: &[SoundResult]) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "{:<10}{:<10}{:>8}{:>24}{:>24}{:>8}",
+            "{:<10}{:<10}{:<12}{:>8}{:>24}{:>24}{:>8}",
             if group.tuned { "tuned" } else { "untuned" },
             group.law,
+            group.lag,
             runs.len(),
             range(|run| run.surface_c),
             range(|run| run.skin_c),
@@ -240,7 +258,7 @@ mod tests {
     fn a_surface_or_skin_beyond_its_limits_and_a_trip_break_the_claim() {
         let within = SoundResult {
             number: 0,
-            group: Group { tuned: true, law: "model" },
+            group: Group { tuned: true, law: "model", lag: lag_band(0.2) },
             surface_c: Some(Extremes { min: 14.0, max: 43.0 }),
             skin_c: Some(Extremes { min: 14.0, max: 42.5 }),
             failures: Vec::new(),
