@@ -69,6 +69,29 @@ fn a_plain_law_that_is_chosen_before_a_landing_takes_over_after_it() {
     }
 }
 
+/// A law that is chosen while the surface falls through a reading that lags: for a quarter of a second the reading stays near the
+/// set-point and the current at its limit, but the display is on its way, and would go on to 10.6 deg C.
+#[test]
+fn a_plain_law_that_is_chosen_while_the_surface_passes_the_reading_waits() {
+    for (after_s, from, again) in [
+        (0.2, "hold 32 60", "hold 42 2"),
+        (0.3, "hold 25.4 60", "hold 42 2"),
+        (0.5, "hold 25.4 60", "hold 42 2"),
+        (0.3, "hold 32 60", "hold 42 4"),
+        (0.4, "hold 32 60", "hold 42 6"),
+    ] {
+        let again_s = 5.0 + after_s;
+        let lines =
+            [(0.1, "hold 17 60"), (5.0, from), (again_s - 0.05, "law pi"), (again_s, again)];
+        let mut scene = scene("copper", 9.0, "", &(host(&lines) + &slow(0.5)));
+        scene.object.appears_t_s = scene.duration_s;
+        let outcome = natively(&scene);
+        let rows = outcome.trace.rows().iter().filter(|row| row.t_s > again_s);
+        let (coldest_c, _) = range(rows.map(|row| row.display_c));
+        assert!(coldest_c > 16.0, "{from}, after {after_s} s {again}: {coldest_c:.2} C");
+    }
+}
+
 /// From the quickest to the slowest thermistors of the parameter box.
 fn lags_and_skins() -> impl Iterator<Item = (f64, f64)> {
     [0.05, 0.1, 0.3, 0.5].into_iter().flat_map(|lag_s| [(lag_s, 28.0), (lag_s, 40.0)])

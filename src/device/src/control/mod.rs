@@ -18,9 +18,10 @@ use crate::safety::limits::COOLING_DERATING_SINK_TEMPERATURE;
 /// (39.5 °C): by 1/2 (2^-1, this power of two) of the current limit per kelvin, so to zero at 41.5 °C.
 const COOLING_LIMIT_FRACTION_LOST_PER_K_SHIFT: u32 = 1;
 
-/// A plain law takes over once the display's reading has stayed this near to the set-point, K, and the current this near to its
-/// value, A, for so many ticks: it goes on from the current, and one that answers a landing would take a display with a slow
-/// thermistor by 5 K beyond its set-point.
+/// A plain law takes over once the display's reading and its estimated surface have stayed this near to the set-point, K, and the
+/// current this near to its value, A, for so many ticks: it goes on from the current. One that answers a landing would take a display
+/// with a slow thermistor by 5 K beyond its set-point; and while the surface passes a reading that lags, the current is steady at its
+/// limit.
 const TAKE_OVER_WITHIN: Celsius = Celsius::lit("0.5");
 const TAKE_OVER_CURRENT_WITHIN: Current = Current::lit("0.5");
 const TAKE_OVER_TICKS: u16 = 256;
@@ -127,15 +128,22 @@ impl Controller {
         }
     }
 
-    /// Takes the selected law over if the display, whose reading is given, has been near its set-point for some time, with a steady
-    /// current.
+    /// Takes the selected law over if the display, whose reading and estimated surface are given, has been near its set-point for some
+    /// time, with a steady current.
     #[cold]
     #[inline(never)]
-    fn take_over_if_settled(&mut self, reference: &Reference, display: Celsius) {
+    fn take_over_if_settled(
+        &mut self,
+        reference: &Reference,
+        display: Celsius,
+        surface: Option<Celsius>,
+    ) {
         let Some(next) = &mut self.next_law else {
             return;
         };
-        let is_near = reference.setpoint.celsius().abs_diff(display) <= TAKE_OVER_WITHIN;
+        let setpoint = reference.setpoint.celsius();
+        let is_within = |celsius: Celsius| setpoint.abs_diff(celsius) <= TAKE_OVER_WITHIN;
+        let is_near = is_within(display) && surface.is_none_or(is_within);
         if is_near && self.current.abs_diff(next.from) <= TAKE_OVER_CURRENT_WITHIN {
             next.ticks = next.ticks.saturating_add(1);
         } else {
@@ -175,7 +183,7 @@ impl Controller {
         plate: &PlateObserver,
     ) -> Current {
         if self.next_law.is_some() {
-            self.take_over_if_settled(reference, display);
+            self.take_over_if_settled(reference, display, plate.surface());
         }
         self.current = match self.law {
             Law::Pi10Hz => self.pi_10hz.update_output_when_due(reference.setpoint, display),
