@@ -61,10 +61,7 @@ fn a_plain_law_that_is_chosen_before_a_landing_takes_over_after_it() {
     for chosen_s in [2.73, 2.74, 2.75, 2.76, 2.8] {
         let lines = [(0.1, "hold 16.5 20"), (chosen_s, "law pi-10hz")];
         let tables = forces(&[(3.0, 4.0), (3.6, 0.15)]) + &host(&lines) + &slow(0.35);
-        let mut scene = scene("copper", 5.0, "", &tables);
-        scene.object.appears_t_s = scene.duration_s;
-        let outcome = natively(&scene);
-        let (coldest_c, _) = range(outcome.trace.rows().iter().map(|row| row.display_c));
+        let coldest_c = coldest_without_object_c(&tables, f64::NEG_INFINITY, 5.0);
         assert!(coldest_c > 15.5, "chosen at {chosen_s} s: {coldest_c:.2} C");
     }
 }
@@ -83,13 +80,18 @@ fn a_plain_law_that_is_chosen_while_the_surface_passes_the_reading_waits() {
         let again_s = 5.0 + after_s;
         let lines =
             [(0.1, "hold 17 60"), (5.0, from), (again_s - 0.05, "law pi"), (again_s, again)];
-        let mut scene = scene("copper", 9.0, "", &(host(&lines) + &slow(0.5)));
-        scene.object.appears_t_s = scene.duration_s;
-        let outcome = natively(&scene);
-        let rows = outcome.trace.rows().iter().filter(|row| row.t_s > again_s);
-        let (coldest_c, _) = range(rows.map(|row| row.display_c));
+        let coldest_c = coldest_without_object_c(&(host(&lines) + &slow(0.5)), again_s, 9.0);
         assert!(coldest_c > 16.0, "{from}, after {after_s} s {again}: {coldest_c:.2} C");
     }
+}
+
+/// Coldest surface, deg C, from a time to the end of a scene, s, in which no object is presented.
+fn coldest_without_object_c(tables: &str, from_s: f64, end_s: f64) -> f64 {
+    let mut scene = scene("copper", end_s, "", tables);
+    scene.object.appears_t_s = end_s;
+    let outcome = natively(&scene);
+    let rows = outcome.trace.rows().iter().filter(|row| row.t_s >= from_s);
+    range(rows.map(|row| row.display_c)).0
 }
 
 /// From the quickest to the slowest thermistors of the parameter box.

@@ -41,13 +41,13 @@ pub struct DrawnDevice {
 }
 
 impl DrawnDevice {
+    /// Consecutive campaigns on one device, because commissioning it takes longer than a campaign.
+    pub(super) const CAMPAIGNS: u64 = 8;
+
     /// The nominal device with this seed of its converter, commissioned, in a room of 24 °C.
     pub(super) fn nominal(seed: u64) -> Self {
         Self { seed, tuned: true, room_c: NOMINAL_ROOM_C, plant: BTreeMap::new() }
     }
-
-    /// Consecutive campaigns on one device, because commissioning it takes longer than a campaign.
-    pub(super) const CAMPAIGNS: u64 = 8;
 
     /// A device by seed and number. Those of odd numbers are untuned.
     pub(super) fn new(seed: u64, number: u64) -> Self {
@@ -81,10 +81,13 @@ impl DrawnDevice {
 
     /// Keys of a scene outside its tables, and those of `[device]`, with which they end.
     pub(super) fn keys(&self) -> String {
-        format!(
-            "room_c = {:?}\nseed = {}\n[device]\ncommissioned = {}\n",
-            self.room_c, self.seed, self.tuned
-        )
+        self.keys_if_tuned(self.tuned)
+    }
+
+    /// The same, but tuned or not as given.
+    pub(super) fn keys_if_tuned(&self, tuned: bool) -> String {
+        let Self { room_c, seed, .. } = self;
+        format!("room_c = {room_c:?}\nseed = {seed}\n[device]\ncommissioned = {tuned}\n")
     }
 
     /// Keys of `[plant]`.

@@ -234,8 +234,6 @@ impl FaultScene {
         after_s: f64,
         touch: &Touch,
     ) -> (String, f64) {
-        let device =
-            DrawnDevice { tuned: device.tuned && self.is_commissioned(), ..device.clone() };
         let duration_s = (t_s + after_s).max(SHORTEST_S);
         let (material, object_c) = self.object();
         let appears_s = match self {
@@ -250,7 +248,7 @@ impl FaultScene {
             touch.skin_c,
             self.law().name(),
             self.mode(),
-            device.keys(),
+            device.keys_if_tuned(device.tuned && self.is_commissioned()),
             touch.device,
             touch.object,
             touch.tables,
