@@ -1,5 +1,6 @@
 //! Runs a scene on an engine, from power-up to the last row.
 
+use std::iter::Peekable;
 use std::time::Instant;
 
 use thermal_client::commissioning::CommissionError;
@@ -100,8 +101,15 @@ pub(crate) fn run_with_settings<E: Engine>(
             return Err(RunError::InjectionTime { fault, t_s, from_s, to_s });
         }
     }
-    let mut scene_run =
-        SceneRun { recording, injections, scene, engine, received: LineSplitter::default() };
+    let us_of_scene = |ms: u64| 1000 * (ms as i64 - zero_ms as i64);
+    let edges_us = trigger_edges_us(scene, &(us_of_scene(0)..us_of_scene(last_ms + 1)));
+    let mut scene_run = SceneRun {
+        recording,
+        injections,
+        trigger_edges_us: edges_us.into_iter().peekable(),
+        engine,
+        received: LineSplitter::default(),
+    };
     for ms in 0..=last_ms {
         if ms == zero_ms {
             scene_run.engine.reset_cost();
@@ -156,7 +164,8 @@ pub(crate) fn inject_due<'a, E: Engine>(
 struct SceneRun<'a, E> {
     recording: SceneRecording<'a>,
     injections: Vec<&'a Injection>,
-    scene: &'a Scene,
+    /// Edges of the trigger input that are still to come, µs since time zero of the scene, in order.
+    trigger_edges_us: Peekable<std::vec::IntoIter<i64>>,
     engine: &'a mut E,
     received: LineSplitter,
 }
@@ -170,9 +179,11 @@ impl<E: Engine> SceneRun<'_, E> {
     /// Raises the trigger input at the scene's times within a half millisecond.
     fn trigger(&mut self, half_ms: u64) -> Result<(), E::Stop> {
         let from_us = (HALF_MS_US * half_ms) as i64 - 1000 * self.recording.zero_ms as i64;
-        let edges_us = trigger_edges_us(self.scene, &(from_us..from_us + HALF_MS_US as i64));
-        let mut offsets_us = edges_us.iter().map(|us| (us - from_us) as u32);
-        offsets_us.try_for_each(|after_us| self.engine.trigger(after_us))
+        let until_us = from_us + HALF_MS_US as i64;
+        while let Some(us) = self.trigger_edges_us.next_if(|us| *us < until_us) {
+            self.engine.trigger((us - from_us) as u32)?;
+        }
+        Ok(())
     }
 
     /// Sends the bytes of the host at a half millisecond since the start.

@@ -1,5 +1,6 @@
 //! Results on standard output, progress on standard error.
 
+use std::cell::Cell;
 use std::io::{Write, stdout};
 use std::path::{Path, PathBuf};
 
@@ -55,7 +56,14 @@ pub fn with_progress<R>(name: String, work: impl FnOnce(&dyn Fn(f64)) -> R) -> R
     let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed}");
     let bar = ProgressBar::new(1000).with_style(style.map_err(Failure::run)?);
     bar.set_message(name);
-    let result = work(&|part| bar.set_position((part * 1000.0) as u64));
+    let shown = Cell::new(0);
+    let result = work(&|part| {
+        // Work may report each simulated millisecond, and a bar takes longer than many of them.
+        let position = (part * 1000.0) as u64;
+        if shown.replace(position) != position {
+            bar.set_position(position);
+        }
+    });
     bar.finish_and_clear();
     Ok(result)
 }

@@ -116,7 +116,12 @@ impl LineSplitter {
         let end = self.0.iter().rposition(|byte| *byte == b'\n');
         let end = end.map_or(0, |end| end + 1);
         let end = if self.0.len() - end > LINE_MAX_BYTES { self.0.len() } else { end };
-        let complete: Vec<u8> = self.0.drain(..end).collect();
-        String::from_utf8_lossy(&complete).lines().map(|line| line.trim_end().to_owned()).collect()
+        if end == 0 {
+            return Vec::new();
+        }
+        let rest = self.0.split_off(end);
+        let complete = std::mem::replace(&mut self.0, rest);
+        let lines = complete.strip_suffix(b"\n").unwrap_or(&complete).split(|byte| *byte == b'\n');
+        lines.map(|line| String::from_utf8_lossy(line.trim_ascii_end()).into_owned()).collect()
     }
 }

@@ -14,9 +14,6 @@ use crate::step::Steps;
 use lanes::{Check, Lane};
 use members::Member;
 
-/// Time for each target of the fuzzers, after all inputs of the repository, s.
-const FUZZ_S: &str = "2";
-
 const NO_CLIPPY: &str = "the active toolchain has no clippy";
 
 /// A check by command lines of cargo.
@@ -167,7 +164,6 @@ fn whole(
         "-p hardware-benches -p hil-sim -p thermal-window --lib --bins --test benches --test bom";
     let others = "--workspace --exclude image-tests --exclude hardware-benches --tests";
     let on_target = choice.handed_to(cargo("xtask on-target --emulated --check"));
-    let fuzz = format!("xtask fuzz --seconds {FUZZ_S}");
     vec![
         vec![host, images],
         vec![
@@ -179,7 +175,6 @@ fn whole(
                 Check { title: "image on the emulated microcontroller", commands: tests(on_image) },
                 // It waits for devices in real time, so while the other lane has enough to do.
                 package(python),
-                check("fuzzers: inputs of the repository, 2 s a target", [&fuzz]),
                 Check { title: "circuits", commands: tests(circuits) },
                 Check {
                     title: "tests for a bare board, on the emulated one",
@@ -211,7 +206,7 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
         let (toolchain, lints) = steps.run("set-up", "", || {
             let needs = Needs {
                 emulator: !quick_only,
-                fuzzer: !quick_only,
+                fuzzer: false,
                 lints: true,
                 generators: true,
                 circuits: !quick_only,

@@ -130,7 +130,7 @@ pub struct Sensors {
     level: [f64; CHANNELS],
     increment: [f64; CHANNELS],
     /// Conversions until the level has reached that of the end of the step.
-    remaining: [usize; CHANNELS],
+    remaining: [u8; CHANNELS],
     converter: Converter,
 }
 
@@ -200,7 +200,7 @@ impl Sensors {
         self.level = self.counts;
         self.update_counts();
         // The 16 scans of a tick are spread over the step.
-        self.remaining = [SCANS_PER_STEP; CHANNELS];
+        self.remaining = [SCANS_PER_STEP as u8; CHANNELS];
         self.increment =
             std::array::from_fn(|i| (self.counts[i] - self.level[i]) / SCANS_PER_STEP as f64);
     }
@@ -252,14 +252,19 @@ impl Sensors {
         1.0 / (1.0 + self.params.reference.error)
     }
 
+    /// Moves the level of a channel to the time of its next conversion.
+    fn advance_level(&mut self, index: usize) {
+        if self.remaining[index] > 0 {
+            self.remaining[index] -= 1;
+            self.level[index] += self.increment[index];
+        }
+    }
+
     /// Converts one channel to a code of 0 to 4095. All channels share one noise sequence, so results depend on the order
     /// of calls.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         let i = channel as usize;
-        if self.remaining[i] > 0 {
-            self.remaining[i] -= 1;
-            self.level[i] += self.increment[i];
-        }
+        self.advance_level(i);
         let level = match channel {
             Channel::Current if self.ripple_is_seen() => self.rippled_level(self.remaining[i]),
             _ => self.level[i],
@@ -269,8 +274,11 @@ impl Sensors {
 
     /// Converts all channels in scan order, with the codes of one call of [`convert`](Self::convert) for each.
     pub fn convert_scan(&mut self) -> [u16; CHANNELS] {
-        for i in 0..CHANNELS {
-            if self.remaining[i] > 0 {
+        if self.remaining.contains(&0) {
+            (0..CHANNELS).for_each(|i| self.advance_level(i));
+        } else {
+            // Without a condition for each channel the compiler adds several side by side.
+            for i in 0..CHANNELS {
                 self.remaining[i] -= 1;
                 self.level[i] += self.increment[i];
             }
@@ -290,9 +298,9 @@ impl Sensors {
     }
 
     /// Level of the current measurement with its ripple, counts, `remaining` scans before the end of the step.
-    fn rippled_level(&self, remaining: usize) -> f64 {
+    fn rippled_level(&self, remaining: u8) -> f64 {
         let mirror = &self.params.mirror;
-        let scan = (SCANS_PER_STEP - 1).saturating_sub(remaining);
+        let scan = (SCANS_PER_STEP - 1).saturating_sub(remaining.into());
         let phase = (mirror.sampling_phase + scan as f64 * mirror.phase_step).fract();
         let current_a = (self.mirror_a + self.mirror_ripple.at_phase(phase)).abs();
         self.converter.with_offset_and_gain(mirror.counts(current_a) * self.reference_scale())

@@ -81,12 +81,8 @@ pub fn fault(word: &str) -> Option<Fault> {
 
 /// The state with this word; a tripped one needs the word of its fault.
 pub fn state(word: &str, fault_word: &str) -> Option<StateName> {
-    if let Some(tripped) = fault(fault_word).map(StateName::Tripped)
-        && tripped.name() == word
-    {
-        return Some(tripped);
-    }
-    [
+    // Every line of telemetry comes here, and the faults are many: they are searched only for a word that no other state has.
+    let without_fault = [
         StateName::Off,
         StateName::SelfTest,
         StateName::Ready,
@@ -96,7 +92,9 @@ pub fn state(word: &str, fault_word: &str) -> Option<StateName> {
         StateName::Stimulus,
     ]
     .into_iter()
-    .find(|state| state.name() == word)
+    .find(|state| state.name() == word);
+    without_fault
+        .or_else(|| fault(fault_word).map(StateName::Tripped).filter(|state| state.name() == word))
 }
 
 /// The value with this word in a table of the protocol.
