@@ -240,6 +240,43 @@ def test_a_restart_during_a_command_is_noticed(fake: FakeDevice, display: Displa
     assert fake.checksums and display.guarded
 
 
+def test_checksums_that_another_program_has_switched_off_are_no_restart(fake: FakeDevice, display: Display) -> None:
+    fake.state = "armed"
+    fake.checksums = False
+    with pytest.raises(DeviceBusy, match="it is stimulus, with its bridge on"):
+        display.hold(30)
+
+
+def test_a_device_that_has_restarted_and_is_armed_by_the_next_line_is_switched_off(
+    fake: FakeDevice, display: Display
+) -> None:
+    fake.restart()
+    with pytest.raises(DeviceRestarted):
+        display.arm()
+    assert fake.state == "ready"
+
+
+@pytest.mark.parametrize("checksums", [True, False])
+def test_whoever_waits_is_told_that_the_device_has_restarted(fake: FakeDevice, checksums: bool) -> None:
+    with Display(fake, checksums=checksums, timeout_s=TIMEOUT_S) as display:
+        fake.say(T.format(10, "off", "-"))
+        display.telemetry.wait(1, timeout_s=5)
+        fake.restart()
+        with pytest.raises(DeviceRestarted):
+            display.events.wait("end", timeout_s=60)
+        assert display.restarts == 1
+        # The stream that was switched on again does not come either: the device is asked again, and answers.
+        with pytest.raises(EventTimeout) if checksums else pytest.raises(DeviceRestarted):
+            display.events.wait("end", timeout_s=1)
+
+
+def test_whoever_waits_is_told_that_the_device_answers_no_more(fake: FakeDevice, display: Display) -> None:
+    fake.failures["state"] = ["line-lost"] * 10
+    with pytest.raises(LineBroken, match="no telemetry for"):
+        display.telemetry.wait(1, timeout_s=60)
+    fake.failures.clear()
+
+
 def test_save_restarts_the_device_and_what_was_on_is_on_again(fake: FakeDevice, display: Display) -> None:
     display.stream(5, ["force"])
     fake.received.clear()

@@ -64,6 +64,12 @@ pub fn run(permission: Permission, options: Options) -> Result<()> {
     let mut server = Background::start(&serve)?;
     let device = address(&mut server, LISTENING)?;
     let surroundings = address(&mut server, SURROUNDINGS)?;
+    let chooses_folder =
+        options.rest.iter().any(|word| word.to_string_lossy().starts_with("--out"));
+    if !chooses_folder {
+        // Nothing that was measured.
+        line = line.args(["--force", "--out", "target/bring-up"]);
+    }
     line.args(["--tcp", &device, "--surroundings", &surroundings])
         .args(["--image".into(), image])
         .args(options.rest)

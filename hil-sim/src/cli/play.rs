@@ -45,10 +45,8 @@ pub struct Arguments {
 /// Plays the course for a program that began at a time; prints its figures.
 pub fn run(arguments: &Arguments, began: Instant) -> Result<(), Failure> {
     let selection = Selection { column: arguments.column.as_deref() };
-    let course = read_course(&arguments.course, selection).map_err(Failure::input)?;
-    let played = Prepared::new(course).fine_enough(arguments.coarse);
-    let played =
-        played.with_context(|| arguments.course.display().to_string()).map_err(Failure::input)?;
+    let file = read_course(&arguments.course, selection).map_err(Failure::input)?;
+    let played = Prepared::new(file, arguments.coarse, 1).map_err(Failure::input)?;
     eprintln!(
         "hil-sim: {} points, reduction error {:.2} mK",
         played.points.points().len(),

@@ -317,12 +317,20 @@ impl People for BenchPeople {
 }
 
 impl State {
-    /// The device as it is after power-up, if the bench has one. What is on the line is lost.
+    /// The device as it is after power-up, if the bench has one, but with the doses that it has counted: the skin has taken them.
+    /// What is on the line is lost.
     fn power_up(&mut self, skin_c: f64, purpose: &str) -> Result<(), BenchError> {
         let setting = &self.setting;
         let noise_seed = stream_seed(setting.seed, &format!("{} {purpose} device", setting.key));
+        let before = self.device.take();
         self.device = match &setting.device {
-            Some(device) => Some(device.power_up(skin_c, noise_seed)?),
+            Some(device) => {
+                let device = device.power_up(skin_c, noise_seed)?;
+                Some(match &before {
+                    Some(before) => device.with_doses_of(before),
+                    None => device,
+                })
+            }
             None => None,
         };
         self.line.clear();

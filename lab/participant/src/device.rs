@@ -153,6 +153,20 @@ impl RunningDevice {
         Ok(Self::Five(Box::new(NativeFiveFingers::new(worlds))))
     }
 
+    /// This device with the thermal doses of the one before, which would keep them if it were the same.
+    #[must_use]
+    pub fn with_doses_of(self, before: &Self) -> Self {
+        match (self, before) {
+            (Self::One(engine), Self::One(before)) => {
+                Self::One(Box::new(engine.with_doses_of(before)))
+            }
+            (Self::Five(engine), Self::Five(before)) => {
+                Self::Five(Box::new(engine.with_doses_of(before)))
+            }
+            (other, _) => other,
+        }
+    }
+
     /// Runs it for a millisecond, in which `bytes` are sent to it, with what each finger meets, and with faults of the first
     /// finger's plant.
     pub fn run_1_ms(&mut self, bytes: &[u8], inputs: &[FingerInput], faults: &[ActiveFault]) {

@@ -8,6 +8,7 @@ mod file;
 pub mod measure;
 mod people;
 mod plan;
+mod planned_dose;
 mod presented;
 mod random;
 pub mod record;
@@ -21,6 +22,7 @@ pub use executor::{Executor, SessionEnd};
 pub use file::SessionError;
 pub use people::{Cue, Decision, OperatorQuestion, People, Phase, Question, Response, Update};
 pub use plan::{Departure, Plan, PlanError, PlannedTrial, Presented};
+pub use planned_dose::DoseReached;
 pub use schedule::{Next, OtherSession, Schedule};
 pub use session::{
     ANALYSES, Answer, AnswerKind, ContactRule, CorrectAnswer, DeviceSetup, PUBLISHED_TABLES,

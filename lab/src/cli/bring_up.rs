@@ -16,7 +16,7 @@ use thermal_settings::CRC_32;
 use thermal_sim::board::{BROKEN_BOARDS, Board, BoardBench, LossyLine, SOUND};
 use thermal_sim::engine::NativeEngine;
 
-use super::{Failure, Target, print};
+use super::{Failure, KeptFiles, Target, print};
 
 /// Text after the options in the help.
 const USAGE: &str = "\
@@ -36,8 +36,10 @@ pub struct Arguments {
     #[arg(long, value_name = "STAGE", value_parser = stage)]
     from: Option<&'static Stage>,
     /// Folder for the page and the record
-    #[arg(long, value_name = "DIR", default_value = "target/bring-up")]
+    #[arg(long, value_name = "DIR", default_value = "bring-up")]
     out: PathBuf,
+    #[command(flatten)]
+    kept: KeptFiles,
     /// The flashed image, whose checksum goes onto the page
     #[arg(long, value_name = "FILE")]
     image: Option<PathBuf>,
@@ -81,6 +83,11 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
         if given && !there {
             return Err(Failure::input(anyhow!("{name} is for {needs} only")));
         }
+    }
+    if arguments.from.is_none() {
+        [RECORD, PAGE]
+            .iter()
+            .try_for_each(|name| arguments.kept.check(&arguments.out.join(name)))?;
     }
     let report = first_report(arguments).map_err(Failure::input)?;
     fs::create_dir_all(&arguments.out)

@@ -13,7 +13,7 @@ use thermal_lab::contact::Report;
 use thermal_lab::step_screen::StepScreen;
 use thermal_settings::PersonCode;
 
-use super::{Failure, Target, enrol, print_text};
+use super::{Failure, KeptFiles, Target, enrol, print_text};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -32,9 +32,26 @@ pub struct Arguments {
     /// Finger of a device with several
     #[arg(long, value_name = "N")]
     finger: Option<u8>,
+    #[command(flatten)]
+    kept: KeptFiles,
+}
+
+/// What is written: the recording, the result and its picture.
+const EXTENSIONS: [&str; 3] = ["csv", "toml", "svg"];
+
+impl Arguments {
+    /// A file that is written.
+    fn file(&self, extension: &str) -> PathBuf {
+        let path = match &self.out {
+            Some(path) => path.clone(),
+            None => format!("contact-{}", self.code).into(),
+        };
+        path.with_added_extension(extension)
+    }
 }
 
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
+    EXTENSIONS.iter().try_for_each(|extension| arguments.kept.check(&arguments.file(extension)))?;
     let mut out = stderr();
     let mut screen = StepScreen::new(&mut out);
     if target.simulated {
@@ -57,17 +74,14 @@ fn at_device<L: Link>(
 ) -> Result<(), Failure> {
     let options = MeasurementOptions { finger: arguments.finger, takes_zero: arguments.zero };
     let measurement = measure(client, &options, guide).map_err(Failure::run)?;
-    let path = match &arguments.out {
-        Some(path) => path.clone(),
-        None => format!("contact-{}", arguments.code).into(),
-    };
+    let [recording, result, picture] = EXTENSIONS.map(|extension| arguments.file(extension));
     // What was recorded is kept even if nothing fits it.
-    write(&path, "csv", &csv(&measurement))?;
+    write(&recording, &csv(&measurement))?;
     let fit = fit(&measurement.recording).map_err(Failure::run)?;
     let report = Report::new(&arguments.code.to_string(), &measurement, &fit);
-    write(&path, "toml", &toml::to_string(&report).map_err(Failure::run)?)?;
+    write(&result, &toml::to_string(&report).map_err(Failure::run)?)?;
     let chart = report.chart(&measurement.recording, &fit);
-    write(&path, "svg", &chart.map_err(Failure::run)?)?;
+    write(&picture, &chart.map_err(Failure::run)?)?;
     print_text(&report.text())?;
     if arguments.tell {
         let command = PlainCommand::ContactLaw(fit.law);
@@ -87,9 +101,6 @@ fn csv(measurement: &Measurement) -> String {
     format!("since_s,flux_w_m2,surface_c,force_n,target_n\n{rows}")
 }
 
-fn write(path: &Path, extension: &str, text: &str) -> Result<(), Failure> {
-    let path = path.with_added_extension(extension);
-    fs::write(&path, text)
-        .with_context(|| format!("--out {}", path.display()))
-        .map_err(Failure::run)
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    fs::write(path, text).with_context(|| format!("--out {}", path.display())).map_err(Failure::run)
 }

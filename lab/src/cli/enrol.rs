@@ -14,7 +14,7 @@ use thermal_lab::enrolment::{EnrolmentOptions, Step, enrol};
 use thermal_lab::step_screen::StepScreen;
 use thermal_settings::{Person, PersonCode};
 
-use super::{Failure, Target, print_text};
+use super::{Failure, KeptFiles, Target, print_text};
 
 /// Force of a simulated finger, N.
 const SIMULATED_N: f64 = 2.0;
@@ -42,6 +42,15 @@ pub struct Arguments {
     /// Finger of a device with several
     #[arg(long, value_name = "N")]
     finger: Option<u8>,
+    #[command(flatten)]
+    kept: KeptFiles,
+}
+
+impl Arguments {
+    /// The file that is written.
+    fn file(&self) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| format!("person-{}.toml", self.code).into())
+    }
 }
 
 pub fn code(text: &str) -> Result<PersonCode, String> {
@@ -68,9 +77,13 @@ struct PersonFile {
 }
 
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
-    if !arguments.forget && arguments.restore.is_none() && arguments.objects.len() < 2 {
-        let problem = anyhow!("--objects has {}; two or more are needed", arguments.objects.len());
-        return Err(Failure::input(problem));
+    if !arguments.forget && arguments.restore.is_none() {
+        if arguments.objects.len() < 2 {
+            let problem =
+                anyhow!("--objects has {}; two or more are needed", arguments.objects.len());
+            return Err(Failure::input(problem));
+        }
+        arguments.kept.check(&arguments.file())?;
     }
     let mut out = stderr();
     let mut screen = StepScreen::new(&mut out);
@@ -137,10 +150,7 @@ fn at_device<L: Link>(
             surface.conductivity_w_mk, surface.roughness_um, surface.slope_rad
         )),
     };
-    let path = match &arguments.out {
-        Some(path) => path.clone(),
-        None => format!("person-{code}.toml").into(),
-    };
+    let path = arguments.file();
     let text = toml::to_string(&file).map_err(Failure::run)?;
     fs::write(&path, text)
         .with_context(|| format!("--out {}", path.display()))

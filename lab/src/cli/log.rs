@@ -11,7 +11,7 @@ use thermal_client::client::{PlainCommand, ReceivedTelemetry, TickTime};
 use thermal_client::link::{Link, LinkError};
 
 use super::target::AnyClient;
-use super::{Failure, Target};
+use super::{Failure, KeptFiles, Target};
 
 /// Interval at which telemetry that does not come is looked for.
 const POLL_INTERVAL: Duration = Duration::from_millis(200);
@@ -27,6 +27,8 @@ pub struct Arguments {
     /// File to write, instead of standard output
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    kept: KeptFiles,
 }
 
 fn duration(text: &str) -> Result<Duration, String> {
@@ -57,16 +59,20 @@ const COLUMNS: [&str; 18] = [
 ];
 
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
-    let out: Box<dyn Write> = match &arguments.out {
-        Some(path) => {
-            let file = File::create(path).with_context(|| format!("--out {}", path.display()));
-            Box::new(file.map_err(Failure::input)?)
-        }
-        None => Box::new(stdout()),
-    };
-    let mut out = csv::Writer::from_writer(out);
-    out.write_record(COLUMNS).map_err(Failure::run)?;
+    if let Some(path) = &arguments.out {
+        arguments.kept.check(path)?;
+    }
     target.with_client(|client| {
+        // Only now, so that a device that is not there leaves no empty file.
+        let out: Box<dyn Write> = match &arguments.out {
+            Some(path) => {
+                let file = File::create(path).with_context(|| format!("--out {}", path.display()));
+                Box::new(file.map_err(Failure::input)?)
+            }
+            None => Box::new(stdout()),
+        };
+        let mut out = csv::Writer::from_writer(out);
+        out.write_record(COLUMNS).map_err(Failure::run)?;
         // Virtual time begins with the device; real time is that of the computer.
         let zero_s = if target.simulated {
             0.0

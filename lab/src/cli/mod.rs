@@ -6,6 +6,7 @@ pub mod commission;
 pub mod contact;
 pub mod enrol;
 pub mod info;
+mod kept_files;
 pub mod log;
 pub mod monitor;
 pub mod play;
@@ -21,6 +22,7 @@ use std::io::{Write, stdout};
 
 use anyhow::Context;
 
+use kept_files::KeptFiles;
 pub use target::Target;
 pub use thermal_sim::Failure;
 

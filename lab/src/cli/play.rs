@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use clap::Args;
 use serde_json::json;
 use thermal_client::client::{PlainCommand, QueryState};
@@ -17,6 +17,8 @@ use super::{Failure, Target, print};
 /// Interval at which the state is asked for while the self-test runs, and how many times it is at most: 5 s.
 const STATE_POLL_INTERVAL: Duration = Duration::from_millis(100);
 const STATE_POLLS_MAX: u32 = 50;
+/// Interval of the stream that guards the arming, ms: so long that no line of telemetry comes of it.
+const GUARD_STREAM_MS: u32 = 60_000;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -58,11 +60,9 @@ fn start(word: &str) -> Result<CourseStart, String> {
 /// Uploads the course to a device that is armed, and starts it.
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let selection = Selection { column: arguments.column.as_deref() };
-    let course = read_course(&arguments.course, selection).map_err(Failure::input)?;
-    let played = Prepared::new(course)
-        .fine_enough(arguments.coarse)
-        .with_context(|| arguments.course.display().to_string())
-        .map_err(Failure::input)?;
+    let file = read_course(&arguments.course, selection).map_err(Failure::input)?;
+    let played =
+        Prepared::new(file, arguments.coarse, arguments.repeats).map_err(Failure::input)?;
     let mut commands = played.points.upload_commands();
     commands.push(PlainCommand::Play(PlayOrder {
         start: arguments.at,
@@ -71,10 +71,17 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     }));
     target.with_client(|client| {
         if arguments.arm {
+            // A stream makes the device trip if this program vanishes before the course has begun.
+            let guard = PlainCommand::stream(GUARD_STREAM_MS);
+            (client.ask_finger(arguments.finger, &guard)).map_err(Failure::run)?;
             arm(client, arguments.finger)?;
         }
         for command in &commands {
             (client.ask_finger(arguments.finger, command)).map_err(Failure::run)?;
+        }
+        if arguments.arm {
+            let no_stream = PlainCommand::stream(0);
+            (client.ask_finger(arguments.finger, &no_stream)).map_err(Failure::run)?;
         }
         let points = played.points.points().len();
         let error_mk = played.error_k * 1e3;

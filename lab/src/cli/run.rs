@@ -13,7 +13,7 @@ use thermal_lab::terminal_people::TerminalPeople;
 use thermal_lab::watched::{Progress, Watched};
 use thermal_participant::{Bench, BenchOptions};
 use thermal_session::dataset::{Recorder, RecordingError};
-use thermal_session::{Executor, People, Plan, Schedule, Session, SessionEnd};
+use thermal_session::{DoseReached, Executor, People, Plan, Schedule, Session, SessionEnd};
 use thermal_window::{SessionView, StopFlag, Tones};
 
 use super::target::stop_on_signals;
@@ -43,7 +43,7 @@ pub struct Arguments {
     #[arg(long)]
     plan: bool,
     /// Folder of the data set, which may have data of other participants and tasks
-    #[arg(long, value_name = "DIR", default_value = "target/sessions")]
+    #[arg(long, value_name = "DIR", default_value = "data")]
     out: PathBuf,
     /// Go on with a session that was interrupted
     #[arg(long)]
@@ -62,6 +62,15 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let plan = Plan::new(&session, who.0, who.1)
         .with_context(|| arguments.session.display().to_string())
         .map_err(Failure::input)?;
+    if let Some(DoseReached { trial, device_finger, plan_min }) =
+        DoseReached::in_plan(&session, &plan)
+    {
+        eprintln!(
+            "thermal-lab: warning: if every trial takes its longest time, the skin at display {device_finger} reaches the dose \
+             by which the device trips, {:.1} min (CEM43), in trial {trial}; the whole plan gives {plan_min:.2} min",
+            DoseReached::LIMIT_MIN
+        );
+    }
     if arguments.plan {
         return print_text(&plan.csv());
     }

@@ -47,7 +47,8 @@ pub struct Target {
 pub type AnyClient<'a> = Client<Interruptible<Box<dyn Link + 'a>>>;
 
 impl Target {
-    /// Does something with a client of the device. Ctrl-C interrupts it, and the bridge is switched off then.
+    /// Does something with a client of the device. Ctrl-C interrupts it. The bridge is switched off then, and if the work fails
+    /// after it has armed the device, whatever has failed: a refusal, the line, or a full disk.
     pub fn with_client<T>(
         &self,
         work: impl FnOnce(&mut AnyClient<'_>) -> Result<T, Failure>,
@@ -64,9 +65,16 @@ impl Target {
         let link = Interruptible::new(link, requested);
         let mut client = Client::attach(link).map_err(Failure::run)?;
         let done = work(&mut client);
-        if interrupted.load(Ordering::Relaxed) {
-            // Whatever failed is reported; a link that is gone fails here, too.
-            let _ignored = client.ask(&PlainCommand::Abort);
+        let was_driven = done.is_err() && client.may_be_driven();
+        if was_driven || interrupted.load(Ordering::Relaxed) {
+            match client.ask(&PlainCommand::Abort) {
+                Ok(()) if was_driven => eprintln!("thermal-lab: the bridge is off"),
+                Err(error) if client.may_be_driven() => eprintln!(
+                    "thermal-lab: THE BRIDGE MAY STILL BE ON: abort was not confirmed ({error}). PRESS THE EMERGENCY STOP"
+                ),
+                // The failure of the work is reported, and that of the link with it.
+                _ => {}
+            }
         }
         done
     }

@@ -2,12 +2,14 @@
 //! this program is [`SimulatedLink`].
 
 mod lazy;
+mod own_port;
 mod paced;
 mod ports;
 mod served;
 mod stream;
 
 pub use lazy::LazyLink;
+pub use own_port::OwnPort;
 pub use paced::PacedLink;
 pub use ports::{PortInfo, UsbId, ports};
 pub use served::{ServedLink, ServedOperator};

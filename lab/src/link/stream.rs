@@ -6,8 +6,9 @@ use std::net::{TcpStream, ToSocketAddrs};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use serial2::SerialPort;
 use thermal_client::link::{LineSplitter, Link, LinkError, ReceivedLine};
+
+use super::own_port::OwnPort;
 
 /// Baud rate of the device.
 const BAUD: u32 = 1_000_000;
@@ -31,7 +32,7 @@ impl Stream for TcpStream {
     }
 }
 
-impl Stream for SerialPort {
+impl Stream for OwnPort {
     fn set_timeout(&mut self, timeout: Duration) -> io::Result<()> {
         self.set_read_timeout(timeout)
     }
@@ -46,12 +47,12 @@ pub struct StreamLink<S> {
     opened: Instant,
 }
 
-/// Opens a serial port.
+/// Opens a serial port for this program alone, before a byte is written.
 ///
 /// # Errors
 /// There is no such port, it is in use, or it does not know the baud rate.
-pub fn serial(name: &Path) -> io::Result<StreamLink<SerialPort>> {
-    let mut port = SerialPort::open(name, BAUD)?;
+pub fn serial(name: &Path) -> io::Result<StreamLink<OwnPort>> {
+    let mut port = OwnPort::open(name, BAUD)?;
     port.set_write_timeout(WRITE_TIMEOUT)?;
     port.discard_buffers()?;
     Ok(StreamLink::new(port))

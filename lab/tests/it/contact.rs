@@ -7,7 +7,7 @@ use std::process::Output;
 use crate::command::{run, scene_file, text};
 
 fn contact(words: &[&str]) -> Output {
-    run(&[&["contact"], words].concat())
+    run(&[&["contact", "--force"], words].concat())
 }
 
 /// A finger with a contact law of its own.

@@ -14,7 +14,7 @@ use crate::command::{run, scene_file, text};
 use crate::simulated_device::device;
 
 fn enrol(words: &[&str]) -> Output {
-    run(&[&["enrol"], words].concat())
+    run(&[&["enrol", "--force"], words].concat())
 }
 
 /// A finger that is no mean one.

@@ -5,5 +5,6 @@ mod command;
 mod contact;
 mod enrol;
 mod program;
+mod serial_port;
 mod simulated_device;
 mod tcp;

@@ -1,9 +1,9 @@
 //! The command `thermal-lab`.
 
 use std::io::{BufRead, BufReader, Write};
-use std::net::TcpListener;
+use std::net::{SocketAddr, TcpListener};
 use std::process::{Command, Output, Stdio};
-use std::thread;
+use std::thread::{self, JoinHandle};
 
 use serde_json::Value;
 
@@ -129,10 +129,10 @@ fn wrong_arguments_say_what_is_allowed() {
     }
 }
 
-/// A device that answers everything with `ok`, and counts nothing lost.
-#[cfg(unix)]
-#[test]
-fn ctrl_c_ends_a_log_with_abort() {
+/// A device that answers as `answer` says, and the lines that it has received.
+fn device(
+    answer: impl Fn(&str) -> String + Send + 'static,
+) -> (SocketAddr, JoinHandle<Vec<String>>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
     let server = thread::spawn(move || {
@@ -140,20 +140,31 @@ fn ctrl_c_ends_a_log_with_abort() {
         let mut lines = Vec::new();
         for line in BufReader::new(stream.try_clone().unwrap()).lines() {
             let line = line.unwrap();
-            let answer = match line.as_str() {
-                "" => continue,
-                line if line.starts_with("synchronize") => {
-                    format!("err unknown command '{line}'\n")
-                }
-                "stream 10" => "ok\nT 10 armed - - - - - - 0 0 0 -\n".into(),
-                _ => "ok\n".into(),
+            if line.is_empty() {
+                continue;
+            }
+            let answer = if line.starts_with("synchronize") {
+                format!("err unknown command '{line}'")
+            } else {
+                answer(&line)
             };
             lines.push(line);
-            if stream.write_all(answer.as_bytes()).is_err() {
+            if stream.write_all((answer + "\n").as_bytes()).is_err() {
                 break;
             }
         }
-        lines
+        // The first two lines end checksums and find the answers.
+        lines.split_off(2)
+    });
+    (address, server)
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_log_with_abort() {
+    let (address, server) = device(|line| match line {
+        "stream 10" => "ok\nT 10 armed - - - - - - 0 0 0 -".into(),
+        _ => "ok".into(),
     });
     let mut logger = thermal_lab()
         .args(["log", "--tcp", &address.to_string()])
@@ -168,7 +179,98 @@ fn ctrl_c_ends_a_log_with_abort() {
     let signalled = Command::new("kill").args(["-INT", &logger.id().to_string()]).status();
     assert!(signalled.unwrap().success());
     assert!(logger.wait().unwrap().success());
-    let lines = server.join().unwrap();
-    // The first two lines end checksums and find the answers.
-    assert_eq!(lines[2..], ["stream 10", "stream 0", "abort"]);
+    assert_eq!(server.join().unwrap(), ["stream 10", "stream 0", "abort"]);
+}
+
+/// What an armed device refuses, for a reason that no program can know before, switches its bridge off again.
+#[test]
+fn a_command_that_fails_after_it_has_armed_the_device_switches_the_bridge_off() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("refused-course.csv");
+    std::fs::write(&path, "0,30\n2,28\n").unwrap();
+    let state =
+        "ok state=armed fault=- setpoint_c=33 display_c=33 force_n=0 demand_a=0 cem43_min=0";
+    for refused in ["upload commit", "play landing", "state"] {
+        let (address, server) = device(move |line| match line {
+            line if line.starts_with(refused) => "err so it is".into(),
+            "state" => state.into(),
+            _ => "ok".into(),
+        });
+        let path = path.display();
+        let played = run(&format!("play --arm {path} --tcp {address}"));
+        assert_eq!(played.status.code(), Some(1), "{refused}");
+        let said = text(&played.stderr);
+        assert!(said.contains("the bridge is off"), "{refused}: {said}");
+        let lines = server.join().unwrap();
+        assert_eq!(
+            lines[0], "stream 60000",
+            "a device that is armed trips if the program vanishes"
+        );
+        assert_eq!(lines.last().unwrap(), "abort", "{refused}");
+    }
+    let (address, server) = device(|line| match line {
+        "abort" => "ok T 1 and other noise".into(),
+        "law" => "err so it is".into(),
+        _ => "ok".into(),
+    });
+    assert_eq!(run(&format!("send --tcp {address} arm law")).status.code(), Some(1));
+    assert_eq!(server.join().unwrap(), ["arm", "law", "abort"]);
+    // A device that this program has not armed is left as it is.
+    let (address, server) =
+        device(|line| if line == "law" { "err so it is".into() } else { "ok".into() });
+    assert_eq!(run(&format!("send --tcp {address} law")).status.code(), Some(1));
+    assert_eq!(server.join().unwrap(), ["law"]);
+}
+
+/// A course that the device would refuse is refused before the line is opened: there is no device at this address.
+#[test]
+fn a_course_that_a_device_refuses_is_refused_before_anything_is_armed() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("too-much.csv");
+    for (course, repeats, says) in [
+        ("0,32\n1000,32\n3400,20\n7400,20\n", 1, "too-much.csv:4: too long: 7400000 ms"),
+        ("0,32\n1000,32\n3400,20\n7400,20\n", 1, "3600000 ms at most"),
+        ("t_s,celsius\n0,32\n1,32\n1.05,20\n3,20\n", 1, "too-much.csv:4: too fast: 240 K/s"),
+        ("0,32\n1,41\n600,41\n", 1, "too-much.csv: too hot for too long: CEM43 would be"),
+        ("0,32\n1,41\n100,41\n", 20, "played 20 times it is too hot for too long"),
+    ] {
+        std::fs::write(&path, course).unwrap();
+        let line = format!("play --arm --tcp 127.0.0.1:1 --repeats {repeats} {}", path.display());
+        let refused = run(&line);
+        let said = text(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2), "{course}: {said}");
+        assert!(said.contains(says), "{course}: {said}");
+    }
+}
+
+/// A measurement is not replaced unless someone asks for it, and a device that is not there leaves no empty file.
+#[test]
+fn a_file_of_an_earlier_measurement_is_kept() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("kept-files");
+    let _ignored = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    let new = folder.join("new.csv");
+    assert!(!run(&format!("log --tcp 127.0.0.1:1 --out {}", new.display())).status.success());
+    assert!(!new.exists());
+    for (line, file) in [
+        ("log --simulated --duration 0.1 --out", "log.csv"),
+        ("contact P1 --simulated --out", "contact.svg"),
+        ("enrol P1 --simulated --out", "person.toml"),
+        ("bring-up --simulated --out", "bring-up.json"),
+    ] {
+        let path = folder.join(file);
+        std::fs::write(&path, "measured\n").unwrap();
+        let out = match file {
+            "contact.svg" => path.with_extension(""),
+            "bring-up.json" => folder.clone(),
+            _ => path.clone(),
+        };
+        let refused = run(&format!("{line} {}", out.display()));
+        let said = text(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2), "{line}: {said}");
+        assert!(said.contains(file) && said.contains("--force"), "{line}: {said}");
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "measured\n");
+    }
+    let log = folder.join("log.csv");
+    let replaced = run(&format!("log --simulated --duration 0.1 --force --out {}", log.display()));
+    assert!(replaced.status.success());
+    assert!(std::fs::read_to_string(&log).unwrap().starts_with("received_s,"));
 }

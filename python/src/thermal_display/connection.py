@@ -49,6 +49,9 @@ RESTART_TIMEOUT_S = 5.0
 FIELD_CHANGE_S = 0.02
 """Pause without telemetry between two choices of its fields, so that no line with the old ones comes after the answer to the
 second one: the answer overtakes up to eight waiting lines, which take 0.8 ms each."""
+SILENT_INTERVALS = 5
+SILENT_S = 0.6
+"""Telemetry that has not come for so many of its intervals, and for so long at least, s, is missing: the device is asked why."""
 LOCK_TIMEOUT_S = 5.0
 """Longest wait of `close` for another thread's command, which ends within its own timeout."""
 OFF_STREAM = Stream(0, TELEMETRY_FIELDS)
@@ -123,6 +126,8 @@ class Connection:
         self._closing = False
         self._ended = False
         self._last_sent_s = time.perf_counter()
+        # When telemetry was last received, or began to be expected.
+        self._heard_s = time.perf_counter()
         self._reader = threading.Thread(
             target=self._read_lines, name=f"thermal-display {link.name}", daemon=True
         )
@@ -203,11 +208,7 @@ class Connection:
         try:
             self._repeat("abort")
             self._repeat("stream 0")
-            # In a device with several fingers a question without address is that of the first one only.
-            addresses = [f"@{finger} " for finger in range(self.fingers)] if self.fingers > 1 else [""]
-            for address in addresses:
-                answer = self._repeat(f"{address}state")
-                status = Status.read(Fields(wire.split_finger(answer)[1].removeprefix("ok")))
+            for answer, status in self._statuses():
                 if status.state.is_driven:
                     raise DisplayError(f"after 'abort' the device answers '{answer}'")
             if self._checksums:
@@ -297,8 +298,7 @@ class Connection:
                         continue
                     raise Interrupted(line) from None
                 except _Restarted:
-                    self._restore_after_restart()
-                    raise DeviceRestarted(line) from None
+                    raise self._restarted(line) from None
                 except (NoAnswer, NotUnderstood) as error:
                     if again:
                         continue
@@ -318,11 +318,35 @@ class Connection:
         try:
             self._synchronise(self.timeout_s)
         except _Restarted:
-            self._restore_after_restart()
-            raise DeviceRestarted(line) from error
+            raise self._restarted(line) from error
         except CommandError:
             # It does not answer at all, as the caller's error says.
             return
+
+    def _restarted(self, line: str) -> DisplayError:
+        """The error of a line whose answer shows that the device has forgotten checksums: it has restarted, or, if a bridge is
+        on, another program has switched them off. What this end relies on is on again."""
+        self._restore_after_restart()
+        if wire.split_finger(line)[1] == "arm":
+            # The only line by which a device drives after a restart. Material and object are lost, so it must not.
+            self._repeat("abort")
+        for _, status in self._statuses():
+            if status.state.is_driven:
+                return DeviceBusy(
+                    f"{self.link.name}: checksums were switched off, and the device has not restarted: it is {status.state}, with "
+                    "its bridge on. Another program uses the line; let only one be open"
+                )
+        return DeviceRestarted(line)
+
+    def _statuses(self) -> list[tuple[str, Status]]:
+        """The answers to `state` of all fingers, and how they are; raises `ValueError` if one is not understood."""
+        # In a device with several fingers a question without address is that of the first one only.
+        addresses = [f"@{finger} " for finger in range(self.fingers)] if self.fingers > 1 else [""]
+        answers = [self._repeat(f"{address}state") for address in addresses]
+        return [
+            (answer, Status.read(Fields(wire.split_finger(answer)[1].removeprefix("ok"))))
+            for answer in answers
+        ]
 
     @staticmethod
     def _is_damage(answer: str) -> bool:
@@ -604,6 +628,7 @@ class Connection:
             else:
                 self._stream_own[finger] = stream
             self._last_tick.clear()
+            self._heard_s = time.perf_counter()
         elif content == "checksum on":
             self._checksums = True
         elif words[0] == "events":
@@ -628,6 +653,7 @@ class Connection:
         if parsed is None:
             return False
         tick, state, remark = parsed.tick, parsed.state, parsed.remark
+        self._heard_s = at_s
         self.clock.observe(tick, at_s)
         # What has arrived has happened.
         host_s = min(self.clock.time_of(tick), at_s)
@@ -692,10 +718,34 @@ class Connection:
         raise LineBroken(self._broken)
 
     def raise_if_unusable(self) -> None:
-        """Raises `Closed`, or what ended the connection."""
+        """Raises `Closed`, or what ended the connection; a device whose telemetry is missing is asked, which raises
+        `DeviceRestarted` or `LineBroken`."""
         if self._closing:
             raise Closed("the display has been closed")
         self.raise_if_broken()
+        self._ask_if_silent()
+
+    def _ask_if_silent(self) -> None:
+        """Asks a device that should stream and does not: after a reset, or with its supply off, it does neither that nor
+        anything else."""
+        intervals_ms = [self._stream_of(finger).interval_ms for finger in range(self.fingers)]
+        longest_s = 1e-3 * max(intervals_ms)
+        silent_s = time.perf_counter() - self._heard_s
+        if longest_s == 0 or silent_s < max(SILENT_S, SILENT_INTERVALS * longest_s) or self.reads_here:
+            return
+        try:
+            self.query("state")
+        except (NoAnswer, NotUnderstood) as error:
+            raise LineBroken(
+                f"{self.link.name}: no telemetry for {silent_s:.1f} s, and {error}: its supply or the line is interrupted"
+            ) from error
+        with self._command_lock:
+            if self._checksums or time.perf_counter() - self._heard_s < silent_s:
+                # It answers and has forgotten nothing: the telemetry was lost on its way, or comes again.
+                self._heard_s = time.perf_counter()
+                return
+            # Without checksums the answer does not show a restart; that the stream has ended does.
+            raise self._restarted("state")
 
     def raise_if_tripped(self, finger: int | None, doing: str) -> None:
         """Raises `DeviceTripped` if telemetry shows a trip."""

@@ -118,7 +118,7 @@ class DeviceRestarted(CommandError):
 
     def __init__(self, line: str) -> None:
         super().__init__(
-            f"the device has restarted, which the answer to '{line}' shows: it has forgotten that checksums were on. "
+            f"the device has restarted, which the answer to '{line}' shows: it has forgotten checksums and telemetry. "
             "Its bridge is off; set material, object and course again",
             line,
         )

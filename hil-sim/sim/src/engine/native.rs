@@ -217,6 +217,21 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
         self
     }
 
+    /// This device with the thermal doses that another one has counted, as that one would have them after a reset.
+    #[must_use]
+    pub fn with_doses_of(mut self, before: &Self) -> Self {
+        self.keep_doses_of(&before.device);
+        self
+    }
+
+    fn keep_doses_of(&mut self, before: &Device<FINGERS>) {
+        for finger in FingerIndex::all() {
+            let word = before.finger_thermal_dose(finger).to_retained_word();
+            let dose = ThermalDose::from_any_retained_word(word);
+            self.device.restore_finger_thermal_dose(finger, dose);
+        }
+    }
+
     fn with_fingers(fingers: [Finger; FINGERS], pwm_period_steps: u16) -> Self {
         let settings = Settings::default();
         let mut native = Self {
@@ -340,14 +355,8 @@ impl<const FINGERS: usize> NativeDevice<FINGERS> {
             &mut self.device,
             Device::new_optionally_tripped(cause_retained, &Settings::default()),
         );
-        for finger in FingerIndex::all() {
-            let dose = match cause {
-                ResetCause::PowerOn => ThermalDose::default(),
-                _ => ThermalDose::from_any_retained_word(
-                    before.finger_thermal_dose(finger).to_retained_word(),
-                ),
-            };
-            self.device.restore_finger_thermal_dose(finger, dose);
+        if cause != ResetCause::PowerOn {
+            self.keep_doses_of(&before);
         }
         self.handler = match &self.stored {
             Some(stored) => {

@@ -94,6 +94,8 @@ pub struct Client<L> {
     checksums: bool,
     /// Whether an answer may still come that nobody waits for.
     out_of_step: bool,
+    /// Whether this client has sent `arm`, and since then nothing that has switched all bridges off.
+    may_be_driven: bool,
     /// Number in the last line that synchronized answers with lines.
     synchronization: u32,
 }
@@ -111,6 +113,7 @@ impl<L: Link> Client<L> {
             counts: LineCounts::default(),
             checksums: false,
             out_of_step: false,
+            may_be_driven: false,
             // The standard library's hashers have random keys, others for each client and each process.
             synchronization: RandomState::new().hash_one(()) as u32,
         }
@@ -138,6 +141,12 @@ impl<L: Link> Client<L> {
     /// Gives the link back.
     pub fn into_link(self) -> L {
         self.link
+    }
+
+    /// Whether a bridge may be on because this client has armed it: from the sending of `arm`, whatever is answered, to an accepted
+    /// `abort` of all fingers or a restart.
+    pub const fn may_be_driven(&self) -> bool {
+        self.may_be_driven
     }
 
     /// Lines that were lost, damaged or dropped so far.
@@ -345,6 +354,7 @@ impl<L: Link> Client<L> {
     }
 
     fn transmit(&mut self, line: &str) -> Result<(), LinkError> {
+        self.may_be_driven |= split_finger(line).1.trim() == "arm";
         let line = if self.checksums && !line.is_empty() {
             format!("{line}*{:02X}\n", line_checksum(line.as_bytes()))
         } else {
@@ -480,7 +490,9 @@ impl<L: Link> Client<L> {
                 self.streams.set(finger, stream, self.link.now());
             }
             (Some("checksum"), Some(switch)) => self.checksums = switch == "on",
+            (Some("abort"), None) if finger.is_none() => self.may_be_driven = false,
             (Some("save" | "forget"), None) => {
+                self.may_be_driven = false;
                 self.streams = TelemetryStreams::default();
                 self.clock.restart();
             }

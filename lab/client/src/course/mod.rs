@@ -1,15 +1,15 @@
 //! Courses of temperature that a display follows, on the host: reading, reducing and uploading them.
 //!
 //! ```text
-//! CSV file -> read_course -> Course -> reduce -> at most 128 points -> upload_commands -> device
+//! CSV file -> read_course -> CourseFile -> Prepared: at most 128 points, none of which a device refuses -> upload_commands -> device
 //! ```
 
 mod prepared;
 mod read;
 mod reduce;
 
-pub use prepared::{Prepared, TooCoarse};
-pub use read::{ALLOWED_C, CourseFileError, Selection, read_course};
+pub use prepared::Prepared;
+pub use read::{ALLOWED_C, CourseFile, CourseFileError, Selection, read_course};
 pub use reduce::{Reduced, reduce};
 
 use thermal_device::stimulus::TemperatureKind;

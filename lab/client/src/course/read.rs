@@ -34,7 +34,15 @@ pub enum CourseFileError {
         /// Why.
         problem: String,
     },
-    /// A line is wrong.
+    /// The course as a whole is not played.
+    #[error("{}: {problem}", file.display())]
+    Whole {
+        /// The file.
+        file: PathBuf,
+        /// Why, and what is allowed.
+        problem: String,
+    },
+    /// A line is wrong, or begins what a device would refuse.
     #[error("{}:{line}: {problem}", file.display())]
     Line {
         /// The file.
@@ -46,13 +54,37 @@ pub enum CourseFileError {
     },
 }
 
+/// A course, and the lines of its file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CourseFile {
+    file: PathBuf,
+    /// The course.
+    pub course: Course,
+    /// Line of each point.
+    lines: Vec<u64>,
+}
+
+impl CourseFile {
+    /// That something is wrong with the course at a time of it, s.
+    pub(super) fn wrong_at(&self, t_s: f64, problem: String) -> CourseFileError {
+        let index = self.course.points().partition_point(|point| point.t_s < t_s);
+        let line = self.lines.get(index).or(self.lines.last()).copied().unwrap_or(1);
+        CourseFileError::Line { file: self.file.clone(), line, problem }
+    }
+
+    /// That the course as a whole is not played.
+    pub(super) fn wrong(&self, problem: String) -> CourseFileError {
+        CourseFileError::Whole { file: self.file.clone(), problem }
+    }
+}
+
 /// Reads a course from a CSV file: two columns of seconds since the landing and degrees Celsius, with or without the header
 /// `t_s,celsius`; or columns with a header, among them `t_s`, such as a `trace.csv`. If there is a column `force_n`, the course
 /// begins at its first positive value and ends with the contact.
 ///
 /// # Errors
 /// The first thing that is wrong, with file and line, and what is allowed.
-pub fn read_course(path: &Path, selection: Selection<'_>) -> Result<Course, CourseFileError> {
+pub fn read_course(path: &Path, selection: Selection<'_>) -> Result<CourseFile, CourseFileError> {
     let text = std::fs::read_to_string(path).map_err(|error| CourseFileError::Unreadable {
         file: path.into(),
         problem: error.to_string(),
@@ -65,7 +97,7 @@ fn parse_course(
     text: &str,
     path: &Path,
     selection: Selection<'_>,
-) -> Result<Course, CourseFileError> {
+) -> Result<CourseFile, CourseFileError> {
     let wrong =
         |line: u64, problem: String| CourseFileError::Line { file: path.into(), line, problem };
     // A byte order mark is that of a spreadsheet.
@@ -76,7 +108,7 @@ fn parse_course(
         .comment(Some(b'#'))
         .from_reader(text.as_bytes());
     let mut columns: Option<Columns> = None;
-    let mut points: Vec<CoursePoint> = Vec::new();
+    let (mut points, mut lines) = (Vec::<CoursePoint>::new(), Vec::new());
     let mut landed_s = None;
     let mut last_line = 1;
     for record in reader.records() {
@@ -138,6 +170,7 @@ fn parse_course(
             _ => {}
         }
         points.push(CoursePoint { t_s, celsius });
+        lines.push(line);
     }
     let Some(first) = points.first().copied() else {
         let problem = match columns {
@@ -148,12 +181,14 @@ fn parse_course(
     };
     if first.t_s > 0.0 {
         points.insert(0, CoursePoint { t_s: 0.0, ..first });
+        lines.insert(0, lines[0]);
     }
     if points.len() == 1 {
         let problem = "one row is no course; at least two are needed";
         return Err(wrong(last_line, problem.into()));
     }
-    Course::new(points).map_err(|error| wrong(last_line, error.to_string()))
+    let course = Course::new(points).map_err(|error| wrong(last_line, error.to_string()))?;
+    Ok(CourseFile { file: path.into(), course, lines })
 }
 
 /// Indices of the columns that are read, and the name of that of the temperature.
@@ -216,9 +251,9 @@ mod tests {
     }
 
     fn select(text: &str, column: Option<&str>) -> Result<Vec<(f64, f64)>, String> {
-        let course = parse_course(text, Path::new("c.csv"), Selection { column });
-        let points = course.map_err(|error| error.to_string())?;
-        let points = points.points().iter();
+        let read = parse_course(text, Path::new("c.csv"), Selection { column });
+        let course = read.map_err(|error| error.to_string())?.course;
+        let points = course.points().iter();
         Ok(points.map(|point| (point.t_s, point.celsius)).collect())
     }
 

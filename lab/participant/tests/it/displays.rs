@@ -1,9 +1,11 @@
 //! Sessions with the simulated device.
 
+use std::path::Path;
+
 use thermal_participant::{
     BenchOptions, HandParams, Happening, ObserverParams, SimulatedEvent, SkinParams,
 };
-use thermal_session::{Decision, Phase};
+use thermal_session::{Decision, DoseReached, Phase, Plan, Session};
 use thermal_sim::scene::{ActiveFault, FaultKind};
 
 use crate::run::{run, session};
@@ -132,4 +134,47 @@ fn three_displays_at_one_hand() {
     let ran = run("p3", &session("p3-localisation-displays.toml", &[]), noise_free(), 6);
     let (correct, all) = ran.correct();
     assert_eq!((correct, all), (6, 6), "{:?}", ran.observations);
+}
+
+/// Holds at 42 °C: each of 11 s at most (1 s to reach, 2 s to land, 8 s of contact) gives 2.75 s at 43 °C, and a device trips at 30 s.
+const WARM_HOLDS: &str = r#"format = 1
+title = "Warm holds"
+task = "dose"
+cite = "own"
+instruction = "Rate."
+[device]
+law = "model"
+[stations.index]
+finger = "right index"
+[present]
+index = { hold_c = "warm_c" }
+[trial]
+reach_s = 1
+land_s = 2
+contact = "hold"
+max_s = 8
+answer = { ask = "How warm?", number_per_station = [0, 100] }
+[design]
+factors.warm_c = [41.99, 42]
+repeat = 7
+break_s = 0
+"#;
+
+#[test]
+fn the_dose_is_known_before_the_first_trial_and_is_kept_from_trial_to_trial() {
+    let session = Session::parse(WARM_HOLDS, Path::new("warm.toml")).expect("a valid session");
+    let plan = Plan::new(&session, "01", 1).expect("a plan");
+    let reached = DoseReached::in_plan(&session, &plan).expect("14 times 2.75 s are 38.5 s");
+    assert_eq!((reached.trial, reached.device_finger), (11, 0));
+    assert!((reached.plan_min - 14.0 * 11.0 * 0.25 / 60.0).abs() < 0.01, "{reached:?}");
+    let ran = run("dose", &session, noise_free(), 14);
+    let voids: Vec<_> = ran.records.iter().filter(|record| record.void.is_some()).collect();
+    let (first, last) = (voids.first().expect("a trip"), ran.records.last().expect("records"));
+    assert_eq!(first.void.as_deref(), Some("the device tripped: dose"));
+    // A trial is shorter than its longest time, so the trip comes later than the plan says.
+    assert!((11..=14).contains(&first.trial), "{}", first.trial);
+    // The device stays off until a whole trial has decayed, so that the repeated ones are answered.
+    assert_eq!(last.void, None);
+    let answered = ran.records.iter().filter(|record| record.void.is_none()).count();
+    assert_eq!(answered, 14, "{voids:?}");
 }

@@ -5,11 +5,13 @@ use std::collections::BTreeSet;
 use thermal_client::client::{ClientError, PlainCommand, QueryCause, QueryIdentity, QueryState};
 use thermal_client::commissioning::settings;
 use thermal_client::link::Link;
+use thermal_device::safety::Fault;
 
 use super::fingers::Fingers;
-use super::{Executor, SessionEnd};
+use super::{Executor, SessionEnd, TrialEnd};
 use crate::dataset::DeviceReport;
-use crate::{OperatorQuestion, Plan, Presented, Update};
+use crate::planned_dose::decay_before_s;
+use crate::{OperatorQuestion, Plan, PlannedTrial, Presented, Update};
 
 /// What the firmware must be able to do.
 const NEEDED: [&str; 2] = ["course", "checksum"];
@@ -51,7 +53,7 @@ impl<L: Link> Executor<'_, L> {
         }
         // Another program may have left it driven.
         self.switch_off()?;
-        self.clear_trips()?;
+        self.clear_trips(None)?;
         self.ask_for_skin_sensors()
     }
 
@@ -72,7 +74,7 @@ impl<L: Link> Executor<'_, L> {
     }
 
     /// Meets the device at the begin of a trial, whatever has happened to it since the one before.
-    pub(super) fn meet_device(&mut self) -> Result<(), SessionEnd> {
+    pub(super) fn meet_device(&mut self, trial: &PlannedTrial) -> Result<(), SessionEnd> {
         if self.fingers.count() == 0 {
             return Ok(());
         }
@@ -82,15 +84,20 @@ impl<L: Link> Executor<'_, L> {
         if let Err(ClientError::Link(error)) = checksums {
             return Err(error.into());
         }
-        self.clear_trips()
+        self.clear_trips(Some(trial))
     }
 
-    /// Lets the operator clear the faults by which fingers of the device have tripped.
-    fn clear_trips(&mut self) -> Result<(), SessionEnd> {
+    /// Lets the operator clear the faults by which fingers of the device have tripped, before a trial or, at the begin of the session,
+    /// before none.
+    fn clear_trips(&mut self, trial: Option<&PlannedTrial>) -> Result<(), SessionEnd> {
         for finger in 0..self.fingers.count() as u8 {
             while let Some(fault) = self.fault_of(finger)? {
                 let explanation = self.cause_of_trip(finger)?;
-                self.operator(OperatorQuestion::Tripped { fault: fault.into(), explanation })?;
+                if let Some(trial) = trial.filter(|_| fault == Fault::Dose) {
+                    self.let_dose_decay(trial, finger)?;
+                }
+                let fault = fault.name().into();
+                self.operator(OperatorQuestion::Tripped { fault, explanation })?;
                 let address = self.fingers.address(finger);
                 match self.client.ask_finger(address, &PlainCommand::Clear) {
                     Ok(()) => {}
@@ -102,6 +109,26 @@ impl<L: Link> Executor<'_, L> {
             }
         }
         Ok(())
+    }
+
+    /// Lets as much of the dose decay as a trial adds, which would trip the device at once otherwise.
+    fn let_dose_decay(&mut self, trial: &PlannedTrial, finger: u8) -> Result<(), SessionEnd> {
+        let off_s = decay_before_s(self.session, trial, finger);
+        self.inform(Update::Notice(format!(
+            "the skin at display {finger} has taken its dose; the display stays off for {:.0} min, until so much of it has decayed \
+             as trial {} adds",
+            (off_s / 60.0).ceil(),
+            trial.number
+        )));
+        let until_s = self.now_s() + off_s;
+        loop {
+            match self.wait_until(until_s) {
+                Ok(()) => return Ok(()),
+                Err(TrialEnd::Session(end)) => return Err(end),
+                // The device says again and again that it is tripped, and nothing is presented.
+                Err(TrialEnd::Void(_) | TrialEnd::Tripped(_)) => {}
+            }
+        }
     }
 
     /// Refuses a tile that was never tuned, whose set-points move too slowly for what a session presents.
@@ -117,10 +144,10 @@ impl<L: Link> Executor<'_, L> {
     }
 
     /// The fault by which a finger of the device has tripped.
-    fn fault_of(&mut self, finger: u8) -> Result<Option<&'static str>, SessionEnd> {
+    fn fault_of(&mut self, finger: u8) -> Result<Option<Fault>, SessionEnd> {
         let address = self.fingers.address(finger);
         let status = self.client.ask_finger(address, &QueryState).map_err(ends)?;
-        Ok(status.state.fault().map(|fault| fault.name()))
+        Ok(status.state.fault())
     }
 
     /// What was measured when a finger of the device tripped.

@@ -195,7 +195,7 @@ impl<'a, L: Link> Executor<'a, L> {
         self.trial = RunningTrial::new(next, self.now_s(), self.fingers.count());
         self.inform(Update::Trial { trial: next.trial.clone(), attempt: next.attempt, of });
         self.ask_about_voids()?;
-        self.meet_device()?;
+        self.meet_device(next.trial)?;
         let void = match self.conduct(next) {
             Ok(()) => self.trial.void.take(),
             Err(TrialEnd::Void(why)) => Some(why),

@@ -66,6 +66,9 @@ impl PredictedDose {
 }
 
 impl ThermalDose {
+    /// Time below 39 °C in which a dose decays, over the time at 43 °C to which it is equivalent.
+    pub const DECAY_TIME_RATIO: u32 = 1 << DOSE_DECAY_ELAPSED_TIME_SHIFT;
+
     /// The dose in units of 2^-8 ms at 43 °C, as one 32-bit word, in which the board keeps it in RAM through a reset.
     pub const fn to_retained_word(&self) -> u32 {
         self.sum
