@@ -1,6 +1,5 @@
 //! Runs a scene on an engine, from power-up to the last row.
 
-use std::iter::Peekable;
 use std::time::Instant;
 
 use thermal_client::commissioning::CommissionError;
@@ -12,7 +11,7 @@ use crate::processor::{Injection, MachineFault, NotInjected};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
 use crate::speed::RunClock;
-use crate::trigger_edges::trigger_edges_us;
+use crate::trigger_edges::TriggerEdges;
 
 pub use crate::scene_recording::{Exchange, Outcome};
 
@@ -101,12 +100,11 @@ pub(crate) fn run_with_settings<E: Engine>(
             return Err(RunError::InjectionTime { fault, t_s, from_s, to_s });
         }
     }
-    let us_of_scene = |ms: u64| 1000 * (ms as i64 - zero_ms as i64);
-    let edges_us = trigger_edges_us(scene, &(us_of_scene(0)..us_of_scene(last_ms + 1)));
     let mut scene_run = SceneRun {
         recording,
         injections,
-        trigger_edges_us: edges_us.into_iter().peekable(),
+        scene,
+        trigger_edges: TriggerEdges::new(-1000 * zero_ms as i64),
         engine,
         received: LineSplitter::default(),
     };
@@ -161,11 +159,24 @@ pub(crate) fn inject_due<'a, E: Engine>(
     Ok(())
 }
 
+/// Raises the trigger input at the edges of a scene within a half millisecond, which begins `from_us` after time zero.
+pub(crate) fn raise_trigger<E: Engine>(
+    engine: &mut E,
+    scene: &Scene,
+    edges: &mut TriggerEdges,
+    from_us: i64,
+) -> Result<(), E::Stop> {
+    while let Some(us) = edges.next_before(scene, from_us + HALF_MS_US as i64) {
+        engine.trigger((us - from_us) as u32)?;
+    }
+    Ok(())
+}
+
 struct SceneRun<'a, E> {
     recording: SceneRecording<'a>,
     injections: Vec<&'a Injection>,
-    /// Edges of the trigger input that are still to come, µs since time zero of the scene, in order.
-    trigger_edges_us: Peekable<std::vec::IntoIter<i64>>,
+    scene: &'a Scene,
+    trigger_edges: TriggerEdges,
     engine: &'a mut E,
     received: LineSplitter,
 }
@@ -179,11 +190,7 @@ impl<E: Engine> SceneRun<'_, E> {
     /// Raises the trigger input at the scene's times within a half millisecond.
     fn trigger(&mut self, half_ms: u64) -> Result<(), E::Stop> {
         let from_us = (HALF_MS_US * half_ms) as i64 - 1000 * self.recording.zero_ms as i64;
-        let until_us = from_us + HALF_MS_US as i64;
-        while let Some(us) = self.trigger_edges_us.next_if(|us| *us < until_us) {
-            self.engine.trigger((us - from_us) as u32)?;
-        }
-        Ok(())
+        raise_trigger(self.engine, self.scene, &mut self.trigger_edges, from_us)
     }
 
     /// Sends the bytes of the host at a half millisecond since the start.

@@ -1,11 +1,41 @@
 //! Rising edges at the trigger input, as a scene and the faults of the input's wire give them.
 
+use std::collections::VecDeque;
 use std::ops::Range;
 
 use crate::scene::{FaultKind, Scene, ScheduledFault};
 
 /// Level from which on a stuck input is high.
 const HIGH: f64 = 0.5;
+
+/// Time for which edges are computed at once, us: an input that chatters has too many for a whole run.
+const COMPUTED_US: i64 = 1_000_000;
+
+/// The rising edges of a run, one after the other.
+#[derive(Debug)]
+pub struct TriggerEdges {
+    /// Those that are computed and still to come, us since time zero of the scene.
+    ahead_us: VecDeque<i64>,
+    /// Time up to which they are computed.
+    computed_us: i64,
+}
+
+impl TriggerEdges {
+    /// The edges from a time on, us since time zero of the scene.
+    pub const fn new(from_us: i64) -> Self {
+        Self { ahead_us: VecDeque::new(), computed_us: from_us }
+    }
+
+    /// The next edge of the scene before a time, us since time zero.
+    pub fn next_before(&mut self, scene: &Scene, until_us: i64) -> Option<i64> {
+        while self.ahead_us.is_empty() && self.computed_us < until_us {
+            let range_us = self.computed_us..self.computed_us + COMPUTED_US;
+            self.ahead_us = trigger_edges_us(scene, &range_us).into();
+            self.computed_us = range_us.end;
+        }
+        self.ahead_us.pop_front_if(|us| *us < until_us)
+    }
+}
 
 /// Times of the rising edges in a range, µs since time zero of the scene, in order. A stuck input has none but the one with
 /// which it goes high; one that chatters has its own in addition.

@@ -26,7 +26,7 @@ use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
 use crate::speed::RunClock;
-use crate::trigger_edges::trigger_edges_us;
+use crate::trigger_edges::TriggerEdges;
 use thermal_plant::bridge::BridgeOutputs;
 
 /// Number of fingers of the device.
@@ -119,11 +119,7 @@ pub fn run<H: FiveFingerEngine>(
     let end_ms = last(|finger| finger.end_ms);
     let last_ms = end_ms + DRAIN_MS;
     let injections = injections(scenes, zero_ms, end_ms)?;
-    let is_triggered = |ms: u64| {
-        let at_us = 1000 * (ms as i64 - zero_ms as i64);
-        let rounded_to_ms = at_us - 500..at_us + 500;
-        (scenes.iter()).any(|scene| !trigger_edges_us(scene, &rounded_to_ms).is_empty())
-    };
+    let mut edges = scenes.each_ref().map(|_| TriggerEdges::new(-1000 * zero_ms as i64 - 500));
     let mut received = LineSplitter::default();
     for ms in 0..=last_ms {
         if ms == zero_ms {
@@ -132,7 +128,7 @@ pub fn run<H: FiveFingerEngine>(
         for (_, fault) in injections.iter().filter(|(at_ms, _)| *at_ms == ms) {
             engine.inject(fault)?;
         }
-        if is_triggered(ms) {
+        if is_triggered(scenes, &mut edges, ms as i64 - zero_ms as i64) {
             engine.trigger().map_err(RunError::Stop)?;
         }
         for index in 0..FINGERS {
@@ -164,6 +160,23 @@ pub fn run<H: FiveFingerEngine>(
     let clock = RunClock::at_last_row(began, loop_began, last_ms);
     let (cost, resets) = (engine.cost(), engine.resets());
     Ok(fingers.map(|finger| finger.outcome(H::NAME, &resets, cost, clock)))
+}
+
+/// Whether the trigger input that the fingers share has an edge at a millisecond since time zero, of any of their scenes; the edges
+/// before it have been asked for.
+pub(crate) fn is_triggered(
+    scenes: &[Scene; FINGERS],
+    edges: &mut [TriggerEdges; FINGERS],
+    ms: i64,
+) -> bool {
+    let mut any = false;
+    for (scene, edges) in scenes.iter().zip(edges) {
+        // Rounded to milliseconds.
+        while edges.next_before(scene, 1000 * ms + 500).is_some() {
+            any = true;
+        }
+    }
+    any
 }
 
 /// A line to a finger. A blank line has no address.

@@ -3,13 +3,17 @@
 use std::path::Path;
 
 use crate::engine::Engine;
-use crate::five_fingers::{FINGERS, FiveFingerEngine};
+use crate::five_fingers::{FINGERS, FiveFingerEngine, is_triggered};
 use crate::processor::NotInjected;
-use crate::run::inject_due;
+use crate::run::{inject_due, raise_trigger};
 use crate::scene::{Scene, SceneError};
+use crate::trigger_edges::TriggerEdges;
 
 /// Simulated time for which half-spaces are deep enough, s; the longest that a plant can have.
 const SERVED_S: f64 = 86_400.0;
+
+/// Half a millisecond, us.
+const HALF_MS_US: i64 = 500;
 
 /// What is around a device that is served without a scene: a finger that nobody presses, in a room of 24 C.
 const NO_SCENE: &str = "\
@@ -77,18 +81,26 @@ pub enum ServeError<S: std::error::Error + 'static> {
 pub struct OneFinger<E> {
     engine: E,
     scene: Scene,
+    trigger_edges: TriggerEdges,
     ms: u64,
 }
 
 impl<E: Engine> OneFinger<E> {
     /// A device that was just powered up in the world of this scene.
     pub fn new(engine: E, scene: Scene) -> Self {
-        Self { engine, scene, ms: 0 }
+        let trigger_edges = TriggerEdges::new(scene_time_us(&scene, 0));
+        Self { engine, scene, trigger_edges, ms: 0 }
     }
 
     /// What runs the device, for a device that leaves its scene.
     pub fn into_engine(self) -> E {
         self.engine
+    }
+
+    /// Raises the trigger input at the scene's times in the half of this millisecond that begins so many us after it.
+    fn trigger(&mut self, after_us: i64) -> Result<(), E::Stop> {
+        let from_us = scene_time_us(&self.scene, self.ms) + after_us;
+        raise_trigger(&mut self.engine, &self.scene, &mut self.trigger_edges, from_us)
     }
 
     fn inject(&mut self, half: u64, at: impl Fn(u32) -> bool) -> Result<(), NotInjected> {
@@ -111,8 +123,10 @@ impl<E: Engine> ServedDevice for OneFinger<E> {
         let legs = self.engine.legs();
         self.engine.world().step(legs);
         self.inject(2 * self.ms, |after_us| after_us > 0)?;
+        self.trigger(0).map_err(ServeError::Stop)?;
         self.engine.run_half_ms().map_err(ServeError::Stop)?;
         self.inject(2 * self.ms + 1, |_| true)?;
+        self.trigger(HALF_MS_US).map_err(ServeError::Stop)?;
         self.engine.run_half_ms().map_err(ServeError::Stop)?;
         self.ms += 1;
         Ok(())
@@ -128,13 +142,16 @@ impl<E: Engine> ServedDevice for OneFinger<E> {
 pub struct FiveFingers<H> {
     engine: H,
     scenes: [Scene; FINGERS],
+    trigger_edges: [TriggerEdges; FINGERS],
     ms: u64,
 }
 
 impl<H: FiveFingerEngine> FiveFingers<H> {
     /// A device that was just powered up in the worlds of these scenes, whose processor faults are not injected.
     pub fn new(engine: H, scenes: [Scene; FINGERS]) -> Self {
-        Self { engine, scenes, ms: 0 }
+        let trigger_edges =
+            scenes.each_ref().map(|scene| TriggerEdges::new(scene_time_us(scene, 0) - HALF_MS_US));
+        Self { engine, scenes, trigger_edges, ms: 0 }
     }
 }
 
@@ -146,6 +163,10 @@ impl<H: FiveFingerEngine> ServedDevice for FiveFingers<H> {
     }
 
     fn run_1_ms(&mut self) -> Result<(), H::Stop> {
+        let ms = scene_time_us(&self.scenes[0], self.ms) / 1000;
+        if is_triggered(&self.scenes, &mut self.trigger_edges, ms) {
+            self.engine.trigger()?;
+        }
         for (finger, scene) in self.scenes.iter().enumerate() {
             self.engine.run_to(finger)?;
             let legs = self.engine.legs(finger);
@@ -165,4 +186,9 @@ impl<H: FiveFingerEngine> ServedDevice for FiveFingers<H> {
 /// Time of a scene, s, this many milliseconds after the start of the device.
 fn scene_time_s(scene: &Scene, ms: u64) -> f64 {
     (ms as f64 - scene.settle_ms() as f64) / 1e3
+}
+
+/// The same, us.
+fn scene_time_us(scene: &Scene, ms: u64) -> i64 {
+    1000 * (ms as i64 - scene.settle_ms() as i64)
 }

@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use thermal_sim::World;
 use thermal_sim::engine::{Engine, NativeEngine};
+use thermal_sim::run::run;
 use thermal_sim::scene::Scene;
 use thermal_sim::serve::{
     ClientLine, Clock, OneFinger, OutgoingBytes, ServedDevice, Speed, TcpLine, read_scene, serve,
@@ -121,6 +122,29 @@ fn a_client_receives_what_the_engine_sends_when_it_is_given_the_same_lines() {
         assert!(text.contains(part), "{part}");
     }
     assert_eq!(line.received, expected);
+}
+
+/// A scene's edges reach a served device as they reach one in a run: to the microsecond.
+#[test]
+fn the_trigger_input_of_a_served_device_has_the_edges_of_the_scene() {
+    let text = "duration_s = 1\nskin_c = 34\nroom_c = 24\n[device]\ncommissioned = false\n[object]\nmaterial = \"copper\"\n\
+                [[trigger]]\nt_s = 0.1004\n[[trigger]]\nt_s = 0.2009\n[[host]]\nt_s = 0\nline = \"events on\"\n";
+    let scene = Scene::parse(text, "trigger".as_ref()).expect("a scene");
+    let mut engine = native(&scene);
+    let outcome = run(&scene, &mut engine, |_| ()).expect("the scene runs");
+    let expected: Vec<_> = outcome.events.iter().map(|(_, line)| line.clone()).collect();
+    assert_eq!(expected.iter().filter(|line| line.ends_with(" trigger")).count(), 2);
+
+    let mut device = OneFinger::new(native(&scene), scene.clone());
+    device.send(b"events on\n");
+    let mut received = Vec::new();
+    for _ in 0..8_500 {
+        device.run_1_ms().expect("a device that runs");
+        device.receive(&mut received);
+    }
+    let text = String::from_utf8(received).expect("ASCII");
+    let events: Vec<_> = text.lines().filter(|line| line.starts_with("E ")).collect();
+    assert_eq!(events, expected);
 }
 
 /// A device that counts its milliseconds.

@@ -35,6 +35,12 @@ pub enum ClientError {
         /// What the device sent.
         answer: String,
     },
+    /// Something answers, but never to the line that only a thermal display repeats.
+    #[error("this does not answer as a thermal display: '{answer}'")]
+    NoDisplay {
+        /// Its last answer.
+        answer: String,
+    },
     /// The line cannot be sent.
     #[error("'{line}' cannot be sent: a line has 1 to {max} printable ASCII characters", max = thermal_protocol::LINE_MAX_BYTES)]
     Unsendable {

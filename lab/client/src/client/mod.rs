@@ -127,8 +127,6 @@ impl<L: Link> Client<L> {
     pub fn attach(link: L) -> Result<Self, ClientError> {
         let mut client = Self::new(link);
         client.transmit("")?;
-        // Whatever an earlier client has left on, the device takes a line with a checksum.
-        client.transmit("checksum off*42")?;
         client.synchronize()?;
         Ok(client)
     }
@@ -341,14 +339,30 @@ impl<L: Link> Client<L> {
     /// has always the same length, so that a simulated device answers after the same time, and is as long as an error repeats.
     fn synchronize(&mut self) -> Result<(), ClientError> {
         self.out_of_step = true;
-        if self.checksums {
+        self.transmit(if self.checksums {
             // A device that has restarted meanwhile has forgotten it.
-            self.transmit("checksum on")?;
-        }
+            "checksum on"
+        } else {
+            // An earlier client may have left it on, or the answer to this one's `checksum on` was lost. With a checksum the device
+            // takes the line in any case.
+            "checksum off*42"
+        })?;
         self.synchronization = self.synchronization.wrapping_add(1);
         let line = format!("synchronize-{:08x}", self.synchronization);
         self.transmit(&line)?;
-        while !self.answer(&line)?.contains(&format!("'{line}'")) {}
+        // One deadline for all answers: other machines may go on saying `ok` for ever.
+        let end = self.link.now() + ANSWER_TIMEOUT;
+        let mut other = None;
+        loop {
+            match self.answer_until(&line, end) {
+                Ok(answer) if answer.contains(&format!("'{line}'")) => break,
+                Ok(answer) => other = Some(answer),
+                Err(ClientError::TimedOut { .. }) if other.is_some() => {
+                    return Err(ClientError::NoDisplay { answer: other.unwrap_or_default() });
+                }
+                Err(error) => return Err(error),
+            }
+        }
         self.out_of_step = false;
         Ok(())
     }
@@ -368,6 +382,11 @@ impl<L: Link> Client<L> {
     /// The next answer.
     fn answer(&mut self, line: &str) -> Result<String, ClientError> {
         let end = self.link.now() + ANSWER_TIMEOUT;
+        self.answer_until(line, end)
+    }
+
+    /// The next answer until a time by the link's clock.
+    fn answer_until(&mut self, line: &str, end: Duration) -> Result<String, ClientError> {
         let mut damaged = None;
         loop {
             let received = self.receive_until(end).inspect_err(|_| self.out_of_step = true)?;

@@ -85,10 +85,12 @@ impl CourseFile {
 /// # Errors
 /// The first thing that is wrong, with file and line, and what is allowed.
 pub fn read_course(path: &Path, selection: Selection<'_>) -> Result<CourseFile, CourseFileError> {
-    let text = std::fs::read_to_string(path).map_err(|error| CourseFileError::Unreadable {
-        file: path.into(),
-        problem: error.to_string(),
-    })?;
+    let unreadable = |problem: String| CourseFileError::Unreadable { file: path.into(), problem };
+    let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Err(unreadable("this is UTF-16; allowed is UTF-8".into()));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| unreadable(error.to_string()))?;
     parse_course(&text, path, selection)
 }
 
@@ -204,6 +206,13 @@ impl Columns {
     /// Finds the columns by the first row, and says whether that is a header.
     fn find(first: &csv::StringRecord, selection: Selection<'_>) -> Result<(Self, bool), String> {
         let names: Vec<&str> = first.iter().collect();
+        for (separator, word) in [(';', "a semicolon"), ('\t', "a tab")] {
+            if names.iter().any(|name| name.contains(separator)) {
+                return Err(format!(
+                    "{word} separates the columns; allowed is a comma between columns, and a point before decimals"
+                ));
+            }
+        }
         if names.iter().all(|cell| cell.parse::<f64>().is_ok()) {
             return match (names.len(), selection.column) {
                 (2, None) => Ok((Self { time: 0, celsius: 1, name: CELSIUS, force: None }, false)),
@@ -302,6 +311,14 @@ mod tests {
             (
                 "0,30\n1\n",
                 "c.csv:2: 1 columns, and 2 in the first row; the same number in all rows is allowed",
+            ),
+            (
+                "0;30,5\n1;31,5\n",
+                "c.csv:1: a semicolon separates the columns; allowed is a comma between columns, and a point before decimals",
+            ),
+            (
+                "t_s\tcelsius\n0\t30\n",
+                "c.csv:1: a tab separates the columns; allowed is a comma between columns, and a point before decimals",
             ),
             (
                 "0,30,1\n",

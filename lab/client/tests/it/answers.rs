@@ -70,6 +70,48 @@ fn answers_to_an_earlier_client_are_not_taken_for_its_own() {
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
 }
 
+/// The device has executed `checksum on`, and its answer was lost: without more the client would be refused from then on.
+#[test]
+fn a_lost_answer_to_checksum_on_does_not_leave_both_ends_apart() {
+    let (mut is_on, mut is_lost) = (false, false);
+    let mut client = FakeDevice::client(move |line| {
+        let (content, has_sum) = match line.split_once('*') {
+            Some((content, _)) => (content, true),
+            None => (line, false),
+        };
+        let answer = match content {
+            _ if is_on && !has_sum => "err checksum missing".to_owned(),
+            "checksum on" | "checksum off" => {
+                is_on = content == "checksum on";
+                "ok".into()
+            }
+            "state" => "ok state=ready fault=-".into(),
+            other => format!("err unknown command '{other}'; known: id"),
+        };
+        if content == "checksum on" && !std::mem::replace(&mut is_lost, true) {
+            return Vec::new();
+        }
+        answers(&answer)
+    });
+    assert!(client.ask(&PlainCommand::Checksum(true)).is_err());
+    assert_eq!(client.query("state").unwrap(), "ok state=ready fault=-");
+}
+
+#[test]
+fn something_that_always_answers_is_no_display_after_two_seconds() {
+    for text in ["ok", "err x", "ok T:20"] {
+        let mut device = FakeDevice::client(|_| Vec::new()).into_link();
+        for half_seconds in 1..20 {
+            device.sends(500 * half_seconds, text);
+        }
+        let error = Client::attach(device).map(|_| ()).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            format!("this does not answer as a thermal display: '{text}'")
+        );
+    }
+}
+
 /// An error repeats 20 characters of a word, and the same time passes for each client of a simulated device.
 #[test]
 fn the_word_that_synchronizes_has_20_characters_and_is_another_each_time() {
