@@ -23,7 +23,7 @@ use thermal_sim::simulated_link::VirtualLine;
 
 use crate::device::{FingerInput, PreparedDevice, RunningDevice};
 use crate::falls::{TouchSetup, mean_fall_k};
-use crate::observer::Task;
+use crate::observer::{Sensation, Task};
 use crate::operator::{Happening, Operator, SimulatedEvent};
 use crate::participant::{Participant, SkinParams};
 use crate::{HandParams, ObserverParams};
@@ -51,6 +51,12 @@ pub enum BenchError {
          'same' and 'different', or two intervals"
     )]
     Answers(Vec<String>),
+    /// A question whose direction is not known.
+    #[error(
+        "the simulated observer does not know what {0:?} asks for: allowed is a question of cold (cold, cool) or of warmth (warm, \
+         hot), not of both"
+    )]
+    Question(String),
     /// The simulated finger is too thin.
     #[error("the simulated finger is thinner than the depth of its receptors")]
     NoReceptors,
@@ -433,15 +439,27 @@ fn task(
     let Some(answer) = &session.answer else {
         return Ok(None);
     };
+    let named = match Sensation::named(&answer.ask)[..] {
+        [] => None,
+        [sensation] => Some(sensation),
+        _ => return Err(BenchError::Question(answer.ask.clone())),
+    };
+    // Who is not told compares what the thesis's participants did.
+    let sensation = named.unwrap_or(Sensation::Cold);
     let words = match &answer.kind {
-        AnswerKind::NumberPerStation(none, full) => return Ok(Some(Task::Magnitude(*none, *full))),
+        AnswerKind::NumberPerStation(none, full) => {
+            return Ok(Some(Task::Magnitude(sensation, *none, *full)));
+        }
         AnswerKind::OneOf(words) => words,
     };
     let position = |wanted: &str| words.iter().position(|word| word == wanted);
     let not_understood = || BenchError::Answers(words.clone());
     if let Procedure::Intervals { .. } = session.trial.procedure {
         return match words.len() {
-            2 => Ok(Some(Task::Interval(interval_sign(plan)))),
+            2 => {
+                let sign = named.map(|sensation| sensation.of_fall(1.0));
+                Ok(Some(Task::Interval(sign.or_else(|| interval_sign(plan)))))
+            }
             _ => Err(not_understood()),
         };
     }
@@ -454,7 +472,7 @@ fn task(
         .collect();
     if let Some(stations) = stations {
         return Ok(Some(match stations.len() {
-            0..=2 => Task::Colder(stations),
+            0..=2 => Task::Extreme(sensation, stations),
             _ => Task::Different(stations),
         }));
     }

@@ -90,8 +90,8 @@ impl ObserverParams {
 /// What the observer decides.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Task {
-    /// Which of the stations with these indices feels colder; one for each answer.
-    Colder(Vec<usize>),
+    /// Which of the stations with these indices feels colder, or warmer; one for each answer.
+    Extreme(Sensation, Vec<usize>),
     /// Which of three or more stations differs; one index for each answer.
     Different(Vec<usize>),
     /// Which material it is; the expected fall of each answer, K, from the familiarisation.
@@ -100,11 +100,41 @@ pub enum Task {
     Same(usize, usize),
     /// In which of two intervals the change was larger: 1 if it is known to be a fall, -1 if a rise, `None` if it may be either.
     Interval(Option<f64>),
-    /// How cold each station feels: the numbers of no fall and of [`MAGNITUDE_FULL_K`] or more.
-    Magnitude(f64, f64),
+    /// How cold, or warm, each station feels: the numbers of no change and of [`MAGNITUDE_FULL_K`] or more.
+    Magnitude(Sensation, f64, f64),
 }
 
-/// Fall of the largest magnitude, K: magnitudes are proportional to the fall. The rule is an assumption; summation over
+/// What a question asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sensation {
+    /// Falls of the skin's temperature.
+    Cold,
+    /// Rises.
+    Warm,
+}
+
+impl Sensation {
+    /// The sensations that a question in English names, by words that begin with cold, cool, warm or hot.
+    pub fn named(question: &str) -> Vec<Self> {
+        let question = question.to_lowercase();
+        let words: Vec<_> = question.split(|letter: char| !letter.is_alphabetic()).collect();
+        let names = |(_, beginnings): &(Self, [&str; 2])| {
+            words.iter().any(|word| beginnings.iter().any(|begin| word.starts_with(begin)))
+        };
+        let known = [(Self::Cold, ["cold", "cool"]), (Self::Warm, ["warm", "hot"])];
+        known.into_iter().filter(names).map(|(sensation, _)| sensation).collect()
+    }
+
+    /// A fall as this sensation: positive where it is felt.
+    pub const fn of_fall(self, fall_k: f64) -> f64 {
+        match self {
+            Self::Cold => fall_k,
+            Self::Warm => -fall_k,
+        }
+    }
+}
+
+/// Change of the largest magnitude, K: magnitudes are proportional to the change. The rule is an assumption; summation over
 /// fingers and referral between them are not modelled.
 pub const MAGNITUDE_FULL_K: f64 = 8.0;
 
@@ -146,12 +176,12 @@ impl Task {
         let is_lapse = lapses.between((0.0, 1.0)) < params.lapse;
         let random = lapses.index(self.answers());
         let felt = |station: usize| felt_k.get(station).copied().flatten();
-        if let Self::Magnitude(none, full) = *self {
+        if let Self::Magnitude(sensation, none, full) = *self {
             let number = |felt_k: Option<f64>| {
                 let share = if is_lapse {
                     lapses.between((0.0, 1.0))
                 } else {
-                    (felt_k.unwrap_or(0.0) / MAGNITUDE_FULL_K).clamp(0.0, 1.0)
+                    (sensation.of_fall(felt_k.unwrap_or(0.0)) / MAGNITUDE_FULL_K).clamp(0.0, 1.0)
                 };
                 none + (full - none) * share
             };
@@ -161,11 +191,11 @@ impl Task {
             return felt_k.iter().any(Option::is_some).then_some(Judgement::Choice(random));
         }
         let choice = match self {
-            Self::Colder(stations) => {
+            Self::Extreme(sensation, stations) => {
                 let last = stations.iter().max().copied();
                 argmax(stations.iter().map(|&station| {
                     let bias_k = if Some(station) == last { params.right_bias_k } else { 0.0 };
-                    Some(felt(station)? + bias_k)
+                    Some(sensation.of_fall(felt(station)? + bias_k))
                 }))
             }
             Self::Different(stations) => {
@@ -208,7 +238,7 @@ impl Task {
     /// Number of answers to choose from.
     fn answers(&self) -> usize {
         match self {
-            Self::Colder(stations) | Self::Different(stations) => stations.len(),
+            Self::Extreme(_, stations) | Self::Different(stations) => stations.len(),
             Self::Identify(expected_k) => expected_k.len(),
             Self::Same(..) | Self::Interval(_) => 2,
             Self::Magnitude(..) => 1,

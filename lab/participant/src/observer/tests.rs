@@ -18,9 +18,12 @@ fn judge(task: &Task, falls_k: &[f64], params: &ObserverParams) -> Option<Judgem
 fn each_task_has_its_rule() {
     let clear = &ObserverParams::NOISE_FREE;
     for (task, falls_k, choice) in [
-        (Task::Colder(vec![0, 1]), vec![1.0, 1.1], 1),
+        (Task::Extreme(Sensation::Cold, vec![0, 1]), vec![1.0, 1.1], 1),
         // The answers may be in another order than the stations.
-        (Task::Colder(vec![1, 0]), vec![1.0, 1.1], 0),
+        (Task::Extreme(Sensation::Cold, vec![1, 0]), vec![1.0, 1.1], 0),
+        // The one that has lost less heat is the warmer one, whether the skin fell or rose.
+        (Task::Extreme(Sensation::Warm, vec![0, 1]), vec![1.0, 1.1], 0),
+        (Task::Extreme(Sensation::Warm, vec![0, 1]), vec![-1.0, -1.1], 1),
         (Task::Different(vec![0, 1, 2]), vec![1.0, 1.0, 0.9], 2),
         (Task::Different(vec![0, 1, 2]), vec![1.3, 1.0, 1.0], 0),
         (Task::Identify(vec![3.0, 1.0]), vec![1.8], 1),
@@ -37,16 +40,34 @@ fn each_task_has_its_rule() {
         );
     }
     assert_eq!(
-        judge(&Task::Magnitude(0.0, 100.0), &[0.0, 4.0, 9.0, -1.0], clear),
+        judge(&Task::Magnitude(Sensation::Cold, 0.0, 100.0), &[0.0, 4.0, 9.0, -1.0], clear),
         Some(Judgement::Numbers(vec![0.0, 50.0, 100.0, 0.0]))
     );
+    assert_eq!(
+        judge(&Task::Magnitude(Sensation::Warm, 0.0, 100.0), &[0.0, -4.0, -9.0, 1.0], clear),
+        Some(Judgement::Numbers(vec![0.0, 50.0, 100.0, 0.0]))
+    );
+}
+
+#[test]
+fn a_question_names_what_it_asks_for() {
+    for (question, named) in [
+        ("Which hand felt the colder material?", &[Sensation::Cold][..]),
+        ("How cool?", &[Sensation::Cold]),
+        ("Which is WARMER?", &[Sensation::Warm]),
+        ("How hot did it get?", &[Sensation::Warm]),
+        ("Which one was it: colder or warmer?", &[Sensation::Cold, Sensation::Warm]),
+        ("Which photo, shot or scold?", &[]),
+    ] {
+        assert_eq!(Sensation::named(question), named, "{question}");
+    }
 }
 
 #[test]
 fn what_was_not_felt_is_not_judged() {
     let (mut noise, mut lapses) = streams();
     let params = &ObserverParams::NOISE_FREE;
-    let task = Task::Colder(vec![0, 1]);
+    let task = Task::Extreme(Sensation::Cold, vec![0, 1]);
     assert_eq!(task.judge(&[None, Some(1.0)], params, &mut noise, &mut lapses), None);
     let random = &ObserverParams::RANDOM;
     assert_eq!(task.judge(&[None, None], random, &mut noise, &mut lapses), None);
@@ -70,7 +91,7 @@ fn draws_agree_with_the_closed_form() {
         };
         f64::from((0..DRAWS).filter(is_first).count() as u32) / f64::from(DRAWS)
     };
-    let colder = share(&Task::Colder(vec![0, 1]), &[Some(4.0), Some(3.0)]);
+    let colder = share(&Task::Extreme(Sensation::Cold, vec![0, 1]), &[Some(4.0), Some(3.0)]);
     let different = share(&Task::Different(vec![0, 1, 2]), &[Some(4.0), Some(1.0), Some(1.0)]);
     let expected_k = vec![4.0, 1.0, 0.2];
     let identified = share(&Task::Identify(expected_k.clone()), &[Some(4.0)]);
