@@ -255,6 +255,7 @@ def test_all_questions_are_understood(hil_sim: str) -> None:
     with Display.simulated(hil_sim) as display:
         assert display.identity == display.id()
         assert display.board().reset == "power-on"
+        assert display.board().simulated
         assert display.cause() is None
         assert display.self_test().result == "none"
         display.arm(wait_s=20)

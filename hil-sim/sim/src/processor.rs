@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::str::FromStr;
+use thermal_client::client::SIMULATED_UNIQUE_ID;
 
 named_enum! {
     /// Cause of the last reset of the microcontroller (RCC_CSR).
@@ -82,8 +83,7 @@ impl Default for ChipState {
             slow_flash: false,
             flash: FlashTiming::default(),
             strict: false,
-            // No real chip's: each word ends like its address.
-            unique_id: [0x0046_0010, 0x0046_0014, 0x0046_0018],
+            unique_id: [SIMULATED_UNIQUE_ID, 0x0046_0014, 0x0046_0018],
         }
     }
 }

@@ -338,6 +338,10 @@ class DisplaySurface:
         )
 
 
+SIMULATED_UID = "53494d55"
+"""First word of the unique identifier of a simulated microcontroller: a real one has its place on the wafer there."""
+
+
 @dataclass(frozen=True)
 class BoardReport:
     """Answer to `board`."""
@@ -359,6 +363,11 @@ class BoardReport:
     """Lines of telemetry that the device dropped because the line was too slow."""
     uid: str | None
     """Unique identifier of the microcontroller."""
+
+    @property
+    def simulated(self) -> bool:
+        """Whether the microcontroller is a simulated one, as its identifier says, whatever line leads to it."""
+        return self.uid is not None and self.uid.startswith(SIMULATED_UID)
 
     @classmethod
     def read(cls, reply: Fields) -> BoardReport:

@@ -34,6 +34,26 @@ pub fn write(
     thermal_charts::write(folder, SVG, plots)
 }
 
+/// The result in words.
+fn result(figures: &Figures) -> String {
+    let trips = figures.trips_and_resets();
+    let ended = match trips.as_slice() {
+        [] => String::new(),
+        trips => format!(" The device did not run through: {}.", trips.join(", ")),
+    };
+    let Some(errors) = figures.skin_error_mk else {
+        return format!("No finger has touched the object.{ended}");
+    };
+    let most = errors.max_after_50ms.map_or("no contact of 50 ms".into(), |most| {
+        format!("at most {most:.1} mK from 50 ms after each landing on")
+    });
+    format!(
+        "The skin on the display differs from the skin on the real object ({}) by {:.1} mK (RMS over the contact; {most}). It was at \
+         {:.1} to {:.1} °C.{ended}",
+        figures.material, errors.rms, figures.skin_c.min, figures.skin_c.max
+    )
+}
+
 fn page(scene: &Scene, outcome: &Outcome, figures: &Figures, plots: &str) -> String {
     let title = format!("{}, engine {}", figures.material, figures.engine);
     let mut rows = String::new();
@@ -51,9 +71,10 @@ fn page(scene: &Scene, outcome: &Outcome, figures: &Figures, plots: &str) -> Str
         );
     }
     let body = format!(
-        "<p>Skin {} °C, room {} °C, object {} °C. Everything here is simulated; costs are emulated, cycles \
+        "<p><strong>{}</strong></p><p>Skin {} °C, room {} °C, object {} °C. Everything here is simulated; costs are emulated, cycles \
          estimated.</p>{}<h2>Figures</h2><table>{rows}</table><h2>Answers of the device</h2>\
          <table><tr><th>t / s</th><th>line</th><th>answer</th></tr>{answers}</table>",
+        escape(&result(figures)),
         scene.skin_c,
         scene.room_c,
         scene.object_c(),

@@ -30,8 +30,12 @@ fn curve(
     Curve {
         name: name.into(),
         color,
-        // Wider, because the curve of the real skin lies on top of it.
-        stroke: Stroke::Solid(if color == SKIN { 4 } else { 2 }),
+        // The skin on the real object lies on that on the display, which so is wider, and seen between the dashes.
+        stroke: match color {
+            SKIN => Stroke::Solid(5),
+            REAL => Stroke::Dashed,
+            _ => Stroke::Solid(2),
+        },
         points: points.filter_map(|(i, row)| Some((row.t_s, value(i, row)?))).collect(),
     }
 }
@@ -88,7 +92,7 @@ pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
             y_name,
             legend: Legend::Inside,
         };
-        panel("temperature / C").draw(&upper, &temperatures)?;
+        panel("temperature / °C").draw(&upper, &temperatures)?;
         panel("error in contact / mK").draw(&middle, &errors)?;
         panel("current / A").draw(&lower, &current)?;
         root.present()?;

@@ -40,7 +40,7 @@ pub use query::{
 };
 pub use reply::{
     BoardReport, CalibrationFit, Cause, FluxReport, IdentifiedTile, Identity, RawReadings,
-    SelfTestReport, SettingsLine, Status,
+    SIMULATED_UNIQUE_ID, SelfTestReport, SettingsLine, Status,
 };
 pub use telemetry::{ReceivedTelemetry, Telemetry};
 

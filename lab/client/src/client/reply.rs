@@ -437,7 +437,16 @@ pub struct BoardReport {
     pub uid: Option<String>,
 }
 
+/// First word of the unique identifier of a simulated microcontroller: a real one has its place on the wafer there.
+pub const SIMULATED_UNIQUE_ID: u32 = u32::from_be_bytes(*b"SIMU");
+
 impl BoardReport {
+    /// Whether the microcontroller is a simulated one, as its unique identifier says, whatever line leads to it.
+    pub fn is_simulated(&self) -> bool {
+        let word = self.uid.as_deref().and_then(|uid| uid.get(..8));
+        word.is_some_and(|word| u32::from_str_radix(word, 16) == Ok(SIMULATED_UNIQUE_ID))
+    }
+
     pub(super) fn read(reply: &Fields<'_>) -> Option<Self> {
         Some(Self {
             bor: reply.number("bor")?,
