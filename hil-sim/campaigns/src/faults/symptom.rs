@@ -23,6 +23,8 @@ pub enum Symptom {
     Injection,
     /// A time after the injection, s.
     After(f64),
+    /// The finger presses with less than this, N, for 32 ms.
+    ForceBelow(f64),
     /// The readings of the display's thermistors differ by more than 3.1 K.
     DisplaySensorsDiffer,
     /// The reading of the display differs by more than 4 K from that of the fault-free run, for 40 ms; only for a tuned tile.
@@ -73,6 +75,8 @@ const OFF_ROWS: usize = 32;
 const SUPPLY_V: std::ops::RangeInclusive<f64> = 10.6..=13.4;
 /// Two more than the debounce of the device.
 const SUPPLY_ROWS: usize = 12;
+/// Two more than the debounce of the device.
+const FORCE_ROWS: usize = 32;
 const OVER_A: f64 = 9.2;
 const OVER_ROWS: usize = 2;
 const DIRECTED_A: f64 = 1.0;
@@ -123,6 +127,11 @@ impl Symptom {
         match self {
             Self::Injection => Some(begin_s),
             Self::After(s) => Some(begin_s + s).filter(|t_s| *t_s <= end_s),
+            Self::ForceBelow(force_n) => {
+                let below = |row: &TraceRow| row.force_n < force_n;
+                let lasts = after.windows(FORCE_ROWS).find(|rows| rows.iter().all(below))?;
+                Some(lasts[0].t_s)
+            }
             Self::DisplaySensorsDiffer => {
                 first(&|row| match (read(row, DISPLAY), read(row, CHECK)) {
                     (Some(display_c), Some(check_c)) => (display_c - check_c).abs() > DIFFERENCE_K,
@@ -315,6 +324,17 @@ mod tests {
     fn about(onset_s: Option<f64>, expected_s: f64) {
         let off_s = onset_s.map(|onset_s| (onset_s - expected_s).abs());
         assert!(off_s.is_some_and(|off_s| off_s < 2e-3), "{onset_s:?}, not {expected_s} s");
+    }
+
+    /// A force that is low for less than the device waits is no sign, and one that lasts counts from its start.
+    #[test]
+    fn a_low_force_counts_from_its_start_if_it_lasts() {
+        let with = |force_n: fn(f64) -> f64| rows(move |t_s, row, _| row.force_n = force_n(t_s));
+        let onset = |rows: &[TraceRow]| Symptom::ForceBelow(9.2).onset_s(rows, &[], 1000, None);
+        about(onset(&with(|t_s| if t_s < 2.0 { 9.8 } else { 9.0 })), 2.0);
+        about(onset(&with(|_| 0.0)), 1.0);
+        let short = with(|t_s| if (1.5..1.53).contains(&t_s) { 0.0 } else { 9.8 });
+        assert_eq!(onset(&short), None);
     }
 
     /// A finger adds a second to the parts after the first 80 ms.
