@@ -16,7 +16,7 @@ use cli::{embedded_tests, profile};
 
 /// Simulated plant and emulated microcontroller of the thermal display.
 #[derive(Parser)]
-#[command(name = "hil-sim", max_term_width = 100)]
+#[command(name = "hil-sim", version, max_term_width = 100)]
 enum Cli {
     /// Run a scene
     Run(run::Arguments),

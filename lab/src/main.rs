@@ -13,7 +13,7 @@ use cli::{
 
 /// The operator's side of a thermal display.
 #[derive(Parser)]
-#[command(name = "thermal-lab", max_term_width = 100)]
+#[command(name = "thermal-lab", version, max_term_width = 100)]
 struct Cli {
     #[command(flatten)]
     target: Target,

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod benches;
+pub mod measure;
 pub mod netlist;
 pub mod ngspice;
 pub mod number;

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::{Context, Result, bail, ensure};
 
 use crate::netlist::Netlists;
-use crate::number;
+use crate::{measure, number};
 
 /// Name of the program.
 const PROGRAM: &str = "ngspice";
@@ -65,7 +65,7 @@ fn deck_folder() -> PathBuf {
 /// Runs the netlists with these lines behind them.
 ///
 /// # Errors
-/// ngspice does not start, does not converge, or reports an error.
+/// ngspice does not start, does not converge, reports an error, or would measure wrongly ([`measure::check`]).
 pub fn run(title: &str, netlists: &Netlists, lines: &str) -> Result<Measured> {
     Ok(parse(&output(title, netlists, lines)?))
 }
@@ -126,6 +126,7 @@ fn output(title: &str, netlists: &Netlists, lines: &str) -> Result<String> {
     let path = folder.join(format!("{title}-{number}.cir"));
     let deck = format!("* {title}\n{}\n{lines}\n.end\n", netlists.text());
     fs::write(&path, &deck).with_context(|| path.display().to_string())?;
+    measure::check(&deck).with_context(|| path.display().to_string())?;
     // ngspice reads the deck from its standard input: another run may write files of the same names.
     let mut child = Command::new(PROGRAM)
         .arg("-b")

@@ -7,6 +7,7 @@ use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use contact_model::reference::Contact;
 use documented_figures::{assert_compiled, assert_figure};
 use image_proof::compiler::recorded_with;
+use micromath::F32Ext;
 use model_bench::scenes::{FINGERS, TICKS, kind};
 use serde_json::Value;
 use thermal_display::device::reference::SETPOINT_INTERPOLATION_TOLERANCE;
@@ -207,6 +208,25 @@ fn page_and_plot_name_every_kernel() {
             assert!(plain.contains(title), "{title} in {name}");
         }
     }
+}
+
+/// The root's error is the same in every second octave, at most `3 / (2 sqrt 2) - 1`.
+#[test]
+fn page_states_the_largest_errors_of_micromaths_root_and_logarithm() {
+    LazyLock::force(&RUNS);
+    let page = std::fs::read_to_string(out("first").join("benchmark.md")).expect("it is written");
+    let inputs = || (1 << 11..1 << 15).map(|n| n as f32 / 8192.0);
+    let root = inputs().map(|x| (f64::from(F32Ext::sqrt(x)) / f64::from(x).sqrt() - 1.0).abs());
+    let below_1 = inputs().filter(|x| *x < 1.0);
+    let logarithm = below_1.map(|x| (f64::from(F32Ext::ln(x)) - f64::from(x).ln()).abs());
+    let root_percent = 100.0 * root.fold(0.0, f64::max);
+    let logarithm = logarithm.fold(0.0, f64::max);
+    assert!((root_percent - 100.0 * (3.0 / 8f64.sqrt() - 1.0)).abs() < 1e-4, "{root_percent}");
+    assert!(
+        page.contains(&format!("Its `sqrt` is off by up to {root_percent:.2} %")),
+        "{root_percent}"
+    );
+    assert!(page.contains(&format!("is off by up to {logarithm:.3} below 1")), "{logarithm}");
 }
 
 #[test]

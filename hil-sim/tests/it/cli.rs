@@ -22,6 +22,12 @@ fn the_readmes_example_prints_what_it_shows() {
 }
 
 #[test]
+fn version_is_that_of_the_package() {
+    let expected = format!("hil-sim {}\n", env!("CARGO_PKG_VERSION"));
+    assert_eq!(good(&["--version"], ""), expected);
+}
+
+#[test]
 fn model_meets_golden_values_in_f64_and_fixed_point() {
     let mut checked = 0;
     for row in golden("contact") {

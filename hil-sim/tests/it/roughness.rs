@@ -39,6 +39,22 @@ fn command_prints_the_parameters() {
 }
 
 #[test]
+fn command_says_that_equal_steps_stand_in_place_of_the_printed_positions() {
+    let points = (0..40).map(f64::from);
+    let line = |n: f64| format!("{:.7},{}\n", n * 1.5625e-7, n * 1.71875e-9);
+    let path =
+        file("coarse.csv", &("x_m,z_m\n".to_owned() + &points.map(line).collect::<String>()));
+    let (status, out, error) = roughness(&path);
+    assert_eq!(status, Some(0));
+    assert!(out.starts_with("rq_m,rdq,slope_rad,rsm_m\n"), "{out}");
+    let expected = format!(
+        "hil-sim: {}: x_m is printed to 1.0e-7 m; taken are equal steps of 1.5625e-7 m, within 3e-9 m\n",
+        path.display()
+    );
+    assert_eq!(error, expected);
+}
+
+#[test]
 fn command_names_file_and_line() {
     let path = file("short.csv", "x_m,z_m\n0,0\n1e-6,nan\n");
     let (status, out, error) = roughness(&path);

@@ -10,6 +10,8 @@ use crate::sample::{mean_of, sum_of_squares};
 use crate::search::golden_section;
 use crate::{Interval, Result, StatisticsError};
 
+mod maximum;
+
 /// Form of the function without guessing and lapses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
@@ -94,15 +96,16 @@ struct Line {
 type Point = (f64, f64, f64);
 
 impl Model {
-    /// Maximum likelihood fit of location and slope, by Fisher's scoring from the best of a grid.
+    /// Maximum likelihood fit of location and slope, by Newton's method and Fisher's scoring from a grid of slopes.
     ///
     /// # Errors
     /// Guess or lapse out of range, a level that is not finite or (Weibull) not positive, fewer than two different levels, or
-    /// answers that determine no rising function: all levels alike, or all wrong below and all correct above some level.
+    /// answers that determine no slope: a step from the guess rate to 1 less the lapse rate, or the same proportion at all levels,
+    /// is as likely as the most likely rising function.
     pub fn fit(&self, levels: &[Level]) -> Result<Fit> {
         let (line, points) = self.prepare(levels)?;
-        let line = self.maximise(line, &points)?;
         let undetermined = StatisticsError::NotDetermined { what: "the slope" };
+        let line = self.maximise(line, &points).ok_or_else(|| undetermined.clone())?;
         let (_, information) = self.score(&line, &points);
         let [aa, bb, ab] = information;
         let determinant = aa * bb - ab * ab;
@@ -138,18 +141,25 @@ impl Model {
     /// `lapse_max` is about 0.06.
     ///
     /// # Errors
-    /// Those of [`fit`](Self::fit), or `lapse_max` out of range.
+    /// Those of [`fit`](Self::fit) with that lapse rate, or `lapse_max` out of range.
     pub fn fit_with_lapse(&self, levels: &[Level], lapse_max: f64) -> Result<Fit> {
+        /// Steps of a grid in which the best lapse rate is searched first.
+        const LAPSES: u32 = 8;
+        /// Gain of log-likelihood that may be rounding.
+        const ROUNDING: f64 = 1e-9;
         let with = |lapse| Self { lapse, ..*self };
-        with(lapse_max).check()?;
-        let unlikely = |lapse: f64| {
-            let fit = with(lapse).fit(levels);
-            fit.map_or(f64::INFINITY, |fit| -fit.log_likelihood)
-        };
-        let inner = golden_section(unlikely, 0.0, lapse_max);
-        let candidates = [0.0, inner, lapse_max];
-        let best = candidates.into_iter().min_by(|a, b| unlikely(*a).total_cmp(&unlikely(*b)));
-        with(best.unwrap_or(inner)).fit(levels)
+        let (line, points) = with(lapse_max).prepare(levels)?;
+        // Steps count, too: a lapse rate with which a step is most likely must not lose against one with a worse function.
+        let unlikely = |lapse: f64| -with(lapse).supremum(line, &points);
+        let grid = |step: u32| lapse_max * f64::from(step) / f64::from(LAPSES);
+        let of_grid: Vec<f64> = (0..=LAPSES).map(|step| unlikely(grid(step))).collect();
+        let step = (0..=LAPSES).zip(&of_grid).min_by(|one, other| one.1.total_cmp(other.1));
+        let (step, at_step) = step.map_or((0, f64::INFINITY), |(step, at_step)| (step, *at_step));
+        let (low, high) = (grid(step.saturating_sub(1)), grid((step + 1).min(LAPSES)));
+        let inner = golden_section(unlikely, low, high);
+        // Golden section does not reach the ends of its interval, which may be no lapses, or most of them.
+        let lapse = if unlikely(inner) < at_step - ROUNDING { inner } else { grid(step) };
+        with(lapse).fit(levels)
     }
 
     fn check(&self) -> Result<()> {
@@ -191,53 +201,6 @@ impl Model {
         Ok((line, of_levels))
     }
 
-    /// The most likely line.
-    fn maximise(&self, start: Line, points: &[Point]) -> Result<Line> {
-        const ITERATIONS_MAX: u32 = 500;
-        const HALVINGS_MAX: u32 = 40;
-        let with = |intercept, slope| Line { intercept, slope, ..start };
-        let slopes = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
-        // Locations from two spreads below the mean of the levels to two above it.
-        let locations = (-8..=8).map(|i| 0.25 * f64::from(i));
-        let grid =
-            locations.flat_map(|location| slopes.map(|slope| with(-slope * location, slope)));
-        let likelihood = |line: &Line| self.log_likelihood(line, points);
-        let undetermined = StatisticsError::NotDetermined { what: "the slope" };
-        let mut line = grid
-            .max_by(|a, b| likelihood(a).total_cmp(&likelihood(b)))
-            .ok_or_else(|| undetermined.clone())?;
-        let mut best = likelihood(&line);
-        for _ in 0..ITERATIONS_MAX {
-            let ([of_a, of_b], [aa, bb, ab]) = self.score(&line, points);
-            let determinant = aa * bb - ab * ab;
-            let step_a = (bb * of_a - ab * of_b) / determinant;
-            let step_b = (aa * of_b - ab * of_a) / determinant;
-            if !(step_a.is_finite() && step_b.is_finite()) {
-                return Err(undetermined);
-            }
-            let size = step_a.abs().max(step_b.abs());
-            if size < 1e-12 * (1.0 + line.intercept.abs() + line.slope.abs()) {
-                return Ok(line);
-            }
-            let mut part = 1.0;
-            let better = (0..HALVINGS_MAX).find_map(|_| {
-                let tried = with(line.intercept + part * step_a, line.slope + part * step_b);
-                part *= 0.5;
-                let reached = likelihood(&tried);
-                (reached > best).then_some((tried, reached))
-            });
-            match better {
-                Some((tried, reached)) => (line, best) = (tried, reached),
-                // The likelihood is level to rounding. Far from its maximum it is not.
-                None if size < 1e-5 * (1.0 + line.intercept.abs() + line.slope.abs()) => {
-                    return Ok(line);
-                }
-                None => return Err(undetermined),
-            }
-        }
-        Err(undetermined)
-    }
-
     /// Probabilities of a correct and a wrong answer, and derivative of the former, by the argument of `G`.
     fn probabilities(&self, z: f64) -> (f64, f64, f64) {
         let rise = 1.0 - self.guess - self.lapse;
@@ -269,8 +232,10 @@ impl Model {
             if derivative == 0.0 || p * q == 0.0 {
                 continue;
             }
-            let of_z = (correct * q - wrong * p) / (p * q) * derivative;
-            let weight = (correct + wrong) / (p * q) * derivative * derivative;
+            // Near the ends of the function p or q and the derivative are tiny; their quotients are not.
+            let (of_p, of_q) = (derivative / p, derivative / q);
+            let of_z = correct * of_p - wrong * of_q;
+            let weight = (correct + wrong) * of_p * of_q;
             score[0] += of_z;
             score[1] += of_z * x;
             information[0] += weight;

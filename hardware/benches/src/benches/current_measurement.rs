@@ -3,6 +3,7 @@
 use anyhow::Result;
 
 use super::{Bench, PERIOD_S};
+use crate::measure;
 use crate::netlist::Netlists;
 use crate::ngspice;
 use crate::picture::Scene;
@@ -41,11 +42,11 @@ fn deck(henry: f64, current_a: f64, duty: f64) -> String {
 
 /// Mean reading and half of its ripple, A, for a tile current and duty.
 fn reading(netlists: &Netlists, current_a: f64, duty: f64) -> Result<[f64; 2]> {
-    let from_s = 3.125e-3 - 10.0 * PERIOD_S;
+    let to_s = 3.125e-3;
+    let from_s = to_s - 10.0 * PERIOD_S;
     let lines = deck(2.0 * netlists.param("l_leg")?, current_a, duty)
-        + &format!(
-            "\n.meas tran mean avg v(adc) from={from_s:e} to=3.125m\n.meas tran ripple pp v(adc) from={from_s:e} to=3.125m\n"
-        );
+        + &format!("\n.meas tran ripple pp v(adc) from={from_s:e} to={to_s:e}\n")
+        + &measure::mean("mean", "v(adc)", from_s..to_s);
     let measured = ngspice::run("current", netlists, &lines)?;
     let ampere = |volt: f64| volt * COUNTS_PER_V / COUNTS_PER_A;
     Ok([ampere(measured.get("mean")?), 0.5 * ampere(measured.get("ripple")?)])
@@ -57,7 +58,7 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
         [(1.0, 0.1), (3.0, 0.3), (6.0, 0.55), (6.0, 0.85), (-6.0, 0.55), (9.0, 0.8)]
     {
         let [mean_a, ripple_a] = reading(netlists, current_a, duty)?;
-        // The plant's box: 7.5 % of gain and 0.05 A of offset.
+        // The plant's parameter box: `mirror.offset_a` and `mirror.gain_error`.
         let allowed_a = 0.05 + 0.02 * f64::abs(current_a);
         all.push(Quantity::between(
             format!("reading of {current_a} A at a duty of {duty}"),

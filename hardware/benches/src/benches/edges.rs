@@ -4,6 +4,7 @@ use anyhow::Result;
 
 use super::transients::OPTIONS;
 use super::{Bench, PERIOD_S};
+use crate::measure;
 use crate::netlist::Netlists;
 use crate::ngspice::{self, Measured};
 use crate::picture::Scene;
@@ -11,7 +12,7 @@ use crate::quantity::Quantity;
 
 pub const BENCH: Bench = Bench {
     name: "edges",
-    title: "propagation delay, effective dead time and loss at 6 A, against 0.3 us of the firmware",
+    title: "propagation delay, effective dead time and loss at 6 A, against 0.16 us of the firmware",
     parts: &[run],
     // The drive current of the smallest strap.
     broken: |netlists| netlists.with_line("X3 i1 i2 vbr", &format!("{DRIVER} i_src=10m i_snk=20m")),
@@ -40,15 +41,19 @@ fn deck(seebeck_v: f64) -> String {
 
 /// Simulates [`deck`] and measures the pulse at 199 us.
 pub fn simulate(netlists: &Netlists, seebeck_v: f64) -> Result<Measured> {
+    let to_s = 218.75e-6;
+    let from_s = to_s - 10.0 * PERIOD_S;
+    let mean = |name: &str, signal: &str| measure::mean(name, signal, from_s..to_s);
     let lines = format!(
         "{circuit}\nBin pin 0 V=-12*I(Vbr)\nBout pout 0 V=V(p,n)*I(Vi)\n\
          .meas tran command when v(in2)=1.65 fall=1 td=198u\n.meas tran command_end when v(in2)=1.65 rise=1 td=200u\n\
          .meas tran out when v(x1.o1)=6 rise=1 td=198u\n.meas tran out_end when v(x1.o1)=6 fall=1 td=200u\n\
-         .meas tran current avg i(vi) from={from_s:e} to=218.75u\n\
-         .meas tran ripple pp i(vi) from={from_s:e} to=218.75u\n\
-         .meas tran input avg v(pin) from={from_s:e} to=218.75u\n.meas tran output avg v(pout) from={from_s:e} to=218.75u\n",
+         .meas tran ripple pp i(vi) from={from_s:e} to={to_s:e}\n\
+         {current}{input}{output}",
         circuit = deck(seebeck_v),
-        from_s = 218.75e-6 - 10.0 * PERIOD_S,
+        current = mean("current", "i(vi)"),
+        input = mean("input", "v(pin)"),
+        output = mean("output", "v(pout)"),
     );
     ngspice::run("edges", netlists, &lines)
 }
@@ -77,7 +82,7 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
             (0.0, 1.0),
         ),
         Quantity::between(
-            "effective dead time at +6 A; the plant has 0.1 to 0.6, tuning fails above 0.53",
+            "effective dead time at +6 A; the plant has 0.1 to 0.3, tuning fails above 0.53",
             lost_us(&cooling)?,
             "us",
             (0.1, 0.53),

@@ -3,6 +3,7 @@
 use anyhow::Result;
 
 use super::{Bench, self_test};
+use crate::measure;
 use crate::netlist::Netlists;
 use crate::ngspice;
 use crate::picture::Scene;
@@ -147,8 +148,9 @@ const EMERGENCY_STOP: &str = "V3 v3 0 3.3\nV12 v12 0 12\nVstop stop 0 PWL(0 1 0.
 fn emergency_stop(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let lines = format!(
         "{EMERGENCY_STOP}\n\
-        .meas tran before avg i(vi) from=0.06m to=0.1m\n.meas tran after max i(vi) from=0.9m to=1m\n\
-        .meas tran sensed find v(stopped) at=1m"
+        .meas tran after max i(vi) from=0.9m to=1m\n.meas tran sensed find v(stopped) at=1m\n\
+        {before}",
+        before = measure::mean("before", "i(vi)", 0.06e-3..0.1e-3),
     );
     let measured = ngspice::run("emergency-stop", netlists, &lines)?;
     Ok(vec![

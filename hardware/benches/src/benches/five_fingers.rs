@@ -4,6 +4,7 @@ use anyhow::Result;
 
 use super::transients::OPTIONS;
 use super::{Bench, PERIOD_OF_FIVE_FINGERS_S};
+use crate::measure;
 use crate::netlist::Netlists;
 use crate::ngspice::{self, Measured};
 use crate::picture::Scene;
@@ -140,12 +141,15 @@ fn release(netlists: &Netlists) -> Result<Measured> {
 /// Supply current of a finger whose tile takes 6 A at the largest temperature difference (8.2 V).
 fn supply(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let period_s = PERIOD_OF_FIVE_FINGERS_S;
-    let (low_s, from_s) = (0.7123 * period_s, 218.75e-6 - 10.0 * period_s);
+    let low_s = 0.7123 * period_s;
+    let window_s = 218.75e-6 - 10.0 * period_s..218.75e-6;
     let lines = format!(
         "V3 v3 0 3.3\nVbr vbr 0 12\nVin1 in1 0 3.3\nVin2 in2 0 PULSE(3.3 0 1u 5n 5n {low_s:e} {period_s:e})\nVen enable 0 3.3\n\
          X1 vbr v3 in1 in2 enable nfault p n sa sb bridge\nVi p pt 0\nXt pt n tile seebeck=1.83\n\
          {OPTIONS}\n.tran 5n 230u 0 25n\n\
-         .meas tran tile avg i(vi) from={from_s:e} to=218.75u\n.meas tran input avg i(vbr) from={from_s:e} to=218.75u\n"
+         {tile}{input}",
+        tile = measure::mean("tile", "i(vi)", window_s.clone()),
+        input = measure::mean("input", "i(vbr)", window_s),
     );
     let measured = ngspice::run("supply-current", netlists, &lines)?;
     let finger_a = -measured.get("input")?;

@@ -4,6 +4,7 @@ use anyhow::Result;
 
 use super::Bench;
 use super::transients::OPTIONS;
+use crate::measure;
 use crate::netlist::Netlists;
 use crate::ngspice::{self, Measured};
 use crate::picture::Scene;
@@ -208,7 +209,8 @@ pub const BOOT_LOADER: &str = "Vtest test 0 PWL(0 0 20m 0 20.01m 3.3 40m 3.3 40.
 fn reset_into_boot_loader(netlists: &Netlists) -> Result<Measured> {
     let lines = path("PULSE(0 12 0 1m)", "PULSE(0 3.3 0 1m)", BOOT_LOADER)
         + ".tran 20u 100m 0 20u uic\n.meas tran before find v(vbr) at=59m\n\
-           .meas tran opened when v(on)=1 fall=1 td=60m\n.meas tran current avg i(vi) from=80m to=100m\n";
+           .meas tran opened when v(on)=1 fall=1 td=60m\n"
+        + &measure::mean("current", "i(vi)", 80e-3..100e-3);
     ngspice::run("boot-loader", netlists, &lines)
 }
 

@@ -3,6 +3,7 @@
 use anyhow::Result;
 
 use super::{Bench, PERIOD_S};
+use crate::measure;
 use crate::netlist::Netlists;
 use crate::ngspice;
 use crate::picture::{Chart, Scene};
@@ -50,13 +51,12 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
         let lines = format!(
             "{circuit}\n\
              .meas tran enable_peak max i(l.x1.l1) from=100u to=200u\n\
-             .meas tran before avg i(vi) from={before_s:e} to=312.5u\n\
              .meas tran reversal_peak min i(l.x1.l1) from=312.5u to=400u\n\
-             .meas tran after avg i(vi) from={after_s:e} to=500u\n\
-             .meas tran fault min v(nfault) from=100u to=500u\n",
+             .meas tran fault min v(nfault) from=100u to=500u\n\
+             {before}{after}",
             circuit = enable_and_reversal(),
-            before_s = 312.5e-6 - 10.0 * PERIOD_S,
-            after_s = 500e-6 - 8.0 * PERIOD_S,
+            before = measure::mean("before", "i(vi)", 312.5e-6 - 10.0 * PERIOD_S..312.5e-6),
+            after = measure::mean("after", "i(vi)", 500e-6 - 8.0 * PERIOD_S..500e-6),
         );
         let measured = ngspice::run("transients", &changed, &lines)?;
         for (what, peak_a) in [

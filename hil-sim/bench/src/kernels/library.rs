@@ -15,7 +15,7 @@ pub(crate) fn libm_f32(elapsed: u32, per_tick: f32) -> f32 {
     libm::expf(u) * libm::erfcf(sqrt(u))
 }
 
-/// micromath's `exp`; its square root, good to 5 %, would hide everything else.
+/// micromath's `exp`; the error of its square root would hide everything else.
 pub(super) fn micromath_erfc(elapsed: u32, per_tick: f32) -> f32 {
     let u = elapsed as f32 * per_tick;
     F32Ext::exp(u) * libm::erfcf(sqrt(u))

@@ -8,10 +8,13 @@
 //! the length by the trapezoidal rule. With equal steps they are the means over points of Eq. except for the
 //! weights of the two end points.
 
+mod equal_steps;
 mod parameters;
+mod printed;
 mod profile_csv;
 mod spacing;
 
+pub use equal_steps::EqualSteps;
 pub use profile_csv::{LEAST_POINTS, MOST_UNEVEN, ProfileError};
 
 /// A measured profile: points along a straight line on the surface.
@@ -21,6 +24,8 @@ pub struct Profile {
     x_m: Vec<f64>,
     /// Heights, m, one for each position.
     z_m: Vec<f64>,
+    /// Where the positions are not those of the file.
+    equal_steps: Option<EqualSteps>,
 }
 
 /// Roughness parameters of a profile.
@@ -49,6 +54,12 @@ pub struct Roughness {
 }
 
 impl Profile {
+    /// The equal steps that stand in place of positions which are printed with too few digits; none where the printed
+    /// positions are used.
+    pub fn equal_steps(&self) -> Option<EqualSteps> {
+        self.equal_steps
+    }
+
     /// Computes the roughness parameters.
     pub fn roughness(&self) -> Roughness {
         let x_m = &self.x_m;

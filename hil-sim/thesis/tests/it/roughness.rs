@@ -307,12 +307,77 @@ fn invalid_profiles_are_refused_with_their_line() {
         (with(9, "7"), "line 9: z_m = \"\"; allowed is a finite number"),
         (with(9, "6,0"), "line 9: x_m = 6 after 6; allowed is a greater x_m in every line"),
         (with(9, "1.5,0"), "line 9: x_m = 1.5 after 6; allowed is a greater x_m in every line"),
+        (with(9, "7,1e308"), "line 9: z_m = 1e308; allowed is from -1e3 to 1e3 m"),
+        (with(9, "1e305,0"), "line 9: x_m = 1e305; allowed is from -1e3 to 1e3 m"),
+        (with(3, "1e-320,0"), "line 3: a step of 1e-320 m; allowed is 1e-12 m or more"),
+        (with(9, "6.8,0"), "line 9: x_m is printed to 1.0e0 m, and a step of 8.0e-1 m ends here; "),
         (fine[..LEAST_POINTS].join("\n"), "19 points; allowed is 20 or more"),
         (gap, "line 12: a step of 1.1e1 m; allowed is up to 10 times the shortest step, 1e0 m"),
     ] {
         let error = Profile::parse(text.as_bytes()).expect_err(expected).to_string();
         assert!(error.starts_with(expected), "{error}\n{expected}");
     }
+}
+
+/// A plane with a tilt of 1.1 %, whose points are 156.25 nm apart.
+const PLANE: [f64; 2] = [1.5625e-7, 1.71875e-9];
+
+#[test]
+fn a_tilted_plane_has_no_slope_however_coarsely_its_positions_are_printed() {
+    let [step_m, rise_m] = PLANE;
+    // As printed, the coarsest digits make a slope of 0.0035 and an RMS slope of 0.0040 of it.
+    for decimals in 7..=12 {
+        let line = |n: u32| {
+            format!("{:.decimals$},{:.11e}\n", f64::from(n) * step_m, f64::from(n) * rise_m)
+        };
+        let text = "x_m,z_m\n".to_owned() + &(0..40).map(line).collect::<String>();
+        let profile = Profile::parse(text.as_bytes()).expect("a profile");
+        let Roughness { rdq, slope_rad, .. } = profile.roughness();
+        assert!(rdq < 1e-12 && slope_rad < 1e-12, "{decimals}: {rdq} {slope_rad}");
+        // 156.25 nm is a whole number of 1e-11 m.
+        match profile.equal_steps() {
+            Some(steps) => {
+                assert!(decimals < 11);
+                assert!((steps.step_m - step_m).abs() <= steps.uncertainty_m, "{steps:?}");
+            }
+            None => assert!(decimals >= 11),
+        }
+    }
+}
+
+#[test]
+fn coarsely_printed_positions_change_a_sine_by_no_more_than_the_error_of_their_step() {
+    let (sine, expected) = golden()[2];
+    let points = || sine.sampled(10.0, 4000);
+    let step_m = 10.0 * sine.1 / 4000.0;
+    let unit_m = 10_f64.powi(step_m.log10().floor() as i32);
+    let decimals = -unit_m.log10().round() as usize;
+    let mut text = String::from("x_m,z_m\n");
+    for (x_m, z_m) in points() {
+        writeln!(text, "{x_m:.decimals$},{z_m}").expect("text grows");
+    }
+    let profile = Profile::parse(text.as_bytes()).expect("a profile");
+    let found = profile.roughness();
+    let allowed = profile.equal_steps().map_or(0.0, |steps| steps.uncertainty_m / steps.step_m);
+    assert!(relative(found.rdq, expected.rdq) < allowed + 1e-7, "{found:?} {allowed}");
+    assert!(relative(found.slope_rad, expected.slope_rad) < allowed + 1e-5, "{found:?}");
+    assert!(relative(rsm_m(&found), rsm_m(&expected)) < allowed + 1e-7, "{found:?}");
+}
+
+#[test]
+fn slopes_that_are_those_of_rounded_heights_are_refused() {
+    let [step_m, rise_m] = PLANE;
+    let plane = |decimals: usize| {
+        let line =
+            |n: u32| format!("{},{:.decimals$}\n", f64::from(n) * step_m, f64::from(n) * rise_m);
+        "x_m,z_m\n".to_owned() + &(0..400).map(line).collect::<String>()
+    };
+    for decimals in 7..=10 {
+        let error = Profile::parse(plane(decimals).as_bytes()).expect_err("coarse").to_string();
+        assert!(error.starts_with(&format!("z_m is printed to 1.0e-{decimals} m, ")), "{error}");
+    }
+    let found = Profile::parse(plane(11).as_bytes()).expect("a profile").roughness();
+    assert!(found.rdq < 1e-4 && found.slope_rad < 1e-4, "{found:?}");
 }
 
 #[test]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the exact values of this folder: sensitivities, probabilities of test statistics, and those of the thesis.
+"""Writes the exact values of this folder: sensitivities, probabilities of z and test statistics, and those of the thesis.
 
 usage: generate.py           writes the files anew
        generate.py --check   compares them with what it would write; exit status 1 if they differ
@@ -39,6 +39,12 @@ PROPORTIONS = {
     3: "0.37 0.39 0.44 0.49 0.51 0.54 0.57 0.60 0.62 0.66 0.69 0.72 0.79",
 }
 ODDITY = "0.34 0.38 0.43 0.50 0.57 0.61 0.66 0.74 0.82 0.90 0.97 0.999"
+
+# z, of which the nearest double is taken, as the program has it
+NORMAL = """
+-30 -29.3 -28.7 -25.1 -20.3 -17.9 -15 -12.7 -10.1 -8.7 -8.3 -7.1 -5.9 -4.7 -3.3 -2.1 -1.96 -1.3 -0.7 -0.3 -1e-9 0 0.1 0.9
+1.96 3.7 6.1 8.3
+"""
 
 # Degrees of freedom of effect and error, and F
 F_TAILS = """
@@ -231,6 +237,12 @@ def groups(text, size):
     return [numbers[i : i + size] for i in range(0, len(numbers), size)]
 
 
+def normal_rows():
+    yield "z", "p"
+    for z in NORMAL.split():
+        yield z, below(mpf(float(z)))
+
+
 def tails_rows():
     yield "statistic", "df", "value", "p"
     for effect, error, f in groups(F_TAILS, 3):
@@ -275,6 +287,7 @@ def thesis_rows():
 if __name__ == "__main__":
     files = {
         "forced_choice.csv": forced_choice_rows,
+        "normal.csv": normal_rows,
         "oddity.csv": oddity_rows,
         "tails.csv": tails_rows,
         "thesis.csv": thesis_rows,

@@ -62,6 +62,27 @@ fn tails_meet_exact_values() {
     ]);
 }
 
+#[test]
+fn normal_probabilities_meet_exact_values() {
+    #[derive(Deserialize)]
+    struct Golden {
+        z: f64,
+        p: f64,
+    }
+    let golden: Vec<Golden> = table(include_str!("../data/normal.csv"));
+    assert_eq!(golden.len(), 28);
+    let mut errors = Errors::default();
+    for Golden { z, p } in golden {
+        errors.add("p of z", normal_cdf(z), p);
+    }
+    errors.assert(&[("p of z", 1e-14)]);
+    assert_eq!(
+        [f64::NEG_INFINITY, -40.0, 40.0, f64::INFINITY].map(normal_cdf),
+        [0.0, 0.0, 1.0, 1.0]
+    );
+    assert!(normal_cdf(f64::NAN).is_nan());
+}
+
 /// What the thesis prints, and what it should have printed.
 #[derive(Debug, Deserialize)]
 struct Printed {

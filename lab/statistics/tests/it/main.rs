@@ -1,5 +1,6 @@
 //! Scores and statistics against exact values, those of the thesis, those of established packages, and properties.
 
+mod direct_maximum;
 mod errors;
 mod exact;
 mod packages;

@@ -1,10 +1,14 @@
 //! Fits of psychometric functions to simulated answers.
 
 use experiment_statistics::StatisticsError;
+use experiment_statistics::distribution::normal_cdf;
 use experiment_statistics::proportion::Proportion;
 use experiment_statistics::psychometric::{Level, Model, Shape};
+use experiment_statistics::staircase::{Staircase, StaircaseRule};
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
+
+use crate::direct_maximum::{LOG_SLOPES, least_deviance};
 
 const LEVELS: [f64; 5] = [0.3, 0.6, 1.0, 1.6, 2.5];
 
@@ -123,4 +127,122 @@ fn answers_that_determine_no_rising_function_are_refused() {
     let fit = model(0.02).fit(&[level(1.0, 24, 40), level(2.0, 35, 40)]).expect("a fit");
     assert!(fit.threshold(0.5).is_err() && fit.threshold(0.98).is_err());
     assert_eq!(fit.deviance_p, None);
+}
+
+/// The deviance of 3.87 is that of a step: half of the answers correct up to .35673, 11 of 12 at .50299, .94 above.
+#[test]
+fn a_slope_that_rises_without_end_is_not_determined() {
+    let levels = [
+        level(0.253, 0, 1),
+        level(0.35673, 4, 8),
+        level(0.50299, 11, 12),
+        level(0.70922, 4, 5),
+        level(1.0, 4, 5),
+        level(1.41, 2, 2),
+    ];
+    let not_determined = Err(StatisticsError::NotDetermined { what: "the slope" });
+    assert_eq!(model(0.0).fit_with_lapse(&levels, LAPSE_MAX), not_determined);
+    assert_eq!(model(LAPSE_MAX).fit(&levels), not_determined);
+    let direct = least_deviance(&levels, LOG_SLOPES, LAPSE_MAX);
+    assert!((direct - 3.87).abs() < 0.005, "{direct}");
+}
+
+const LAPSE_MAX: f64 = 0.06;
+
+/// Of staircases with a factor of 1.41 and 1.3, from these levels on. In the first one a step is nearly as likely, with a deviance of
+/// 5.8577; in the second one the proportion of wrong answers underflows at the highest levels. The deviances are those of a random
+/// search in Python.
+#[test]
+fn a_maximum_that_is_hard_to_find_is_found() {
+    type Staircase = (&'static [(u32, u32)], f64, f64, f64);
+    let staircases: [Staircase; 2] = [
+        (
+            &[(0, 1), (2, 3), (3, 5), (6, 6), (2, 3), (5, 6), (4, 4)],
+            0.127_258_067_550_832_72,
+            1.41,
+            5.844_377,
+        ),
+        (
+            &[(2, 4), (6, 7), (6, 9), (8, 8), (2, 2), (2, 2), (2, 2), (2, 2), (2, 2)],
+            0.122_589_473_984_025_63,
+            1.3,
+            3.203_464,
+        ),
+    ];
+    for (answers, lowest, factor, deviance) in staircases {
+        let levels: Vec<Level> = (0..)
+            .zip(answers)
+            .map(|(step, (correct, total))| {
+                level(lowest * f64::powi(factor, step), *correct, *total)
+            })
+            .collect();
+        let fit = model(0.0).fit_with_lapse(&levels, LAPSE_MAX).expect("a fit");
+        assert!((fit.deviance - deviance).abs() < 2e-6, "{fit:?}");
+    }
+}
+
+/// Answers by level of a 2-down-1-up staircase as in the session P9.
+fn staircase(random: &mut Xoshiro256PlusPlus) -> Vec<Level> {
+    const THRESHOLD: f64 = 0.35;
+    let mut staircase = Staircase::new(StaircaseRule {
+        start: 1.0,
+        least: 0.01,
+        most: 2.0,
+        correct_to_fall: 2,
+        factor: 1.41,
+        coarse_factor: 1.41,
+        coarse_reversals: 0,
+        reversals: 8,
+        averaged: 6,
+        trials_max: 60,
+    })
+    .expect("a rule");
+    let mut answers: Vec<(f64, u32, u32)> = Vec::new();
+    while !staircase.is_finished() {
+        let at = staircase.level();
+        // 75 % correct at the threshold.
+        let is_correct = random.random::<f64>() < normal_cdf(0.6745 * at / THRESHOLD);
+        let is_same = |known: &(f64, u32, u32)| (known.0 / at - 1.0).abs() < 1e-6;
+        let index = answers.iter().position(is_same).unwrap_or_else(|| {
+            answers.push((at, 0, 0));
+            answers.len() - 1
+        });
+        answers[index].1 += u32::from(is_correct);
+        answers[index].2 += 1;
+        staircase.answered(is_correct);
+    }
+    answers.sort_by(|one, other| one.0.total_cmp(&other.0));
+    answers.into_iter().map(|(at, correct, total)| level(at, correct, total)).collect()
+}
+
+#[test]
+fn a_fit_to_a_staircase_is_the_direct_maximum_or_its_slope_is_not_determined() {
+    const STAIRCASES: u32 = 200;
+    /// Deviance by which a fit may be worse than the refined grid.
+    const TOLERANCE: f64 = 1e-6;
+    /// Deviance by which the refined grid may miss a maximum on a narrow ridge.
+    const GRID: f64 = 0.01;
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(8);
+    let mut undetermined = 0;
+    for number in 0..STAIRCASES {
+        let levels = staircase(&mut random);
+        let direct = least_deviance(&levels, LOG_SLOPES, LAPSE_MAX);
+        match model(0.0).fit_with_lapse(&levels, LAPSE_MAX) {
+            Ok(fit) => {
+                let difference = fit.deviance - direct;
+                let allowed = -GRID..TOLERANCE;
+                assert!(allowed.contains(&difference), "{number}: {difference} {fit:?} {levels:?}");
+            }
+            Err(error) => {
+                assert_eq!(error, StatisticsError::NotDetermined { what: "the slope" });
+                let (level, steep) = (LOG_SLOPES.0, LOG_SLOPES.1);
+                let at = |log_slope| least_deviance(&levels, (log_slope, log_slope), LAPSE_MAX);
+                let excess = at(level).min(at(steep)) - direct;
+                assert!(excess < GRID, "{number}: {excess} {levels:?}");
+                undetermined += 1;
+            }
+        }
+    }
+    println!("{undetermined} of {STAIRCASES} staircases do not determine the slope");
+    assert!((50..100).contains(&undetermined), "{undetermined}");
 }
