@@ -9,8 +9,6 @@ pub struct Cells {
     pub rows: Vec<Vec<f64>>,
     /// The participants of the rows.
     pub participants: Vec<usize>,
-    /// Number of participants that were left out.
-    pub left_out: usize,
     /// The cells of every participant, those left out among them.
     pub partial: Vec<(usize, Vec<Option<f64>>)>,
 }
@@ -22,7 +20,6 @@ impl Cells {
             levels: levels.iter().map(ToString::to_string).collect(),
             rows: Vec::new(),
             participants: Vec::new(),
-            left_out: 0,
             partial: Vec::new(),
         };
         for participant in distinct(observations.iter().map(|(participant, ..)| *participant)) {
@@ -39,7 +36,7 @@ impl Cells {
                     cells.rows.push(row);
                     cells.participants.push(participant);
                 }
-                _ => cells.left_out += 1,
+                _ => {}
             }
         }
         cells

@@ -17,6 +17,8 @@ pub struct Task {
     pub label: String,
     /// That session files of the task differ, and who has which.
     pub differs: Option<String>,
+    /// That simulated participants were left out, or are pooled with real ones.
+    pub mixed: Option<String>,
     pub title: String,
     pub cite: String,
     pub question: Option<String>,
@@ -28,6 +30,8 @@ pub struct Task {
     pub analyses: Vec<String>,
     pub stations: Vec<String>,
     pub factors: Vec<String>,
+    /// Levels of the factors in the plans, each once.
+    pub planned_levels: Vec<(String, String)>,
     pub staircases: Vec<(String, Staircase)>,
     pub materials: BTreeMap<String, Material>,
     pub participants: Vec<Participant>,
@@ -45,6 +49,8 @@ pub struct Participant {
     /// The trials that count.
     pub trials: Vec<Trial>,
     pub telemetry: PathBuf,
+    /// What in its files is not as it was recorded.
+    pub remarks: Vec<String>,
 }
 
 /// A trial that counts.
@@ -68,10 +74,27 @@ pub struct Stimulus<'a> {
     pub is_simulated: bool,
 }
 
+/// What is done with simulated participants where there are real ones of the same task.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Simulated {
+    /// They are left out.
+    Apart,
+    /// They are analysed together with the real ones.
+    Pooled,
+}
+
 /// The tasks of a data set, by name. Where session files of a task differ, each makes a task of its own; comments do not count.
-pub fn tasks(sessions: &[RecordedSession]) -> Vec<Task> {
+pub fn tasks(sessions: &[RecordedSession], simulated: Simulated) -> Vec<Task> {
     let mut tasks: Vec<(Session, Task)> = Vec::new();
+    let is_mixed = |task: &str| {
+        let own = || sessions.iter().filter(|one| one.session.task == task);
+        own().any(|one| one.info.has_simulated_part()) && own().any(|one| !one.info.has_simulated_part())
+    };
     for recorded in sessions {
+        let is_left_out = simulated == Simulated::Apart && recorded.info.has_simulated_part();
+        if is_left_out && is_mixed(&recorded.session.task) {
+            continue;
+        }
         let read = Session { text: String::new(), ..recorded.session.clone() };
         let known = tasks.iter().position(|(session, _)| *session == read);
         let at = known.unwrap_or_else(|| {
@@ -87,8 +110,29 @@ pub fn tasks(sessions: &[RecordedSession]) -> Vec<Task> {
     tasks.sort_by(|one, other| one.name.cmp(&other.name));
     for same in tasks.chunk_by_mut(|one, other| one.name == other.name) {
         tell_apart(same);
+        let name = same[0].name.clone();
+        let mixed = is_mixed(&name).then(|| mixed(sessions, &name, simulated));
+        for task in same {
+            task.mixed.clone_from(&mixed);
+        }
     }
     tasks
+}
+
+/// What was done with the simulated participants of a task that has real ones, too.
+fn mixed(sessions: &[RecordedSession], task: &str, simulated: Simulated) -> String {
+    let own = sessions.iter().filter(|one| one.session.task == task && one.info.has_simulated_part());
+    let codes: Vec<_> = own.map(|one| &*one.info.participant).collect();
+    let (count, codes) = (codes.len(), codes.join(", "));
+    match simulated {
+        Simulated::Apart => format!(
+            "{count} simulated participant(s) were left out ({codes}), because this task has real ones; \
+             --pool-simulated analyses them together."
+        ),
+        Simulated::Pooled => format!(
+            "Real participants and {count} simulated one(s) ({codes}) are analysed together, as was asked for."
+        ),
+    }
 }
 
 /// Labels the tasks of one name, and says why there are several.
@@ -123,6 +167,7 @@ fn task(session: &Session) -> Task {
         name: session.task.clone(),
         label: session.task.clone(),
         differs: None,
+        mixed: None,
         title: session.title.clone(),
         cite: session.cite.clone(),
         question: session.answer.as_ref().map(|answer| answer.ask.clone()),
@@ -132,6 +177,7 @@ fn task(session: &Session) -> Task {
         analyses: session.score.analyses.clone(),
         stations: session.stations.iter().map(|station| station.name.clone()).collect(),
         factors: Vec::new(),
+        planned_levels: Vec::new(),
         staircases: staircases.map(|named| (named.name.clone(), named.initial.clone())).collect(),
         materials: BTreeMap::new(),
         participants: Vec::new(),
@@ -161,11 +207,12 @@ fn participant(recorded: &RecordedSession) -> Participant {
     };
     Participant {
         code: recorded.info.participant.clone(),
-        is_simulated: recorded.info.is_simulated,
+        is_simulated: recorded.info.has_simulated_part(),
         planned: recorded.plan.trials.len(),
         records: recorded.records.clone(),
         trials: recorded.counted().map(trial).collect(),
         telemetry: recorded.telemetry_path(),
+        remarks: recorded.remarks.clone(),
     }
 }
 
@@ -174,6 +221,13 @@ impl Task {
         for factor in &recorded.plan.factors {
             if !self.factors.contains(factor) {
                 self.factors.push(factor.clone());
+            }
+        }
+        for planned in &recorded.plan.trials {
+            for level in recorded.plan.factors.iter().cloned().zip(planned.levels.iter().cloned()) {
+                if !level.1.is_empty() && !self.planned_levels.contains(&level) {
+                    self.planned_levels.push(level);
+                }
             }
         }
         let participant = participant(recorded);
@@ -191,6 +245,15 @@ impl Task {
     pub fn trials(&self) -> impl Iterator<Item = (usize, &Trial)> {
         let numbered = self.participants.iter().enumerate();
         numbered.flat_map(|(number, one)| one.trials.iter().map(move |trial| (number, trial)))
+    }
+
+    /// Participants with their numbers of something, such as `(P01: 2, P03: 1)`, from a participant for each of it.
+    pub fn shares(&self, participants: &[usize]) -> String {
+        let of_each = self.participants.iter().enumerate().filter_map(|(number, one)| {
+            let count = participants.iter().filter(|other| **other == number).count();
+            (count > 0).then(|| format!("{}: {count}", one.code))
+        });
+        format!("({})", of_each.collect::<Vec<_>>().join(", "))
     }
 
     pub fn asks_for(&self, word: &str) -> bool {

@@ -10,16 +10,22 @@ mod report;
 #[cfg(test)]
 mod tests;
 
-use thermal_session::dataset::RecordedSession;
+use thermal_session::dataset::DataSet;
 
+pub use input::Simulated;
 use report::rounded;
 pub use report::{Analysis, Cell, Column, Picture, Section, Table, TaskAnalysis};
 
 /// Analyses the sessions of a data set, each task over all its participants; sessions of a task whose files
 /// differ are analysed apart. Void trials do not count. Whatever the records
-/// are, every number is finite; what cannot be computed is a sentence in [`Section::not_possible`].
-pub fn analyse(sessions: &[RecordedSession]) -> Analysis {
-    Analysis { tasks: input::tasks(sessions).iter().map(analyses::of_task).collect() }
+/// are, every number is finite; what cannot be computed is a sentence in [`Section::not_possible`], what was left out one in
+/// [`Section::warnings`] or [`Analysis::left_out`].
+pub fn analyse(data: &DataSet, simulated: Simulated) -> Analysis {
+    let tasks = input::tasks(&data.sessions, simulated);
+    Analysis {
+        left_out: data.left_out.iter().map(ToString::to_string).collect(),
+        tasks: tasks.iter().map(analyses::of_task).collect(),
+    }
 }
 
 impl Analysis {
@@ -31,7 +37,7 @@ impl Analysis {
 
     /// The analysis as one HTML page that needs no other file.
     pub fn page(&self) -> String {
-        page::page(&self.tasks)
+        page::page(self)
     }
 
     /// The tables: names of files, of task and table, and their contents as CSV. Numbers have seven significant

@@ -2,7 +2,7 @@
 
 use thermal_charts::{document, escape, svg_element};
 
-use crate::report::{Cell, Column, Section, Shown, Table, TaskAnalysis};
+use crate::report::{Analysis, Cell, Column, Section, Shown, Table, TaskAnalysis};
 
 const STYLE: &str = "body{max-width:76rem}table{font-size:.85rem;margin:.6rem 0 1.2rem}caption{text-align:left;\
 font-weight:600;padding:.3rem 0}td.n,th.n{text-align:right}td.n{font-variant-numeric:tabular-nums;white-space:nowrap}\
@@ -14,7 +14,8 @@ div.wide,details{overflow-x:auto}details{margin-bottom:1.2rem}td.w{white-space:n
 const WRAPPED: usize = 48;
 
 /// The page of all tasks.
-pub fn page(tasks: &[TaskAnalysis]) -> String {
+pub fn page(analysis: &Analysis) -> String {
+    let tasks = &*analysis.tasks;
     let title = match tasks {
         [one] => one.title.clone(),
         _ => "Analysis of experiments".into(),
@@ -23,7 +24,18 @@ pub fn page(tasks: &[TaskAnalysis]) -> String {
         [] => "<p>The data set has no sessions.</p>".into(),
         _ => tasks.iter().map(|task| of_task(task, tasks.len() > 1)).collect(),
     };
-    document(&title, STYLE, &body)
+    let left_out = list("Not read, and not in any table of this page:", &analysis.left_out);
+    document(&title, STYLE, &(left_out + &body))
+}
+
+/// A marked list with a heading; nothing without sentences.
+fn list(heading: &str, sentences: &[String]) -> String {
+    if sentences.is_empty() {
+        return String::new();
+    }
+    let items: String =
+        sentences.iter().map(|sentence| format!("<li>{}</li>", escape(sentence))).collect();
+    format!("<div class=\"not\"><p>{heading}</p><ul>{items}</ul></div>")
 }
 
 fn of_task(task: &TaskAnalysis, is_one_of_many: bool) -> String {
@@ -43,7 +55,7 @@ fn of_task(task: &TaskAnalysis, is_one_of_many: bool) -> String {
     };
     body += "</p>";
     if task.is_simulated {
-        body += "<p class=\"simulated\">Participants that are marked as simulated below, and their device, were simulated: predictions, not measurements.</p>";
+        body += "<p class=\"simulated\">Participants that are marked as simulated below were simulated with their device, or touched a simulated device: predictions, not measurements.</p>";
     }
     body += "<nav><ul>";
     for section in &task.sections {
@@ -75,6 +87,7 @@ fn of_section(task: &TaskAnalysis, section: &Section, heading: &str) -> String {
     for note in &section.notes {
         text += &format!("<p>{}</p>", escape(note));
     }
+    text += &list("Left out, or to be read with care:", &section.warnings);
     for picture in &section.pictures {
         text += &format!(
             "<figure><figcaption>{}</figcaption>{}</figure>",
@@ -83,14 +96,7 @@ fn of_section(task: &TaskAnalysis, section: &Section, heading: &str) -> String {
         );
     }
     text += &section.tables.iter().map(of_table).collect::<String>();
-    if !section.not_possible.is_empty() {
-        text += "<div class=\"not\"><p>Not possible with these data:</p><ul>";
-        for sentence in &section.not_possible {
-            text += &format!("<li>{}</li>", escape(sentence));
-        }
-        text += "</ul></div>";
-    }
-    text
+    text + &list("Not possible with these data:", &section.not_possible)
 }
 
 fn of_table(table: &Table) -> String {

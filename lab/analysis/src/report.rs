@@ -5,6 +5,8 @@ use serde::{Serialize, Serializer};
 /// The analysis of a data set.
 #[derive(Clone, Debug, Serialize)]
 pub struct Analysis {
+    /// Files and folders that were not analysed, and why.
+    pub left_out: Vec<String>,
     /// Each task of the data set, in the order of their names.
     pub tasks: Vec<TaskAnalysis>,
 }
@@ -37,6 +39,8 @@ pub struct Section {
     pub title: String,
     /// How it was computed and how to read it.
     pub notes: Vec<String>,
+    /// What is not in its tables, and which of their numbers are poor approximations.
+    pub warnings: Vec<String>,
     /// What could not be computed, and why.
     pub not_possible: Vec<String>,
     /// Its tables.
@@ -52,6 +56,7 @@ impl Section {
             name: name.into(),
             title: title.into(),
             notes: Vec::new(),
+            warnings: Vec::new(),
             not_possible: Vec::new(),
             tables: Vec::new(),
             pictures: Vec::new(),
@@ -61,6 +66,15 @@ impl Section {
     pub(crate) fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
+    }
+
+    /// Adds warnings that are not there yet.
+    pub(crate) fn warn(&mut self, warnings: impl IntoIterator<Item = String>) {
+        for warning in warnings {
+            if !self.warnings.contains(&warning) {
+                self.warnings.push(warning);
+            }
+        }
     }
 
     /// Notes that `what` has no value because of `why`.
@@ -130,8 +144,11 @@ impl Table {
         self
     }
 
-    pub(crate) fn row(&mut self, cells: Vec<Cell>) {
+    pub(crate) fn row(&mut self, mut cells: Vec<Cell>) {
         debug_assert_eq!(cells.len(), self.columns.len(), "cells of a row of {}", self.name);
+        for (cell, column) in cells.iter_mut().zip(&self.columns) {
+            cell.drop_rounding_error(column.shown);
+        }
         self.rows.push(cells);
     }
 }
@@ -184,6 +201,22 @@ pub enum Cell {
     Count(u64),
     /// A number.
     Number(f64),
+}
+
+/// Size below which a number is the rounding error of differences that are zero, in every unit of the tables. Probabilities may be
+/// smaller.
+const ROUNDING_ERROR: f64 = 1e-12;
+
+impl Cell {
+    /// Makes a rounding error zero.
+    fn drop_rounding_error(&mut self, shown: Shown) {
+        if let Self::Number(number) = self
+            && shown != Shown::Probability
+            && number.abs() < ROUNDING_ERROR
+        {
+            *number = 0.0;
+        }
+    }
 }
 
 /// A number with seven significant digits and without a negative zero, as files have it: a millisecond of a session of two hours, and more than any

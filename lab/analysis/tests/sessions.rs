@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use session_analysis::{TaskAnalysis, analyse};
-use thermal_session::dataset::{Folder, RecordedSession, SessionInfo};
+use session_analysis::{Analysis, Simulated, TaskAnalysis};
+use thermal_session::dataset::{DataSet, DataSetError, Folder, RecordedSession, SessionInfo};
 use thermal_session::record::{StationRecord, TrialRecord};
 use thermal_session::{ANALYSES, AnswerKind, Plan, PlannedTrial, Presented, Session};
 
@@ -89,7 +89,13 @@ fn recorded(session: &Session, person: u32) -> RecordedSession {
         session: session.clone(),
         plan,
         log: Vec::new(),
+        remarks: Vec::new(),
     }
+}
+
+fn analyse(sessions: &[RecordedSession]) -> Analysis {
+    let data = DataSet { sessions: sessions.to_vec(), left_out: Vec::new() };
+    session_analysis::analyse(&data, Simulated::Apart)
 }
 
 fn of_one(sessions: &[RecordedSession]) -> TaskAnalysis {
@@ -170,4 +176,82 @@ fn sessions_of_a_task_whose_files_differ_are_analysed_apart() {
     let names: BTreeSet<_> = analysis.csv().into_iter().map(|(name, _)| name).collect();
     assert_eq!(names.len(), analysis.csv().len());
     assert_eq!(of_one(&[recorded(&one, 1), recorded(&comment, 3)]).task, "p1");
+}
+
+/// Codes of the participants of the only task, and the first warning beside them.
+fn who(sessions: &[RecordedSession], simulated: Simulated) -> (String, Option<String>) {
+    let data = DataSet { sessions: sessions.to_vec(), left_out: Vec::new() };
+    let tasks = session_analysis::analyse(&data, simulated).tasks;
+    assert_eq!(tasks.len(), 1);
+    (tasks[0].participants.join(" "), tasks[0].sections[0].warnings.first().cloned())
+}
+
+#[test]
+fn simulated_participants_are_kept_apart_from_real_ones_unless_asked_for() {
+    let file = files().into_iter().find(|file| file.ends_with("p1-discrimination.toml"));
+    let session = Session::read(&file.expect("P1")).expect("a session");
+    let simulated = [1, 2, 3].map(|person| recorded(&session, person));
+    assert_eq!(who(&simulated, Simulated::Apart), ("P1 P2 P3".into(), None));
+    let mut mixed = simulated.clone();
+    mixed[1].info.is_simulated = false;
+    let (codes, sentence) = who(&mixed, Simulated::Apart);
+    assert_eq!(codes, "P2");
+    assert_eq!(
+        sentence.as_deref(),
+        Some(
+            "2 simulated participant(s) were left out (P1, P3), because this task has real ones; --pool-simulated analyses them together."
+        )
+    );
+    let (codes, sentence) = who(&mixed, Simulated::Pooled);
+    assert_eq!(codes, "P1 P2 P3");
+    assert_eq!(
+        sentence.as_deref(),
+        Some(
+            "Real participants and 2 simulated one(s) (P1, P3) are analysed together, as was asked for."
+        )
+    );
+    let mut real = simulated;
+    real.iter_mut().for_each(|session| session.info.is_simulated = false);
+    assert_eq!(who(&real, Simulated::Apart), ("P1 P2 P3".into(), None));
+}
+
+/// Another task without real participants is not affected.
+#[test]
+fn simulated_participants_of_a_task_without_real_ones_are_analysed() {
+    let mut sessions: Vec<_> = files()[..2]
+        .iter()
+        .map(|file| recorded(&Session::read(file).expect("a session"), 1))
+        .collect();
+    sessions[0].info.is_simulated = false;
+    assert_eq!(analyse(&sessions).tasks.len(), 2);
+}
+
+#[test]
+fn what_was_not_read_is_on_the_page_and_in_the_json() {
+    let missing = DataSetError::OtherPlan("sub-02/task-p1".into());
+    let words = missing.to_string();
+    let data = DataSet { sessions: Vec::new(), left_out: vec![missing] };
+    let analysis = session_analysis::analyse(&data, Simulated::Apart);
+    assert!(analysis.page().contains(&words));
+    assert!(analysis.json().contains(&words));
+    assert_eq!(analysis.left_out, [words]);
+}
+
+#[test]
+fn a_level_of_the_plan_without_a_counted_trial_is_named() {
+    let file = files().into_iter().find(|file| file.ends_with("p8-force-matching.toml"));
+    let session = Session::read(&file.expect("P8")).expect("a session");
+    let mut one = recorded(&session, 1);
+    for record in &mut one.records {
+        if record.target_force_n == Some(0.1) {
+            record.void = Some("no landing within 5 s".into());
+        }
+    }
+    let warnings = of_one(&[one]).sections[0].warnings.clone();
+    assert!(
+        warnings.contains(&"No trial with force_n 0.1 counts, so it is in no table.".into()),
+        "{warnings:?}"
+    );
+    let void = "Left out: trials of P1 of which each attempt was void (";
+    assert!(warnings.iter().any(|warning| warning.starts_with(void)), "{warnings:?}");
 }

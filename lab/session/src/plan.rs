@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use contact_model::material::Material;
+use contact_model::material::SKIN;
 use serde::{Deserialize, Serialize};
 
 use crate::random::Stream;
@@ -12,6 +12,10 @@ use crate::{
 
 /// Most random orders of a block that are tried.
 const ATTEMPTS: u32 = 10_000;
+
+/// Skin, unless the session waits for another one, and room, °C, by which the colder of two stations is found.
+const SKIN_C: f64 = 33.0;
+const ROOM_C: f64 = 24.0;
 
 /// All trials of a session for one participant.
 #[derive(Clone, Debug, PartialEq)]
@@ -456,6 +460,20 @@ impl Planner<'_> {
         }
     }
 
+    /// Temperature at which skin and a presented material meet, °C: that of two half-spaces in contact, by which the material with
+    /// the larger effusivity is the colder one only as long as it is colder than the skin.
+    fn contact_c(&self, presented: &Presented) -> Option<f64> {
+        let device_c = || self.session.device.as_ref().and_then(|device| device.object_c);
+        let (material, object_c) = match presented {
+            Presented::Sample { material } => (material, ROOM_C),
+            Presented::Material { material, .. } => (material, device_c().unwrap_or(ROOM_C)),
+            Presented::Nothing | Presented::Hold { .. } | Presented::Pulses { .. } => return None,
+        };
+        let skin_c = self.session.rest.map_or(SKIN_C, |rest| rest.skin_c);
+        let (object, skin) = (self.session.material(material)?.effusivity(), SKIN.effusivity());
+        Some(skin_c + (object_c - skin_c) * object / (object + skin))
+    }
+
     /// The correct answer; `None` if there is none, as with equal materials.
     fn correct(&self, presented: &[Presented], draft: &Draft) -> Option<String> {
         let materials = || {
@@ -476,14 +494,15 @@ impl Planner<'_> {
                 Some(if same { "same" } else { "different" }.into())
             }
             CorrectAnswer::ColderStation => {
-                let effusivity =
-                    |name: &String| self.session.material(name).as_ref().map(Material::effusivity);
-                let mut by_effusivity: Vec<_> = materials()
-                    .filter_map(|(station, material)| Some((effusivity(material)?, station)))
+                let stations = self.session.stations.iter().zip(presented);
+                let mut by_temperature: Vec<_> = stations
+                    .filter_map(|(station, presented)| {
+                        Some((self.contact_c(presented)?, &station.name))
+                    })
                     .collect();
-                by_effusivity.sort_by(|(one, _), (other, _)| other.total_cmp(one));
-                match by_effusivity[..] {
-                    [(first, _), (second, _), ..] if first <= second => None,
+                by_temperature.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+                match by_temperature[..] {
+                    [(first, _), (second, _), ..] if first >= second => None,
                     [(_, station), ..] => Some(station.clone()),
                     [] => None,
                 }

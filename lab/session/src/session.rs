@@ -290,7 +290,8 @@ pub struct VoidRules {
 pub enum CorrectAnswer {
     /// None.
     None,
-    /// The station whose material has the largest effusivity; none if they are equal.
+    /// The station where skin and material meet at the lowest temperature: that with the largest effusivity if the objects are
+    /// colder than the skin, and with the smallest if they are warmer; none if they are equal.
     ColderStation,
     /// The level of this factor.
     Factor(String),

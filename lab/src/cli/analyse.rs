@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::PathBuf;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use clap::Args;
-use session_analysis::analyse;
+use session_analysis::{Simulated, analyse};
 use thermal_session::dataset::recorded_sessions;
 
 use super::{Failure, print_text};
@@ -14,6 +14,9 @@ use super::{Failure, print_text};
 pub struct Arguments {
     /// Folder of the data set, as `run` has written it
     folder: PathBuf,
+    /// Analyse simulated participants together with real ones
+    #[arg(long)]
+    pool_simulated: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -23,8 +26,15 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let sessions = recorded_sessions(&arguments.folder).map_err(Failure::input)?;
-    let analysis = analyse(&sessions);
+    let data = recorded_sessions(&arguments.folder).map_err(Failure::input)?;
+    let simulated = if arguments.pool_simulated { Simulated::Pooled } else { Simulated::Apart };
+    let analysis = analyse(&data, simulated);
+    if data.sessions.is_empty() && !analysis.left_out.is_empty() {
+        return Err(Failure::input(anyhow!("{}", analysis.left_out.join("\n"))));
+    }
+    for left_out in &analysis.left_out {
+        eprintln!("thermal-lab: left out: {left_out}");
+    }
     let json = analysis.json() + "\n";
     let mut files = vec![
         ("analysis.html".to_owned(), analysis.page()),

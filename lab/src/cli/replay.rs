@@ -61,7 +61,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The session that is meant.
 fn chosen(arguments: &Arguments) -> Result<RecordedSession, Failure> {
-    let mut all = recorded_sessions(&arguments.folder).map_err(Failure::input)?;
+    let data = recorded_sessions(&arguments.folder).map_err(Failure::input)?;
+    for left_out in &data.left_out {
+        eprintln!("thermal-lab: left out: {left_out}");
+    }
+    let mut all = data.sessions;
     let is_meant =
         |wanted: &Option<String>, name: &str| wanted.as_deref().is_none_or(|word| word == name);
     all.retain(|session| {

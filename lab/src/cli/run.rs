@@ -74,13 +74,6 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     if arguments.plan {
         return print_text(&plan.csv());
     }
-    let out = &arguments.out;
-    let recorder = if arguments.resume {
-        Recorder::resume(out, &session, &plan, who, target.simulated)
-    } else {
-        Recorder::create(out, &session, &plan, who, target.simulated)
-    };
-    let mut recorder = recorder.map_err(refused)?;
     let stop = StopFlag::default();
     stop_on_signals(&stop)?;
     let all = Run { arguments, session: &session, plan: &plan };
@@ -90,16 +83,16 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
         let input = lines(BufReader::new(stdin()));
         let stations = session.stations.len();
         if target.simulated {
-            all.run(target, &mut recorder, &stop, &mut Progress::new(&mut screen, &stop))
+            all.run(target, &stop, &mut Progress::new(&mut screen, &stop))
         } else {
             let mut people =
                 TerminalPeople::of_session(input, &mut screen, stop.clone(), tones, stations);
-            all.run(target, &mut recorder, &stop, &mut people)
+            all.run(target, &stop, &mut people)
         }
     } else {
         let session_view = SessionView::from(&session);
         window::show(&session.title, Some(session_view), &stop, |people| {
-            all.run(target, &mut recorder, &stop, people)
+            all.run(target, &stop, people)
         })
     }
 }
@@ -108,6 +101,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
 fn refused(error: RecordingError) -> Failure {
     match error {
         RecordingError::Exists(_)
+        | RecordingError::AlikeCode { .. }
         | RecordingError::Missing(_)
         | RecordingError::OtherSession { .. } => Failure::input(error),
         RecordingError::File { .. }
@@ -129,7 +123,6 @@ impl Run<'_> {
     fn run(
         &self,
         target: &Target,
-        recorder: &mut Recorder,
         stop: &StopFlag,
         people: &mut dyn People,
     ) -> Result<(), Failure> {
@@ -145,25 +138,34 @@ impl Run<'_> {
                 Box::new(bench.link())
             };
             let client = Client::new(Interruptible::new(link, stop.interrupts_link()));
-            return self.execute(client, &mut watched, recorder);
+            return self.execute(client, &mut watched, true);
         }
         if !self.session.needs_device() {
             let link = LazyLink::new(|| Err("this session needs no device".into()));
             let client = Client::new(Interruptible::new(link, stop.interrupts_link()));
-            return self.execute(client, people, recorder);
+            return self.execute(client, people, false);
         }
         let link = target.open().map_err(Failure::input)?;
         let link = Interruptible::new(link, stop.interrupts_link());
         let client = Client::attach(link).map_err(Failure::run)?;
-        self.execute(client, people, recorder)
+        self.execute(client, people, false)
     }
 
+    /// Runs the session at a device that is there. Nothing is written before.
     fn execute<L: Link>(
         &self,
         client: Client<L>,
         people: &mut dyn People,
-        recorder: &mut Recorder,
+        is_simulated: bool,
     ) -> Result<(), Failure> {
+        let Self { arguments, session, plan } = *self;
+        let who = (arguments.participant.as_str(), arguments.seed);
+        let recorder = if arguments.resume {
+            Recorder::resume(&arguments.out, session, plan, who, is_simulated)
+        } else {
+            Recorder::create(&arguments.out, session, plan, who, is_simulated)
+        };
+        let recorder = &mut recorder.map_err(refused)?;
         let records = recorder.records().to_vec();
         let schedule =
             Schedule::after(self.session, self.plan, &records).map_err(Failure::input)?;

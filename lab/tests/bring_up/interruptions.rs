@@ -102,8 +102,8 @@ fn results_of_another_microcontroller_are_not_continued() {
     for from in ["chip", "line", "load", "run"] {
         let refusal = gone_on_with(5, ended.clone(), from).expect_err(from);
         for part in [
-            "microcontroller 53494d550046001400460018,",
-            "microcontroller 53494d550000000000000005,",
+            "microcontroller 53494D550046001400460018,",
+            "microcontroller 53494D550000000000000005,",
             "without --from",
         ] {
             assert!(refusal.contains(part), "{part}: {refusal}");
@@ -112,7 +112,7 @@ fn results_of_another_microcontroller_are_not_continued() {
     // A board from its beginning has no earlier results.
     let report = gone_on_with(5, ended, "bare-board").expect("a new bring-up");
     assert!(report.passed(), "{:#?}", report.findings());
-    assert_eq!(report.chip.as_deref(), Some("53494d550000000000000005"));
+    assert_eq!(report.chip.as_deref(), Some("53494D550000000000000005"));
 }
 
 /// Results of firmware that does not report the identifier may be those of any board.

@@ -78,7 +78,7 @@ fn from_is_refused_with_another_microcontroller_or_image_and_then_leaves_the_rec
         (&["--from", "reset"], "that of --image now is not known"),
         (
             &["--from", "reset", "--image", image, "--draw", "5"],
-            "those of microcontroller 53494d550046001400460018, ",
+            "those of microcontroller 53494D550046001400460018, ",
         ),
     ] {
         let refused = bring_up(arguments);
@@ -91,7 +91,7 @@ fn from_is_refused_with_another_microcontroller_or_image_and_then_leaves_the_rec
     assert_eq!(same.status.code(), Some(1));
     assert!(text(&same.stdout).contains("pull-down R3"), "{same:?}");
     let page = fs::read_to_string(folder.join("bring-up.html")).expect("a page");
-    assert!(page.contains("<code>53494d550046001400460018</code>"));
+    assert!(page.contains("<code>53494D550046001400460018</code>"));
 }
 
 /// The first stage needs no device: its port comes with its power.

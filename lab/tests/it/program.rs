@@ -18,6 +18,13 @@ fn json(bytes: &[u8]) -> Value {
 }
 
 #[test]
+fn version_is_that_of_the_package() {
+    let version = run("--version");
+    assert!(version.status.success());
+    assert_eq!(text(&version.stdout), format!("thermal-lab {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
 fn ports_are_listed_as_json() {
     assert!(json(&run("ports --json").stdout).is_array());
     assert!(run("ports").status.success());

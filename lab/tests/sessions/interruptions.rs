@@ -10,7 +10,7 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use thermal_session::dataset::{Folder, recorded_sessions};
 
-use crate::folder::{assert_equal, with_session, with_skin_sensors};
+use crate::folder::{assert_equal, contents, with_session, with_skin_sensors};
 use crate::program::{line, run, thermal_lab};
 
 /// Number of moments at which the program is killed: as this variable says, or few enough for a suite of tests.
@@ -46,8 +46,8 @@ fn kill_and_resume(folder: &Path, session: &Path, task: &str) {
         child.kill().unwrap();
         child.wait().unwrap();
         if log(&killed, task).exists() {
-            trials_kept +=
-                recorded_sessions(&killed).map_or(0, |sessions| sessions[0].records.len());
+            let left = recorded_sessions(&killed).unwrap().sessions;
+            trials_kept += left.first().map_or(0, |session| session.records.len());
             let resumed = run(&(line(session, &killed) + " --resume"));
             assert!(resumed.status.success(), "{}", String::from_utf8_lossy(&resumed.stderr));
         } else {
@@ -82,7 +82,7 @@ fn a_full_disk_ends_the_session_with_a_message_and_loses_no_recorded_trial() {
             && stderr.contains("--resume goes on when there is room"),
         "{stderr}"
     );
-    let sessions = recorded_sessions(&full).unwrap();
+    let sessions = recorded_sessions(&full).unwrap().sessions;
     let trials = sessions[0].records.len();
     assert!((1..8).contains(&trials), "{trials} trials before the disk was full");
     assert!(run(&(line(&session, &full) + " --resume")).status.success());
@@ -107,4 +107,51 @@ fn two_programs_do_not_record_into_the_same_session() {
     let stderr = String::from_utf8_lossy(&second.stderr);
     assert_eq!(second.status.code(), Some(1), "{stderr}");
     assert!(stderr.contains("another program records this session"), "{stderr}");
+}
+
+/// A text tool that writes CR LF makes the telemetry longer than the log says. Nothing is cut then, and nothing is written.
+#[test]
+fn a_session_whose_files_were_changed_is_refused_before_anything_is_written() {
+    let (folder, session) = with_session("line-ends");
+    let data = folder.join("data");
+    assert!(run(&line(&session, &data)).status.success());
+    let telemetry = Folder::new(&data, "01", "p5").source("telemetry.csv");
+    let text = fs::read_to_string(&telemetry).unwrap();
+    fs::write(&telemetry, text.replace('\n', "\r\n")).unwrap();
+    let before = contents(&data);
+    let refused = run(&(line(&session, &data) + " --resume"));
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(1), "{said}");
+    assert!(said.contains("telemetry.csv:1: this line ends with CR LF"), "{said}");
+    assert!(contents(&data) == before);
+    // A code that differs in capital letters only would be the same folder on some computers.
+    fs::rename(data.join("sourcedata/sub-01"), data.join("sourcedata/sub-p01")).unwrap();
+    let alike = line(&session, &data).replace("--participant 01", "--participant P01");
+    let refused = run(&alike);
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{said}");
+    assert!(said.contains("participant P01: there are data of p01"), "{said}");
+}
+
+/// Each adds its participant to the list that all share.
+#[test]
+fn several_programs_record_into_one_data_set_at_once() {
+    const PROGRAMS: usize = 4;
+    let (folder, session) = with_session("at-once");
+    let data = folder.join("data");
+    let programs: Vec<_> = (1..=PROGRAMS)
+        .map(|number| {
+            let words = line(&session, &data)
+                .replace("--participant 01", &format!("--participant 0{number}"));
+            thermal_lab(&words).stderr(Stdio::null()).spawn().unwrap()
+        })
+        .collect();
+    for mut program in programs {
+        assert!(program.wait().unwrap().success());
+    }
+    let list = fs::read_to_string(data.join("participants.tsv")).unwrap();
+    let mut codes: Vec<_> = list.lines().skip(1).collect();
+    codes.sort_unstable();
+    assert_eq!(codes, ["sub-01", "sub-02", "sub-03", "sub-04"]);
+    assert_eq!(recorded_sessions(&data).unwrap().sessions.len(), PROGRAMS);
 }

@@ -105,7 +105,7 @@ fn garbage_between_the_lines_changes_no_answer() {
     run(&session, &garbage, false, Defect::Garbage(7)).unwrap();
     // A line of garbage ends a wait, so times differ by a look at the keys; what was presented and answered does not.
     let trials = |folder: &Path| -> Vec<_> {
-        let sessions = recorded_sessions(folder).unwrap();
+        let sessions = recorded_sessions(folder).unwrap().sessions;
         let records = sessions[0].records.iter();
         records
             .map(|record| {

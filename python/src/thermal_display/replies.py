@@ -338,7 +338,7 @@ class DisplaySurface:
         )
 
 
-SIMULATED_UID = "53494d55"
+SIMULATED_UID = "53494D55"
 """First word of the unique identifier of a simulated microcontroller: a real one has its place on the wafer there."""
 
 

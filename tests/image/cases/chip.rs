@@ -47,7 +47,7 @@ fn a_prepared_board_reports_that_it_is() {
     assert_eq!(
         device.answer("board"),
         "ok bor=3 watchdogs=running clock=hse pwm_lock=3 reset=power-on rx_overruns=0 rx_framing=0 rx_noise=0 \
-         tx_dropped=0 uid=53494d550046001400460018"
+         tx_dropped=0 uid=53494D550046001400460018"
     );
 }
 

@@ -3,7 +3,9 @@
 use experiment_statistics::chi_square::contingency;
 use thermal_thesis::published::{ANSWERS_OF_TABLE_3_3, discrimination};
 
-use super::pairs::answers;
+use super::chi_square;
+use super::pairs::{BETWEEN, answers};
+use crate::cells::distinct;
 use crate::input::Task;
 use crate::report::{Section, Table, cells, numbers, probabilities, words};
 
@@ -29,15 +31,17 @@ pub fn chi_squared_against(task: &Task) -> Section {
             numbers("chi-squared", "", 3),
             probabilities("p"),
             probabilities("p (Bonferroni)"),
+            numbers("smallest expected count", "", 1),
         ],
     );
     let mut counts: [Vec<u32>; 2] = Default::default();
-    let mut rows = Vec::new();
+    let (mut rows, mut unanswered) = (Vec::new(), Vec::new());
     for published in discrimination() {
         let of =
             answers.iter().filter(|answer| answer.pair == [&*published.first, &*published.second]);
         let of: Vec<bool> = of.map(|answer| answer.is_correct).collect();
         if of.is_empty() {
+            unanswered.push([&*published.first, &*published.second].join(BETWEEN));
             continue;
         }
         let (total, correct) =
@@ -47,12 +51,24 @@ pub fn chi_squared_against(task: &Task) -> Section {
         counts[1].push(of_40);
         rows.push((published, total, correct, of_40));
     }
+    let is_published = |pair: &[&str; 2]| {
+        discrimination().iter().any(|published| *pair == [&*published.first, &*published.second])
+    };
+    let own = distinct(answers.iter().map(|answer| answer.pair));
+    let own = own.into_iter().filter(|pair| !is_published(pair)).map(|pair| pair.join(BETWEEN));
+    for (pairs, why) in
+        [(unanswered, "has no answers here"), (own.collect(), "is not in Table 3-3")]
+    {
+        section.warn(pairs.into_iter().map(|pair| format!("Left out: {pair} {why}.")));
+    }
     let pairs = rows.len() as f64;
     for (published, total, correct, of_40) in rows {
         let of_pair = [[correct, total - correct], [of_40, ANSWERS_OF_TABLE_3_3 - of_40]];
         let test = contingency(&of_pair).ok();
+        let pair = [&*published.first, &*published.second].join(BETWEEN);
+        section.warn(test.and_then(|test| chi_square::warning(&pair, &test)));
         table.row(cells![
-            format!("{} / {}", published.first, published.second),
+            pair,
             total,
             correct,
             100.0 * f64::from(correct) / f64::from(total),
@@ -60,7 +76,8 @@ pub fn chi_squared_against(task: &Task) -> Section {
             published.percent,
             test.map(|test| test.statistic),
             test.map(|test| test.p),
-            test.map(|test| (test.p * pairs).min(1.0))
+            test.map(|test| (test.p * pairs).min(1.0)),
+            test.map(|test| test.smallest_expected)
         ]);
     }
     let mut all = Table::new(
@@ -75,13 +92,16 @@ pub fn chi_squared_against(task: &Task) -> Section {
         ],
     );
     match contingency(&counts) {
-        Ok(test) => all.row(cells![
-            counts[0].len(),
-            test.statistic,
-            test.df,
-            test.p,
-            test.smallest_expected
-        ]),
+        Ok(test) => {
+            section.warn(chi_square::warning("Distribution over the pairs", &test));
+            all.row(cells![
+                counts[0].len(),
+                test.statistic,
+                test.df,
+                test.p,
+                test.smallest_expected
+            ]);
+        }
         Err(error) => section.lacks("Distribution over the pairs", error),
     }
     section.add(all);

@@ -4,7 +4,7 @@ use experiment_statistics::ancova::{Group, ancova as analyse};
 use thermal_thesis::published::youngs_modulus_gpa;
 
 use super::design::Design;
-use super::{confusion, pairs};
+use super::{confusion, left_out, pairs};
 use crate::input::Task;
 use crate::report::{Section, Table, cells, numbers, probabilities, words};
 
@@ -59,6 +59,14 @@ pub fn ancova(task: &Task) -> Section {
         designs.extend(confusion::designs_of_materials(task));
     }
     for design in &designs {
+        left_out::levels(&mut section, design);
+        for (number, participant) in task.participants.iter().enumerate() {
+            if !design.cells.participants.contains(&number) {
+                let (what, code) = (&design.dependent, &participant.code);
+                let why = left_out::missing_cells(design, number);
+                section.warn([format!("{what}: {code} has {why}.")]);
+            }
+        }
         for (name, property) in PROPERTIES {
             covariate(task, design, (name, property), &mut table, &mut section);
         }

@@ -5,13 +5,14 @@ use experiment_statistics::anova::{
 };
 
 use super::design::{self, Contrast, Design, Marginal};
-use crate::cells::{Cells, distinct};
+use super::left_out;
+use crate::cells::distinct;
 use crate::input::Task;
 use crate::report::{Section, Table, cells, numbers, probabilities, words};
 
 const READING: &str = "Each effect is tested against its own interaction with the participants. p is uncorrected, as the thesis \
      prints it; beside it stands p with both degrees of freedom times epsilon (Greenhouse and Geisser), which does not presuppose \
-     sphericity and is the one to rely on. Participants without an answer in some cell are left out; n counts those that are not.";
+     sphericity and is the one to rely on. Participants without data in some cell are left out; n counts those that are not.";
 
 /// Analyses of variance with all factors within participants.
 pub fn within(task: &Task) -> Section {
@@ -26,8 +27,8 @@ pub fn within(task: &Task) -> Section {
         );
     }
     for design in &designs {
-        effects(design, &mut table, &mut section);
-        contrasts_of(design, &mut contrasts, &mut section);
+        effects(task, design, &mut table, &mut section);
+        contrasts_of(task, design, &mut contrasts, &mut section);
     }
     section.add(table);
     section.add(contrasts);
@@ -51,8 +52,8 @@ pub fn split_plot(task: &Task) -> Section {
     }
     for design in &designs {
         match groups(task, design) {
-            Some(groups) => between(design, &groups, &mut table, &mut section),
-            None => effects(design, &mut table, &mut section),
+            Some(groups) => between(task, design, &groups, &mut table, &mut section),
+            None => effects(task, design, &mut table, &mut section),
         }
     }
     section.add(table);
@@ -101,10 +102,11 @@ fn add_effect(
     ]);
 }
 
-fn effects(design: &Design, table: &mut Table, section: &mut Section) {
-    let Cells { rows, left_out, .. } = &design.cells;
-    let n = (rows.len(), *left_out);
-    if let Some(why) = impossible(design) {
+fn effects(task: &Task, design: &Design, table: &mut Table, section: &mut Section) {
+    left_out::of_design(section, task, design);
+    let rows = &design.cells.rows;
+    let n = (rows.len(), task.participants.len() - rows.len());
+    if let Some(why) = impossible(task, design) {
         return section.lacks(&design.dependent, why);
     }
     let failed = match &design.factors[..] {
@@ -132,7 +134,7 @@ fn effects(design: &Design, table: &mut Table, section: &mut Section) {
 }
 
 /// Why a design has no analysis of variance, in the words of an experiment.
-pub fn impossible(design: &Design) -> Option<String> {
+pub fn impossible(task: &Task, design: &Design) -> Option<String> {
     if let Some((factor, levels)) = design.factors.iter().find(|(_, levels)| levels.len() < 2) {
         return Some(format!(
             "{factor} has {} level(s) with data; two or more are needed",
@@ -144,13 +146,13 @@ pub fn impossible(design: &Design) -> Option<String> {
             "{} participant(s) with data in each of the {} cells, {} without; two or more are needed",
             design.cells.rows.len(),
             design.cells.levels.len(),
-            design.cells.left_out
+            task.participants.len() - design.cells.rows.len()
         )
     })
 }
 
 /// The participants of each part, if each did one part only.
-fn groups(task: &Task, design: &Design) -> Option<Vec<Vec<Vec<f64>>>> {
+fn groups(task: &Task, design: &Design) -> Option<Vec<Group>> {
     let [(_, parts), (_, levels)] = &design.factors[..] else {
         return None;
     };
@@ -162,25 +164,47 @@ fn groups(task: &Task, design: &Design) -> Option<Vec<Vec<Vec<f64>>>> {
     if parts.len() < 2 || participants.iter().any(|(_, parts)| parts.len() > 1) {
         return None;
     }
-    let group = |part: &String| -> Vec<Vec<f64>> {
-        let members = participants.iter().filter(|(_, done)| done.first() == Some(part));
+    let group = |(part, name): (usize, &String)| -> Group {
+        let members = participants.iter().filter(|(_, done)| done.first() == Some(name));
         let rows = members.filter_map(|(participant, _)| {
             let cells = design.cells.partial.iter().find(|(one, _)| one == participant)?;
-            let first = parts.iter().position(|one| one == part)? * levels.len();
-            cells.1.get(first..first + levels.len())?.iter().copied().collect::<Option<Vec<f64>>>()
+            let own = cells.1.get(part * levels.len()..(part + 1) * levels.len())?;
+            Some((*participant, own.iter().copied().collect::<Option<Vec<f64>>>()?))
         });
         rows.collect()
     };
-    Some(parts.iter().map(group).collect())
+    Some(parts.iter().enumerate().map(group).collect())
 }
 
-fn between(design: &Design, groups: &[Vec<Vec<f64>>], table: &mut Table, section: &mut Section) {
-    let n = groups.iter().map(Vec::len).sum();
-    let left_out = design.cells.partial.len().saturating_sub(n);
+/// The participants of a part who have all its cells, and their cells.
+type Group = Vec<(usize, Vec<f64>)>;
+
+fn between(
+    task: &Task,
+    design: &Design,
+    groups: &[Group],
+    table: &mut Table,
+    section: &mut Section,
+) {
+    left_out::levels(section, design);
+    let members: Vec<usize> =
+        groups.iter().flatten().map(|(participant, _)| *participant).collect();
+    let others = (0..task.participants.len()).filter(|one| !members.contains(one));
+    let others: Vec<_> = others.map(|one| &*task.participants[one].code).collect();
+    if !others.is_empty() {
+        section.warn([format!(
+            "{}: {} left out: no data in some cells of their part.",
+            design.dependent,
+            others.join(", ")
+        )]);
+    }
+    let (n, left_out) = (members.len(), others.len());
+    let groups: Vec<Vec<Vec<f64>>> =
+        groups.iter().map(|group| group.iter().map(|(_, cells)| cells.clone()).collect()).collect();
     let [(a, _), (b, _)] = &design.factors[..] else {
         return;
     };
-    match split_plot_of(groups) {
+    match split_plot_of(&groups) {
         Ok(anova) => {
             let n = (n, left_out);
             add_effect(table, design, &format!("{a} (between participants)"), n, &anova.between);
@@ -208,8 +232,8 @@ fn contrast_table() -> Table {
     )
 }
 
-fn contrasts_of(design: &Design, table: &mut Table, section: &mut Section) {
-    if design.contrast == Contrast::None || impossible(design).is_some() {
+fn contrasts_of(task: &Task, design: &Design, table: &mut Table, section: &mut Section) {
+    if design.contrast == Contrast::None || impossible(task, design).is_some() {
         return;
     }
     let Some(Marginal { levels, rows, .. }) = design.marginal(0) else {

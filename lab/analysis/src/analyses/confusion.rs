@@ -3,9 +3,9 @@
 use experiment_statistics::confusion::ConfusionMatrix;
 use experiment_statistics::correlation::pearson;
 
-use super::NO_ANSWERS;
 use super::design::{Contrast, Design};
 use super::share::{READING, Share, columns, picture};
+use super::{NO_ANSWERS, left_out};
 use crate::cells::{distinct, mean};
 use crate::input::{Task, Trial};
 use crate::picture::matrix;
@@ -19,19 +19,30 @@ struct Answer<'a> {
     answered: &'a str,
 }
 
+fn answer<'a>(task: &Task, participant: usize, trial: &'a Trial) -> Option<Answer<'a>> {
+    let word = |text: &'a Option<String>| {
+        let text = text.as_deref()?;
+        task.answers.iter().any(|known| known == text).then_some(text)
+    };
+    Some(Answer {
+        participant,
+        trial,
+        presented: word(&trial.record.expected)?,
+        answered: word(&trial.record.answer)?,
+    })
+}
+
+/// Says how many trials have no answer or no correct answer among the words.
+fn say_others(section: &mut Section, task: &Task) {
+    let others = task.trials().filter(|(one, trial)| answer(task, *one, trial).is_none());
+    let others: Vec<_> = others.map(|(participant, _)| participant).collect();
+    let what = "trials without an answer, or a correct answer, that is one of the words";
+    left_out::count(section, task, &others, what);
+}
+
 fn answers<'a>(task: &'a Task, part: Option<&str>) -> Vec<Answer<'a>> {
-    let all = task.trials().filter_map(|(participant, trial)| {
-        let word = |text: &'a Option<String>| {
-            let text = text.as_deref()?;
-            task.answers.iter().any(|known| known == text).then_some(text)
-        };
-        Some(Answer {
-            participant,
-            trial,
-            presented: word(&trial.record.expected)?,
-            answered: word(&trial.record.answer)?,
-        })
-    });
+    let all = task.trials();
+    let all = all.filter_map(|(participant, trial)| answer(task, participant, trial));
     all.filter(|answer| part.is_none_or(|part| answer.trial.record.part == part)).collect()
 }
 
@@ -50,6 +61,7 @@ fn matrix_of(
 /// Matrices and shares correct, part by part.
 pub fn confusion(task: &Task) -> Section {
     let mut section = Section::new("confusion", "Confusions").note(READING);
+    say_others(&mut section, task);
     let mut shares = Table::new(
         "identification",
         "Correct answers by what was presented; n counts answers",
@@ -123,6 +135,7 @@ pub fn information(task: &Task) -> Section {
         "I = Σ p_ij log2(p_ij / (p_i p_j)) of the pooled answers. Few answers make it too large; the corrected value subtracts \
          the bias of its three entropies (Miller and Madow). It counts consistent confusions as information, too.",
     );
+    say_others(&mut section, task);
     let mut table = Table::new(
         "information",
         "Information transmitted; n counts answers",
@@ -208,6 +221,7 @@ fn design_of_materials(task: &Task, part: &str, answers: &[Answer<'_>]) -> Desig
         &words_presented(task, answers),
         &correct.collect::<Vec<_>>(),
     )
+    .without("presented", expected_words(task, Some(part)))
 }
 
 /// Shares correct of each part, by what was presented.
@@ -226,6 +240,13 @@ fn words_presented(task: &Task, answers: &[Answer<'_>]) -> Vec<String> {
     task.answers.iter().filter(is_there).cloned().collect()
 }
 
+/// Words that were correct in trials of a part, whether they were answered or not.
+fn expected_words<'a>(task: &'a Task, part: Option<&str>) -> Vec<&'a str> {
+    let of_part =
+        task.trials().filter(|(_, trial)| part.is_none_or(|part| trial.record.part == part));
+    distinct(of_part.filter_map(|(_, trial)| trial.record.expected.as_deref()))
+}
+
 pub fn design_of_parts(task: &Task) -> Design {
     let answers = answers(task, None);
     let parts: Vec<String> = task.parts().into_iter().map(str::to_owned).collect();
@@ -238,6 +259,7 @@ pub fn design_of_parts(task: &Task) -> Design {
         .collect();
     let presented = words_presented(task, &answers);
     Design::two("correct / %", ("part", &parts), ("presented", &presented), &observations)
+        .without("presented", expected_words(task, None))
 }
 
 /// Parts of the answers of each cell in a part of the session: presented, answered, share of the row.

@@ -5,6 +5,7 @@ use std::path::Path;
 use experiment_statistics::exponential::fit_exponential;
 
 use super::falls::{group, parts_with_both_modes};
+use super::left_out;
 use crate::cells::distinct;
 use crate::input::{Task, Trial, finite};
 use crate::picture::{Curve, Stroke, color, lines, positive_range};
@@ -35,28 +36,40 @@ pub struct Course {
 /// Mean courses of a column of the telemetry over the contacts of stations that `name` names, each with the finger of the device
 /// that has measured it, in the order of `names`.
 pub fn mean_courses(
+    section: &mut Section,
     task: &Task,
     column: &str,
     names: &[String],
     name: impl Fn(&Trial, usize) -> Option<(String, u8)>,
-) -> (Vec<Course>, Vec<String>) {
+) -> Vec<Course> {
     let mut sums = vec![Sums::default(); names.len()];
-    let mut unread = Vec::new();
-    for participant in &task.participants {
+    let mut without = Vec::new();
+    for (number, participant) in task.participants.iter().enumerate() {
         let contacts = contacts(&participant.trials, names, &name);
         if contacts.is_empty() {
             continue;
         }
-        if let Err(error) = add_telemetry(&participant.telemetry, column, &contacts, &mut sums) {
-            unread.push(format!("telemetry of {} ({error})", participant.code));
+        match add_telemetry(&participant.telemetry, column, &contacts, &mut sums) {
+            Ok(left_out) => {
+                without.extend((0..left_out.contacts).map(|_| number));
+                section.warn((left_out.lines > 0).then(|| {
+                    let (count, code) = (left_out.lines, &participant.code);
+                    format!("Left out: damaged lines of the telemetry of {code}: {count}.")
+                }));
+            }
+            Err(error) => {
+                section.lacks("Courses", format!("telemetry of {} ({error})", participant.code));
+            }
         }
     }
+    let what = format!("contacts without telemetry of {column} in the mean courses");
+    left_out::count(section, task, &without, &what);
     let courses = names.iter().zip(sums).map(|(name, sums)| Course {
         name: name.clone(),
         contacts: sums.contacts,
         points: sums.points(),
     });
-    (courses.filter(|course| course.points.len() > 1).collect(), unread)
+    courses.filter(|course| course.points.len() > 1).collect()
 }
 
 /// The contacts by the time of their landing.
@@ -126,29 +139,38 @@ impl Sums {
     }
 }
 
+/// What of one participant's telemetry is in no course.
+struct LeftOut {
+    /// Lines that cannot be read.
+    lines: usize,
+    /// Contacts without a value.
+    contacts: usize,
+}
+
 /// Adds the telemetry of one participant; lines that cannot be read are left out, as after an interruption.
 fn add_telemetry(
     path: &Path,
     column: &str,
     contacts: &[Contact],
     sums: &mut [Sums],
-) -> Result<(), csv::Error> {
+) -> anyhow::Result<LeftOut> {
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path)?;
     let headers = reader.headers()?.clone();
     let place = |name: &str| headers.iter().position(|header| header == name);
     let (Some(time), Some(finger), Some(value)) = (place("t_s"), place("finger"), place(column))
     else {
-        return Ok(());
+        anyhow::bail!("it has no columns t_s, finger and {column}");
     };
+    let mut lines = 0;
     let mut samples: Vec<Vec<(f64, f64)>> = contacts.iter().map(|_| Vec::new()).collect();
     for row in reader.records() {
-        let Ok(row) = row else { continue };
-        let number = |place: usize| {
-            row.get(place).and_then(|cell| cell.parse::<f64>().ok()).and_then(finite)
-        };
-        let (Some(t_s), Some(value)) = (number(time), number(value)) else {
+        let row = row.ok().filter(|row| row.len() == headers.len());
+        let Some((row, t_s)) = row.and_then(|row| number(&row, time).map(|t_s| (row, t_s))) else {
+            lines += 1;
             continue;
         };
+        // A sensor may report nothing.
+        let Some(value) = number(&row, value) else { continue };
         let of_finger = row.get(finger).and_then(|cell| cell.parse::<u8>().ok());
         // The last contacts that have begun; stations of a trial land at about the same time.
         let begun = contacts.partition_point(|contact| contact.land_s <= t_s);
@@ -162,7 +184,12 @@ fn add_telemetry(
     for (contact, samples) in contacts.iter().zip(&samples) {
         sums[contact.course].add(samples);
     }
-    Ok(())
+    let contacts = samples.iter().filter(|samples| samples.is_empty()).count();
+    Ok(LeftOut { lines, contacts })
+}
+
+fn number(row: &csv::StringRecord, place: usize) -> Option<f64> {
+    row.get(place)?.parse().ok().and_then(finite)
 }
 
 /// A table of courses, a row for each time.
@@ -212,13 +239,10 @@ pub fn exponential_fit(task: &Task) -> Section {
         }
     }
     let names = distinct(names);
-    let (courses, unread) = mean_courses(task, "skin_c", &names, |trial, station| {
+    let courses = mean_courses(&mut section, task, "skin_c", &names, |trial, station| {
         let sensor = trial.skin_sensors.get(station).copied().flatten()?;
         Some((name(trial, station)?, sensor))
     });
-    for why in unread {
-        section.lacks("Courses", why);
-    }
     if courses.is_empty() {
         section.lacks("Fits", "there is no telemetry of a skin in contact");
         return section;

@@ -13,6 +13,8 @@ pub struct Design {
     pub factors: Vec<(String, Vec<String>)>,
     pub cells: Cells,
     pub contrast: Contrast,
+    /// Factors and levels that were presented and are not in the cells, because nobody has a value there.
+    pub dropped: Vec<(String, String)>,
 }
 
 /// Contrasts that were planned for the first factor.
@@ -39,6 +41,7 @@ impl Design {
             factors: vec![(factor.into(), levels_text)],
             cells: Cells::new(levels, observations),
             contrast: Contrast::None,
+            dropped: Vec::new(),
         }
     }
 
@@ -61,11 +64,30 @@ impl Design {
             factors: vec![(first.into(), firsts.to_vec()), (second.into(), seconds.to_vec())],
             cells: Cells::new(&levels, &joined),
             contrast: Contrast::None,
+            dropped: Vec::new(),
         }
     }
 
     pub fn with(mut self, contrast: Contrast) -> Self {
         self.contrast = contrast;
+        self
+    }
+
+    /// Notes the levels of a factor that were presented and are not in the cells.
+    pub fn without<L: AsRef<str>>(
+        mut self,
+        factor: &str,
+        presented: impl IntoIterator<Item = L>,
+    ) -> Self {
+        let there = self.factors.iter().find(|(name, _)| name == factor);
+        let there = there.map_or(Vec::new(), |(_, levels)| levels.clone());
+        for level in presented {
+            let level = level.as_ref();
+            let dropped = (factor.to_owned(), level.to_owned());
+            if !there.iter().any(|one| one == level) && !self.dropped.contains(&dropped) {
+                self.dropped.push(dropped);
+            }
+        }
         self
     }
 

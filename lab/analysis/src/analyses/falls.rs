@@ -4,6 +4,7 @@ use experiment_statistics::levene::levene as levene_of;
 use experiment_statistics::standard_deviation;
 
 use super::design::Design;
+use super::left_out;
 use crate::cells::{distinct, mean, means_of_participants, over_participants};
 use crate::input::{Task, Trial, finite};
 use crate::picture::{Intervals, Mark};
@@ -53,6 +54,33 @@ pub fn all(task: &Task) -> Vec<Fall> {
     falls
 }
 
+/// Participants of the contacts of a finger with a skin thermistor that have no fall, one for each.
+fn without_fall(task: &Task) -> Vec<usize> {
+    let mut participants = Vec::new();
+    for (participant, trial) in task.trials() {
+        for stimulus in trial.stimuli() {
+            let is_measured = trial.skin_sensors.get(stimulus.station).copied().flatten().is_some();
+            let station = trial.station(stimulus.station);
+            if is_measured && station.and_then(|station| station.skin_fall_k).is_none() {
+                participants.push(participant);
+            }
+        }
+    }
+    participants
+}
+
+/// What was presented, as the groups of falls, whether a fall was measured or not.
+fn presented(task: &Task) -> Vec<Group> {
+    let both = parts_with_both_modes(task);
+    let groups = task.trials().flat_map(|(_, trial)| {
+        trial
+            .stimuli()
+            .map(|stimulus| group(&trial.record.part, &stimulus, &both))
+            .collect::<Vec<_>>()
+    });
+    distinct(groups)
+}
+
 fn has_fall(trial: &Trial) -> bool {
     trial.record.stations.iter().any(|station| station.skin_fall_k.is_some())
 }
@@ -93,6 +121,8 @@ pub fn falls(task: &Task) -> Section {
         "The fall is the mean of the skin thermistor over the last 0.5 s before the landing less that over the last 0.5 s of the \
          contact; on a sample, before the tone to touch in place of the landing. n counts contacts; SD is that of the contacts, SEM that of the participants' means.",
     );
+    let what = "contacts of a finger with a skin thermistor, without a fall";
+    left_out::count(&mut section, task, &without_fall(task), what);
     let falls = all(task);
     if falls.is_empty() {
         section.lacks("Falls", NO_FALLS);
@@ -302,6 +332,7 @@ pub fn designs(task: &Task) -> Vec<Design> {
     let falls = all(task);
     let (values, name) = transformed(task, &falls);
     let (parts, materials) = levels(task, &falls);
+    let presented = presented(task);
     let of_part = |part: &String| {
         let own = falls.iter().zip(&values).filter(|(fall, _)| fall.group.part == *part);
         let own: Vec<_> = own
@@ -309,7 +340,9 @@ pub fn designs(task: &Task) -> Vec<Design> {
             .collect();
         let is_there = |material: &&String| own.iter().any(|(_, one, _)| one == *material);
         let levels: Vec<String> = materials.iter().filter(is_there).cloned().collect();
+        let presented = presented.iter().filter(|group| group.part == *part);
         Design::one(format!("{name}, {part}"), "material", &levels, &own)
+            .without("material", presented.map(|group| &group.material))
     };
     parts.iter().map(of_part).collect()
 }
@@ -326,5 +359,8 @@ pub fn design_of_parts(task: &Task) -> Design {
             (fall.participant, cell, *value)
         })
         .collect();
+    let presented = presented(task);
     Design::two(name, ("part", &parts), ("material", &materials), &observations)
+        .without("part", presented.iter().map(|group| &group.part))
+        .without("material", presented.iter().map(|group| &group.material))
 }

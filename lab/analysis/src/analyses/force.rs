@@ -2,6 +2,7 @@
 
 use super::courses::{mean_courses, table};
 use super::design::Design;
+use super::left_out;
 use crate::cells::{distinct, mean, over_participants};
 use crate::input::{Task, Trial, finite};
 use crate::picture::{Curve, Stroke, color, lines, positive_range};
@@ -17,23 +18,22 @@ struct Contact<'a> {
 }
 
 fn contacts(task: &Task) -> Vec<Contact<'_>> {
-    let mut contacts = Vec::new();
-    for (participant, trial) in task.trials() {
-        let Some(target_n) = trial.record.target_force_n.and_then(finite) else {
-            continue;
-        };
-        for stimulus in trial.stimuli() {
-            let station =
-                trial.station(stimulus.station).filter(|station| station.force_mean_n.is_some());
-            contacts.extend(station.map(|station| Contact {
-                participant,
-                target_n,
-                material: stimulus.material,
-                station,
-            }));
-        }
-    }
-    contacts
+    contacts_with_a_target(task).filter(has_force).collect()
+}
+
+/// Contacts with a target, whether a force was measured or not.
+fn contacts_with_a_target(task: &Task) -> impl Iterator<Item = Contact<'_>> {
+    task.trials().flat_map(|(participant, trial)| {
+        let target_n = trial.record.target_force_n.and_then(finite);
+        trial.stimuli().filter_map(move |stimulus| {
+            let station = trial.station(stimulus.station)?;
+            Some(Contact { participant, target_n: target_n?, material: stimulus.material, station })
+        })
+    })
+}
+
+fn has_force(contact: &Contact<'_>) -> bool {
+    contact.station.force_mean_n.is_some()
 }
 
 /// Target forces in ascending order.
@@ -56,7 +56,17 @@ pub fn force_matching(task: &Task) -> Section {
          Mean and SD of the force are those of the last 2 s of a contact; the RMS error is from 2 s after the landing on. n counts \
          contacts; the SEM is that of the participants' means of the force.",
     );
+    let unmeasured: Vec<_> = contacts_with_a_target(task)
+        .filter(|contact| !has_force(contact))
+        .map(|contact| contact.participant)
+        .collect();
+    let what = "contacts with a target force and no measured force";
+    left_out::count(&mut section, task, &unmeasured, what);
     let contacts = contacts(task);
+    let short = contacts.iter().filter(|contact| contact.station.force_end_mean_n.is_none());
+    let short: Vec<_> = short.map(|contact| contact.participant).collect();
+    let what = "contacts too short for a force of the last 2 s, of which the other columns are";
+    left_out::count(&mut section, task, &short, what);
     if contacts.is_empty() {
         section.lacks("Force", "no contact that counts has a target and a measured force");
         return section;
@@ -118,10 +128,7 @@ pub fn force_matching(task: &Task) -> Section {
         let name = trial.record.target_force_n.map(target_name)?;
         Some((name, trial.presented.get(station)?.device_finger()?))
     };
-    let (courses, unread) = mean_courses(task, "force_n", &names, name);
-    for why in unread {
-        section.lacks("Courses", why);
-    }
+    let courses = mean_courses(&mut section, task, "force_n", &names, name);
     if courses.is_empty() {
         section.lacks("Picture of the courses", "there is no telemetry of a force");
     } else {
@@ -160,6 +167,7 @@ pub fn designs(task: &Task) -> Vec<Design> {
     let materials = task.sorted(contacts.iter().map(|contact| contact.material));
     let materials: Vec<String> = materials.into_iter().map(str::to_owned).collect();
     let forces: Vec<String> = targets(&contacts).into_iter().map(target_name).collect();
+    let presented: Vec<_> = contacts_with_a_target(task).collect();
     let of = |name: &str, value: fn(&Contact<'_>) -> Option<f64>| {
         let observations: Vec<_> = contacts
             .iter()
@@ -171,7 +179,7 @@ pub fn designs(task: &Task) -> Vec<Design> {
         // No contact with a force below the tremor may have settled.
         let has_values = |force: &&String| observations.iter().any(|(_, (_, at), _)| at == *force);
         let forces: Vec<String> = forces.iter().filter(has_values).cloned().collect();
-        if materials.len() > 1 {
+        let design = if materials.len() > 1 {
             Design::two(name, ("material", &materials), ("force", &forces), &observations)
         } else {
             let observations: Vec<_> = observations
@@ -179,7 +187,11 @@ pub fn designs(task: &Task) -> Vec<Design> {
                 .map(|(participant, (_, force), value)| (participant, force, value))
                 .collect();
             Design::one(name, "force", &forces, &observations)
-        }
+        };
+        let materials = presented.iter().map(|contact| contact.material);
+        let design =
+            if design.factors.len() > 1 { design.without("material", materials) } else { design };
+        design.without("force", targets(&presented).into_iter().map(target_name))
     };
     vec![
         of("fall of skin / K", |contact| contact.station.skin_fall_k),

@@ -3,6 +3,7 @@
 use experiment_statistics::proportion::Proportion;
 use experiment_statistics::t_test::one_sample;
 
+use super::left_out;
 use super::share::Share;
 use crate::cells::means_of_participants;
 use crate::input::{Task, Trial};
@@ -41,6 +42,13 @@ pub fn identical_pairs(task: &Task) -> Section {
     );
     let all = task.trials();
     let answers: Vec<_> = all.filter_map(|(who, trial)| answer(task, who, trial)).collect();
+    let unnamed = task.trials().filter(|(who, trial)| {
+        let materials: Vec<_> = trial.stimuli().map(|stimulus| stimulus.material).collect();
+        matches!(materials[..], [one, other] if one == other) && answer(task, *who, trial).is_none()
+    });
+    let unnamed: Vec<_> = unnamed.map(|(who, _)| who).collect();
+    let what = "trials with equal materials and no answer that names a station";
+    left_out::count(&mut section, task, &unnamed, what);
     let Some(last) = task.stations.last().filter(|_| !answers.is_empty()) else {
         section.lacks(
             "Bias",

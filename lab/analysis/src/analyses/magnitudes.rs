@@ -4,6 +4,7 @@ use experiment_statistics::standard_deviation;
 
 use super::design::Design;
 use super::falls::picture;
+use super::left_out;
 use crate::cells::{distinct, mean, over_participants};
 use crate::input::{Task, Trial, finite};
 use crate::picture::Mark;
@@ -55,6 +56,10 @@ fn natural(text: &str) -> Vec<(String, f64)> {
 pub fn magnitudes(task: &Task) -> Section {
     let mut section = Section::new("magnitudes", "Magnitudes")
         .note("n counts answers; SD is that of the answers, SEM that of the participants' means.");
+    let others = task.trials().filter(|(_, trial)| magnitudes_of(task, trial).is_none());
+    let others: Vec<_> = others.map(|(participant, _)| participant).collect();
+    let what = "trials without an answer with a number for each station";
+    left_out::count(&mut section, task, &others, what);
     let all = all(task);
     if all.is_empty() {
         section.lacks(
@@ -124,4 +129,5 @@ pub fn design(task: &Task) -> Design {
         ("station", &task.stations),
         &observations,
     )
+    .without("condition", task.trials().map(|(_, trial)| trial.condition(&[])))
 }

@@ -3,12 +3,14 @@
 mod against;
 mod ancova;
 mod anova;
+mod chi_square;
 mod confusion;
 mod courses;
 mod design;
 mod falls;
 mod force;
 mod identical;
+mod left_out;
 mod magnitudes;
 mod model;
 mod oddity;

@@ -4,10 +4,10 @@ use experiment_statistics::sensitivity::{d_prime, d_prime_oddity};
 
 use thermal_thesis::published::PublishedPair;
 
-use super::NO_ANSWERS;
 use super::design::Design;
 use super::share::{READING, Share, columns, picture};
-use crate::input::Task;
+use super::{NO_ANSWERS, left_out};
+use crate::input::{Task, Trial};
 use crate::report::{Section, Table, cells, numbers, words};
 
 struct Answer<'a> {
@@ -22,27 +22,28 @@ struct Answer<'a> {
 const MODES: [&str; 2] = ["high/low", "low/high"];
 
 fn answers(task: &Task) -> Vec<Answer<'_>> {
-    let all = task.trials().filter_map(|(participant, trial)| {
-        let stimuli: Vec<_> = trial.stimuli().collect();
-        let [one, two, three] = stimuli[..] else {
-            return None;
-        };
-        let (target, distractor) =
-            match (one.material == two.material, two.material == three.material) {
-                (true, false) => (three, one),
-                (false, true) => (one, two),
-                (false, false) if one.material == three.material => (two, one),
-                _ => return None,
-            };
-        Some(Answer {
-            participant,
-            target: target.material,
-            distractor: distractor.material,
-            position: target.station,
-            is_correct: trial.record.is_correct?,
-        })
-    });
-    all.collect()
+    task.trials().filter_map(|(participant, trial)| answer(participant, trial)).collect()
+}
+
+fn answer(participant: usize, trial: &Trial) -> Option<Answer<'_>> {
+    let stimuli: Vec<_> = trial.stimuli().collect();
+    let [one, two, three] = stimuli[..] else {
+        return None;
+    };
+    let (target, distractor) = match (one.material == two.material, two.material == three.material)
+    {
+        (true, false) => (three, one),
+        (false, true) => (one, two),
+        (false, false) if one.material == three.material => (two, one),
+        _ => return None,
+    };
+    Some(Answer {
+        participant,
+        target: target.material,
+        distractor: distractor.material,
+        position: target.station,
+        is_correct: trial.record.is_correct?,
+    })
 }
 
 impl Answer<'_> {
@@ -70,6 +71,10 @@ pub fn oddity(task: &Task) -> Section {
              here. Both are of p = (k + ½)/(n + 1); by oddity it is 0 at chance and below.",
         );
     let answers = answers(task);
+    let others = task.trials().filter(|(participant, trial)| answer(*participant, trial).is_none());
+    let others: Vec<_> = others.map(|(participant, _)| participant).collect();
+    let what = "trials without a scored answer, or without three materials of which one differs";
+    left_out::count(&mut section, task, &others, what);
     if answers.is_empty() {
         section.lacks("Tables", NO_ANSWERS);
         return section;

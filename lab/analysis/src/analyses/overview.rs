@@ -4,7 +4,7 @@ use experiment_statistics::standard_deviation;
 use thermal_session::record::{StationRecord, TrialRecord};
 
 use crate::cells::{distinct, mean};
-use crate::input::{Task, Trial, finite};
+use crate::input::{Participant, Task, Trial, finite};
 use crate::report::{Cell, Section, Table, cells, numbers, words};
 
 /// Participants, their trials, and why trials were void.
@@ -14,6 +14,7 @@ pub fn participants(task: &Task) -> Section {
          Void trials are repeated at the end of their block, so attempts may exceed the plan.",
     );
     section.notes.extend(task.differs.clone());
+    section.warn(task.mixed.clone());
     let mut table = Table::new(
         "participants",
         "Trials by participant",
@@ -65,12 +66,35 @@ pub fn participants(task: &Task) -> Section {
             ));
         }
     }
+    for participant in &task.participants {
+        section.warn(only_void(participant));
+        section.warn(participant.remarks.clone());
+    }
+    for (factor, level) in &task.planned_levels {
+        let is_there = |one: &(String, String)| one.0 == *factor && one.1 == *level;
+        if !task.trials().any(|(_, trial)| trial.levels.iter().any(is_there)) {
+            section.warn([format!("No trial with {factor} {level} counts, so it is in no table.")]);
+        }
+    }
     section.add(table);
     section.add(voids(task));
     if task.participants.is_empty() {
         section.lacks("Trials", "there is no participant");
     }
     section
+}
+
+/// Trials all of whose attempts are void.
+fn only_void(participant: &Participant) -> Option<String> {
+    let counts =
+        |number: &u32| participant.trials.iter().any(|trial| trial.record.trial == *number);
+    let numbers = distinct(participant.records.iter().map(|record| record.trial));
+    let void: Vec<_> =
+        numbers.iter().filter(|number| !counts(number)).map(u32::to_string).collect();
+    (!void.is_empty()).then(|| {
+        let (code, void) = (&participant.code, void.join(", "));
+        format!("Left out: trials of {code} of which each attempt was void ({void}).")
+    })
 }
 
 /// Reasons of void trials, without their numbers, so that like ones count together.

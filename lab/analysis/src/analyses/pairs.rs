@@ -4,9 +4,9 @@ use experiment_statistics::sensitivity::d_prime;
 
 use thermal_thesis::published::PublishedPair;
 
-use super::NO_ANSWERS;
 use super::design::{Contrast, Design};
-use super::share::{READING, Share, columns, picture, verdict};
+use super::share::{READING, Share, TOO_FEW, columns, picture, verdict};
+use super::{NO_ANSWERS, left_out};
 use crate::cells::distinct;
 use crate::input::{Stimulus, Task, Trial};
 use crate::report::{Column, Section, Table, cells, numbers, words};
@@ -37,6 +37,27 @@ impl Answer<'_> {
     }
 }
 
+/// The two different materials of a trial, that of the larger contact coefficient first.
+fn pair_of<'a>(task: &Task, trial: &'a Trial) -> Option<[&'a str; 2]> {
+    let materials = trial.stimuli().map(|stimulus| stimulus.material);
+    task.sorted(materials.collect::<Vec<_>>()).try_into().ok()
+}
+
+/// Names of the pairs that were presented, whether they were answered or not.
+fn presented(task: &Task) -> Vec<String> {
+    let pairs = task.trials().filter_map(|(_, trial)| pair_of(task, trial));
+    distinct(pairs.map(|pair| pair.join(BETWEEN)))
+}
+
+/// Says how many trials with two different materials have no scored answer.
+fn say_unscored(section: &mut Section, task: &Task) {
+    let unscored = task
+        .trials()
+        .filter(|(_, trial)| trial.record.is_correct.is_none() && pair_of(task, trial).is_some());
+    let unscored: Vec<_> = unscored.map(|(participant, _)| participant).collect();
+    left_out::count(section, task, &unscored, "trials with two materials and no scored answer");
+}
+
 /// The scored answers to two different materials.
 pub fn answers(task: &Task) -> Vec<Answer<'_>> {
     let all = task.trials();
@@ -45,9 +66,7 @@ pub fn answers(task: &Task) -> Vec<Answer<'_>> {
 
 fn answer<'a>(task: &'a Task, participant: usize, trial: &'a Trial) -> Option<Answer<'a>> {
     let stimuli: Vec<Stimulus<'_>> = trial.stimuli().collect();
-    let [colder, warmer] = task.sorted(stimuli.iter().map(|stimulus| stimulus.material))[..] else {
-        return None;
-    };
+    let [colder, warmer] = pair_of(task, trial)?;
     let of_both = task.effusivity(colder).zip(task.effusivity(warmer));
     let ratio = of_both.map(|(one, other)| one / other);
     let mode = match stimuli[..] {
@@ -104,7 +123,11 @@ const CORRECT: &str = "An answer counts as correct by the contact coefficients o
 
 fn d_prime_note(task: &Task) -> String {
     let threshold = task.threshold.map_or(String::new(), |threshold| {
-        format!("Told apart: at least {:.0} % correct. ", 100.0 * threshold)
+        format!(
+            "Told apart: \"yes\" from {:.0} % correct on, if so many correct answers reach the criterion, too; \"no\" below; \
+             \"{TOO_FEW}\" where the share is reached and the criterion is not, or no number of correct answers reaches it. ",
+            100.0 * threshold
+        )
     });
     let d_prime = if is_choice_of_two(task) {
         "d' of a choice of two is √2 z(p), with p = (k + ½)/(n + 1), so that 0 and 100 % have one, too."
@@ -127,6 +150,7 @@ pub fn pairs(task: &Task) -> Section {
         .note(CORRECT)
         .note(READING)
         .note(d_prime_note(task));
+    say_unscored(&mut section, task);
     if answers.is_empty() {
         section.lacks("Pairs", NO_ANSWERS);
         return section;
@@ -146,6 +170,14 @@ pub fn by_mode(task: &Task) -> Section {
         .note(CORRECT)
         .note(READING)
         .note(d_prime_note(task));
+    say_unscored(&mut section, task);
+    let alike: Vec<_> = answers
+        .iter()
+        .filter(|answer| answer.mode.is_none())
+        .map(|answer| answer.participant)
+        .collect();
+    let what = "answers to two samples or two simulated materials, which have no mode";
+    left_out::count(&mut section, task, &alike, what);
     if answers.iter().all(|answer| answer.mode.is_none()) {
         section.lacks("Modes", "no scored trial has a sample and a simulated material that differ");
         return section;
@@ -182,7 +214,7 @@ fn add_shares(
             row.extend(mode.map(Into::into));
             row.push(ratio.into());
             row.extend(share.cells(task.chance));
-            row.extend(cells![verdict(&share, task.threshold), d_prime_of(task, &share)]);
+            row.extend(cells![verdict(&share, task), d_prime_of(task, &share)]);
             table.row(row);
             marks.extend(share.mark(&*pair, series));
         }
@@ -218,7 +250,9 @@ pub fn design(task: &Task) -> Design {
         .iter()
         .map(|answer| (answer.participant, answer.name(), percent(answer.is_correct)))
         .collect();
-    Design::one(DEPENDENT, "pair", &levels, &observations).with(Contrast::Mean)
+    Design::one(DEPENDENT, "pair", &levels, &observations)
+        .with(Contrast::Mean)
+        .without("pair", presented(task))
 }
 
 pub fn by_mode_design(task: &Task) -> Design {
@@ -232,7 +266,9 @@ pub fn by_mode_design(task: &Task) -> Design {
         })
         .collect();
     let modes = MODES.map(str::to_owned);
-    Design::two(DEPENDENT, ("pair", &levels), ("mode", &modes), &observations).with(Contrast::Mean)
+    Design::two(DEPENDENT, ("pair", &levels), ("mode", &modes), &observations)
+        .with(Contrast::Mean)
+        .without("pair", presented(task))
 }
 
 pub fn design_of_parts(task: &Task) -> Design {
@@ -247,4 +283,5 @@ pub fn design_of_parts(task: &Task) -> Design {
         })
         .collect();
     Design::two(DEPENDENT, ("part", &parts), ("pair", &levels), &observations)
+        .without("pair", presented(task))
 }

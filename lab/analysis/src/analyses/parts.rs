@@ -38,6 +38,12 @@ pub fn pearson_between_parts(task: &Task) -> Section {
                     Some((*x, y))
                 });
                 let (x, y): (Vec<f64>, Vec<f64>) = of_both.unzip();
+                let alone = one.len() + other.len() - 2 * x.len();
+                if alone > 0 {
+                    section.warn([format!(
+                        "Left out: {alone} cells of the {what} that only one of {first} and {second} has."
+                    )]);
+                }
                 compared += 1;
                 match pearson(&x, &y) {
                     Ok(found) => {

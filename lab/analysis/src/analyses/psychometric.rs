@@ -3,6 +3,7 @@
 use experiment_statistics::proportion::Proportion;
 use experiment_statistics::psychometric::{Fit, Level, Model, Shape};
 
+use super::left_out;
 use super::share::CONFIDENCE;
 use crate::input::{Task, Trial, finite};
 use crate::picture::{Curve, Stroke, color, lines, positive_range};
@@ -15,19 +16,23 @@ const PART: f64 = 0.5;
 /// Relative difference below which levels are the same: a staircase multiplies and divides by its factor.
 const SAME_LEVEL: f64 = 1e-6;
 const SAMPLES: usize = 400;
+/// Expected count of correct or wrong answers at a level below which the distribution of the deviance is a poor approximation.
+const EXPECTED_MIN: f64 = 5.0;
 /// The same data give the same interval.
 const SEED: u64 = 1;
+
+/// Positive level and score of a trial.
+fn point(trial: &Trial) -> Option<(f64, bool)> {
+    Some((trial.change_k().filter(|level| *level > 0.0)?, trial.record.is_correct?))
+}
 
 /// The answers at each level.
 fn levels<'a>(trials: impl Iterator<Item = &'a Trial>) -> Vec<Level> {
     let mut counts: Vec<(f64, u32, u32)> = Vec::new();
     for trial in trials {
-        let (Some(level), Some(is_correct)) = (trial.change_k(), trial.record.is_correct) else {
+        let Some((level, is_correct)) = point(trial) else {
             continue;
         };
-        if level <= 0.0 {
-            continue;
-        }
         let at =
             match counts.iter().position(|(known, ..)| (known / level - 1.0).abs() < SAME_LEVEL) {
                 Some(at) => at,
@@ -73,6 +78,11 @@ pub fn psychometric_fit(task: &Task) -> Section {
             probabilities("p"),
         ],
     );
+    let others =
+        task.trials().filter(|(_, trial)| trial.change_k().is_some() && point(trial).is_none());
+    let others: Vec<_> = others.map(|(participant, _)| participant).collect();
+    let what = "trials without a positive level or without a scored answer";
+    left_out::count(&mut section, task, &others, what);
     let mut curves = Vec::new();
     for (series, condition) in conditions(task).into_iter().enumerate() {
         let mut groups = vec![("all".to_owned(), (0..task.participants.len()).collect::<Vec<_>>())];
@@ -100,8 +110,16 @@ pub fn psychometric_fit(task: &Task) -> Section {
                     if let Some(Err(error)) = &bootstrap {
                         section.lacks(&format!("Interval of {condition}, {name}"), error);
                     }
-                    let interval =
-                        bootstrap.and_then(Result::ok).map(|bootstrap| bootstrap.interval);
+                    let bootstrap = bootstrap.and_then(Result::ok);
+                    let failed = bootstrap.map_or(0, |bootstrap| bootstrap.failed);
+                    section.warn((failed > 0).then(|| {
+                        format!(
+                            "{condition}, {name}: the interval is without {failed} of {SAMPLES} bootstrap samples, which determine no \
+                             function."
+                        )
+                    }));
+                    section.warn(few_answers(&condition, &name, fit, &levels));
+                    let interval = bootstrap.map(|bootstrap| bootstrap.interval);
                     table.row(cells![
                         condition.clone(),
                         name.clone(),
@@ -141,6 +159,22 @@ pub fn psychometric_fit(task: &Task) -> Section {
     }
     section.add(table);
     section
+}
+
+/// A warning, if at some levels few correct or wrong answers are expected.
+fn few_answers(condition: &str, name: &str, fit: &Fit, levels: &[Level]) -> Option<String> {
+    let expected = |level: &&Level| {
+        let p = fit.probability(level.level).unwrap_or(0.0);
+        f64::from(level.answers.total()) * p.min(1.0 - p)
+    };
+    let few = levels.iter().filter(|level| expected(level) < EXPECTED_MIN).count();
+    (fit.deviance_p.is_some() && few > 0).then(|| {
+        format!(
+            "{condition}, {name}: at {few} of {} levels fewer than {EXPECTED_MIN} correct or wrong answers are expected; p of the \
+             deviance is a poor approximation.",
+            levels.len()
+        )
+    })
 }
 
 /// What a function is fitted for: a staircase, or what the factors say.

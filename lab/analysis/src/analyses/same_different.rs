@@ -4,9 +4,9 @@ use experiment_statistics::distribution::normal_quantile;
 
 use super::design::Design;
 use super::share::Share;
-use super::{NO_ANSWERS, pairs};
+use super::{NO_ANSWERS, chi_square, left_out, pairs};
 use crate::cells::distinct;
-use crate::input::Task;
+use crate::input::{Task, Trial};
 use crate::report::{Section, Table, cells, numbers, probabilities, words};
 use experiment_statistics::chi_square::contingency;
 
@@ -31,20 +31,18 @@ const SAME: &str = "same";
 const DIFFERENT: &str = "different";
 
 fn answers(task: &Task) -> Vec<Answer<'_>> {
-    let all = task.trials().filter_map(|(participant, trial)| {
-        let says_different = match trial.record.answer.as_deref()? {
-            SAME => false,
-            DIFFERENT => true,
-            _ => return None,
-        };
-        let materials = task.sorted(trial.stimuli().map(|stimulus| stimulus.material));
-        Some(Answer {
-            participant,
-            pair: [*materials.first()?, *materials.last()?],
-            says_different,
-        })
-    });
-    all.collect()
+    task.trials().filter_map(|(participant, trial)| answer(task, participant, trial)).collect()
+}
+
+fn answer<'a>(task: &Task, participant: usize, trial: &'a Trial) -> Option<Answer<'a>> {
+    let says_different = match trial.record.answer.as_deref()? {
+        SAME => false,
+        DIFFERENT => true,
+        _ => return None,
+    };
+    let materials = trial.stimuli().map(|stimulus| stimulus.material);
+    let materials = task.sorted(materials.collect::<Vec<_>>());
+    Some(Answer { participant, pair: [*materials.first()?, *materials.last()?], says_different })
 }
 
 /// The pairs by the place of their materials.
@@ -64,6 +62,9 @@ pub fn same_different(task: &Task) -> Section {
          underestimates their sensitivity. chi-squared compares the hits of a pair with all false alarms.",
     );
     let answers = answers(task);
+    let others = task.trials().filter(|(one, trial)| answer(task, *one, trial).is_none());
+    let others: Vec<_> = others.map(|(participant, _)| participant).collect();
+    left_out::count(&mut section, task, &others, "trials without the answer same or different");
     if answers.is_empty() {
         section.lacks("Table", NO_ANSWERS);
         return section;
@@ -94,6 +95,7 @@ pub fn same_different(task: &Task) -> Section {
             numbers("z(H) - z(F)", "", 2),
             numbers("chi-squared", "", 2),
             probabilities("p"),
+            numbers("smallest expected count", "", 1),
         ],
     );
     for pair in sorted_pairs(task, &answers) {
@@ -102,8 +104,10 @@ pub fn same_different(task: &Task) -> Section {
         let (low, high) = own.interval().unzip();
         let hits = (!is_equal && alarms.total() > 0).then_some(&own);
         let test = hits.and_then(|hits| contingency(&[counts(hits), counts(&alarms)]).ok());
+        let pair = pair.join(pairs::BETWEEN);
+        section.warn(test.and_then(|test| chi_square::warning(&pair, &test)));
         table.row(cells![
-            pair.join(pairs::BETWEEN),
+            pair,
             own.total(),
             own.correct(),
             own.percent(),
@@ -111,7 +115,8 @@ pub fn same_different(task: &Task) -> Section {
             high,
             hits.and_then(|hits| Some(z(hits)? - z(&alarms)?)),
             test.map(|test| test.statistic),
-            test.map(|test| test.p)
+            test.map(|test| test.p),
+            test.map(|test| test.smallest_expected)
         ]);
     }
     section.add(table);

@@ -3,6 +3,7 @@
 use experiment_statistics::proportion::{Proportion, criterion};
 
 use crate::cells::over_participants;
+use crate::input::Task;
 use crate::picture::{Intervals, Mark};
 use crate::report::{Cell, Column, cells, numbers, probabilities, words};
 
@@ -60,11 +61,16 @@ impl Share {
         Some(Mark { row: row.into(), series, value: self.percent()?, interval: self.interval() })
     }
 
+    /// Smallest number of correct answers that is above chance.
+    fn criterion(&self, chance: Option<f64>) -> Option<u32> {
+        criterion(self.total(), chance?, ALPHA).ok().flatten()
+    }
+
     /// Cells of [`columns`].
     pub fn cells(&self, chance: Option<f64>) -> Vec<Cell> {
         let (low, high) = self.interval().unzip();
         let by_chance = chance.and_then(|chance| self.proportion()?.p_by_chance(chance).ok());
-        let least = chance.and_then(|chance| criterion(self.total(), chance, ALPHA).ok().flatten());
+        let least = self.criterion(chance);
         let observed = self.observations().map(|(participant, value)| (participant, 100.0 * value));
         let (participants, mean, sem) = over_participants(&observed.collect::<Vec<_>>());
         cells![
@@ -120,8 +126,17 @@ pub fn picture(
     .draw(marks)
 }
 
-/// The words of a session's threshold.
-pub fn verdict(share: &Share, threshold: Option<f64>) -> Option<&'static str> {
-    let proportion = share.proportion()?.value();
-    threshold.map(|threshold| if proportion >= threshold { "yes" } else { "no" })
+/// The verdict on answers that are too few for one.
+pub const TOO_FEW: &str = "too few answers";
+
+/// Whether the share reaches the session's threshold, in words, so far as the criterion allows any.
+pub fn verdict(share: &Share, task: &Task) -> Option<&'static str> {
+    let reaches_threshold = share.proportion()?.value() >= task.threshold?;
+    // Without chance there is no criterion.
+    task.chance?;
+    Some(match share.criterion(task.chance) {
+        Some(least) if reaches_threshold && share.correct() >= least => "yes",
+        Some(_) if !reaches_threshold => "no",
+        _ => TOO_FEW,
+    })
 }

@@ -2,6 +2,7 @@
 
 use experiment_statistics::t_test::one_sample;
 
+use super::left_out;
 use super::share::CONFIDENCE;
 use crate::input::{Task, Trial, finite};
 use crate::picture::{Curve, Stroke, color, lines, positive_range};
@@ -15,11 +16,13 @@ struct Track<'a> {
 
 fn track<'a>(code: &'a str, trials: &[Trial], staircase: usize) -> Track<'a> {
     let own = trials.iter().filter(|trial| trial.staircase == Some(staircase));
-    let level = |trial: &Trial| {
-        let level_k = trial.record.staircase_level_k.and_then(finite)?;
-        Some((level_k, trial.record.is_correct?))
-    };
-    Track { participant: code, trials: own.filter_map(level).collect() }
+    Track { participant: code, trials: own.filter_map(step).collect() }
+}
+
+/// Level and score of a trial of a staircase.
+fn step(trial: &Trial) -> Option<(f64, bool)> {
+    let level_k = trial.record.staircase_level_k.and_then(finite)?;
+    Some((level_k, trial.record.is_correct?))
 }
 
 /// Tracks and thresholds by participant, and their mean.
@@ -46,6 +49,11 @@ pub fn staircase(task: &Task) -> Section {
             numbers("95 % to", "K", 4),
         ],
     );
+    let unscored =
+        task.trials().filter(|(_, trial)| trial.staircase.is_some() && step(trial).is_none());
+    let unscored: Vec<_> = unscored.map(|(participant, _)| participant).collect();
+    let what = "trials of staircases without a level or a scored answer";
+    left_out::count(&mut section, task, &unscored, what);
     for (index, (name, initial)) in task.staircases.iter().enumerate() {
         let mut curves = Vec::new();
         let mut wrong_answers = Vec::new();

@@ -5,6 +5,7 @@ use experiment_statistics::tukey::tukey as compare;
 
 use super::anova::impossible;
 use super::design::{self, Design, Marginal};
+use super::left_out;
 use crate::cells::mean;
 use crate::input::Task;
 use crate::report::{Section, Table, cells, numbers, probabilities, words};
@@ -14,12 +15,12 @@ pub fn tukey(task: &Task) -> Section {
     let mut section = Section::new("tukey", "Comparison of pairs of means (Tukey)").note(
         "q is the difference over the standard error of a mean, from the error of the analysis of variance; p is the \
          probability of such a difference between any two of the means of the factor, so it is corrected for the number of \
-         pairs of that factor.",
+         pairs of that factor. Two levels are compared by the analysis of variance itself.",
     );
     let mut table = Table::new("tukey", "Pairs of levels; n counts participants", columns());
     if task.asks_for("anova-within") {
         for design in design::within(task) {
-            levels(&design, &mut table, &mut section);
+            levels(task, &design, &mut table, &mut section);
         }
     }
     section.add(table);
@@ -31,7 +32,7 @@ pub fn tukey(task: &Task) -> Section {
             columns().into_iter().chain([probabilities("p (Bonferroni)")]),
         );
         for design in design::of_parts(task) {
-            parts(&design, &mut table, &mut section);
+            parts(task, &design, &mut table, &mut section);
         }
         section.add(table);
     }
@@ -56,15 +57,15 @@ fn columns() -> Vec<crate::report::Column> {
     ]
 }
 
-fn levels(design: &Design, table: &mut Table, section: &mut Section) {
-    if let Some(why) = impossible(design) {
+fn levels(task: &Task, design: &Design, table: &mut Table, section: &mut Section) {
+    left_out::of_design(section, task, design);
+    if let Some(why) = impossible(task, design) {
         return section.lacks(&design.dependent, why);
     }
     for factor in 0..design.factors.len() {
         let Some(Marginal { factor: name, levels, rows }) = design.marginal(factor) else {
             continue;
         };
-        // Two means are compared by the analysis of variance itself.
         if levels.len() < 3 {
             continue;
         }
@@ -96,11 +97,12 @@ fn levels(design: &Design, table: &mut Table, section: &mut Section) {
 }
 
 /// The parts at each level of the other factor, as the thesis compares real and simulated materials.
-fn parts(design: &Design, table: &mut Table, section: &mut Section) {
+fn parts(task: &Task, design: &Design, table: &mut Table, section: &mut Section) {
     let [(_, parts), (factor, levels)] = &design.factors[..] else {
         return;
     };
-    if let Some(why) = impossible(design) {
+    left_out::of_design(section, task, design);
+    if let Some(why) = impossible(task, design) {
         return section.lacks(&design.dependent, why);
     }
     let rows = &design.cells.rows;

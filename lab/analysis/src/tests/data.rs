@@ -21,6 +21,7 @@ pub fn task(name: &str, stations: &[&str], answers: &[&str], analyses: &[&str]) 
         name: name.into(),
         label: name.into(),
         differs: None,
+        mixed: None,
         title: format!("Experiment {name}"),
         cite: "a test".into(),
         question: Some("Which one?".into()),
@@ -30,6 +31,7 @@ pub fn task(name: &str, stations: &[&str], answers: &[&str], analyses: &[&str]) 
         analyses: owned(analyses),
         stations: owned(stations),
         factors: Vec::new(),
+        planned_levels: Vec::new(),
         staircases: Vec::new(),
         materials: MATERIALS
             .iter()
@@ -48,6 +50,7 @@ pub fn participant(code: &str, trials: Vec<Trial>) -> Participant {
         records: trials.iter().map(|trial| trial.record.clone()).collect(),
         trials,
         telemetry: PathBuf::new(),
+        remarks: Vec::new(),
     }
 }
 

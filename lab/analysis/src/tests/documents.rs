@@ -3,7 +3,8 @@
 use super::data;
 use crate::analyses::of_task;
 use crate::report::rounded;
-use crate::{Analysis, Cell};
+use crate::{Analysis, Cell, Simulated};
+use thermal_session::dataset::DataSet;
 
 /// Elements without an end.
 const VOID: [&str; 3] = ["meta", "br", "!doctype"];
@@ -34,7 +35,7 @@ pub fn elements(page: &str) -> Vec<String> {
 fn analysis() -> Analysis {
     let tasks =
         [data::discrimination(2, 0.4), data::identification(2, 0.5), data::thresholds(2, 0.14)];
-    Analysis { tasks: tasks.iter().map(of_task).collect() }
+    Analysis { left_out: Vec::new(), tasks: tasks.iter().map(of_task).collect() }
 }
 
 #[test]
@@ -63,10 +64,11 @@ fn words_of_a_session_cannot_become_elements_of_the_page() {
     task.question = Some("a < b & \"c\"".into());
     task.participants[0].code = "<b>".into();
     task.analyses.push("no such \"word\"><i>".into());
-    let page = Analysis { tasks: vec![of_task(&task)] }.page();
+    let page = Analysis { left_out: vec!["<i>.json".into()], tasks: vec![of_task(&task)] }.page();
     let names = elements(&page);
     assert!(!names.iter().any(|name| ["script", "b", "i"].contains(&&**name)));
     assert!(page.contains("this version knows no such analysis"));
+    assert!(page.contains("<li>&lt;i&gt;.json</li>"));
 }
 
 #[test]
@@ -100,9 +102,9 @@ fn json_has_the_numbers_of_the_tables() {
 
 #[test]
 fn a_data_set_without_sessions_has_a_page() {
-    let empty = crate::analyse(&[]);
+    let empty = crate::analyse(&DataSet::default(), Simulated::Apart);
     elements(&empty.page());
-    assert_eq!(empty.json().replace(char::is_whitespace, ""), "{\"tasks\":[]}");
+    assert_eq!(empty.json().replace(char::is_whitespace, ""), "{\"left_out\":[],\"tasks\":[]}");
 }
 
 #[test]

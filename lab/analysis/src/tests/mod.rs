@@ -4,7 +4,9 @@ mod any_records;
 mod data;
 mod documents;
 mod known;
+mod left_out;
 mod participants;
+mod verdicts;
 
 use crate::report::{Cell, Section, Table, TaskAnalysis};
 
@@ -24,6 +26,11 @@ impl TaskAnalysis {
     fn not_possible(&self) -> Vec<&str> {
         let sentences = self.sections.iter().flat_map(|section| &section.not_possible);
         sentences.map(String::as_str).collect()
+    }
+
+    /// The warnings of a section.
+    fn warnings(&self, section: &str) -> Vec<&str> {
+        self.section(section).warnings.iter().map(String::as_str).collect()
     }
 }
 

@@ -30,6 +30,7 @@ said is in `sourcedata/sub-*/task-*/clock.json`.
 
 /// Writes the files that describe a data set, unless it has them.
 pub(super) fn describe(folder: &Folder) -> Result<(), RecordingError> {
+    let _alone = folder.lock_shared_files()?;
     let description = json!({
         "Name": "Experiments on a thermal display",
         "BIDSVersion": BIDS_VERSION,
@@ -74,8 +75,9 @@ pub(super) fn write(
             let name =
                 |end: &str| folder.behaviour(&format!("recording-finger{finger}_physio.{end}"));
             let rows = physio::compressed(&folder.source(TELEMETRY), finger, device.stream_ms)?;
-            write_whole(&name("tsv.gz"), &rows)?;
-            write_whole(&name("json"), &pretty(&physio::sidecar(device.stream_ms)))?;
+            write_whole(&name("tsv.gz"), &rows.gzip)?;
+            let sidecar = physio::sidecar(device.stream_ms, rows.off_max_s);
+            write_whole(&name("json"), &pretty(&sidecar))?;
         }
     }
     add_participant(folder)
@@ -83,6 +85,7 @@ pub(super) fn write(
 
 /// Adds the participant to the list.
 fn add_participant(folder: &Folder) -> Result<(), RecordingError> {
+    let _alone = folder.lock_shared_files()?;
     let path = folder.root().join("participants.tsv");
     let mut list = fs::read_to_string(&path).map_err(error_at(&path))?;
     let code = format!("sub-{}", folder.participant());

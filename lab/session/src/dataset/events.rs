@@ -109,7 +109,9 @@ fn columns(session: &Session, plan: &Plan) -> Vec<Column> {
         column("touches", None, "Landings on the display touched most often", |trial| {
             trial.touches.to_string()
         }),
-        column("contact", Some("s"), "Time in contact with it", |trial| number(trial.contact_s)),
+        column("contact", Some("s"), "Time in contact with the display touched longest", |trial| {
+            number(trial.contact_s)
+        }),
         column("target_force", Some("N"), "Force to be followed", |trial| {
             number(trial.target_force_n)
         }),
@@ -153,8 +155,13 @@ fn station_columns(index: usize, station: &str) -> Vec<Column> {
         ),
         measured("setpoint", "degC", "Set-point at the landing", |s| s.setpoint_c),
         measured("display", "degC", "Display thermistor at the landing", |s| s.display_c),
-        measured("force_mean", "N", "Mean force in contact", |s| s.force_mean_n),
-        measured("force_sd", "N", "Standard deviation of the force in contact", |s| s.force_sd_n),
+        measured("force_mean", "N", "Mean force from the landing to the lift", |s| s.force_mean_n),
+        measured(
+            "force_sd",
+            "N",
+            "Standard deviation of the force from the landing to the lift",
+            |s| s.force_sd_n,
+        ),
         measured("force_end_mean", "N", "Mean force of the last 2 s", |s| s.force_end_mean_n),
         measured("force_end_sd", "N", "Standard deviation of the force in the last 2 s", |s| {
             s.force_end_sd_n

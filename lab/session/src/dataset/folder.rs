@@ -35,11 +35,47 @@ impl Folder {
         &self.task
     }
 
-    /// A file in which the session was recorded.
-    pub fn source(&self, name: &str) -> PathBuf {
+    /// The folder in which the session was recorded.
+    pub fn path(&self) -> PathBuf {
         let Self { root, participant, task } = self;
         let folder = root.join("sourcedata").join(format!("sub-{participant}"));
-        folder.join(format!("task-{task}")).join(name)
+        folder.join(format!("task-{task}"))
+    }
+
+    /// A file in which the session was recorded.
+    pub fn source(&self, name: &str) -> PathBuf {
+        self.path().join(name)
+    }
+
+    /// Refuses a code that differs from one with data in capital letters only.
+    ///
+    /// # Errors
+    /// There is such a code.
+    pub(super) fn check_code(&self) -> Result<(), RecordingError> {
+        let given = &self.participant;
+        let entries = fs::read_dir(self.root.join("sourcedata")).into_iter().flatten();
+        let codes = entries.filter_map(|entry| {
+            let name = entry.ok()?.file_name().into_string().ok()?;
+            name.strip_prefix("sub-").map(str::to_owned)
+        });
+        let alike = |code: &String| code != given && code.eq_ignore_ascii_case(given);
+        match codes.into_iter().find(alike) {
+            Some(known) => Err(RecordingError::AlikeCode { given: given.clone(), known }),
+            None => Ok(()),
+        }
+    }
+
+    /// Keeps other programs from the files that all participants share, until the returned file is closed.
+    ///
+    /// # Errors
+    /// The operating system does not lock it.
+    pub(super) fn lock_shared_files(&self) -> Result<fs::File, RecordingError> {
+        let folder = self.root.join("sourcedata");
+        let path = folder.join("shared-files.lock");
+        fs::create_dir_all(&folder).map_err(error_at(&folder))?;
+        let file = fs::File::create(&path).map_err(error_at(&path))?;
+        file.lock().map_err(error_at(&path))?;
+        Ok(file)
     }
 
     /// A file of behavioural data, by the end of its name, such as `events.tsv`.
@@ -56,7 +92,8 @@ pub(super) fn write_whole(path: &Path, contents: &[u8]) -> Result<(), RecordingE
         fs::create_dir_all(folder).map_err(error_at(folder))?;
     }
     let mut name = path.as_os_str().to_owned();
-    name.push(".part");
+    // Of this program alone: several may write the same file.
+    name.push(format!(".{}.part", std::process::id()));
     let part = PathBuf::from(name);
     let written = fs::File::create(&part).and_then(|mut file| {
         file.write_all(contents)?;

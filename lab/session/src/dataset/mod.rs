@@ -16,6 +16,8 @@
 
 mod append;
 mod bids;
+mod check;
+mod data_set;
 mod events;
 mod folder;
 mod log;
@@ -27,9 +29,10 @@ mod telemetry;
 use std::io;
 use std::path::PathBuf;
 
+pub use data_set::{DataSet, DataSetError, recorded_sessions};
 pub use folder::Folder;
 pub use log::{Entry, LogLine};
-pub use read::{RecordedSession, recorded_sessions};
+pub use read::RecordedSession;
 pub use recorder::{DeviceReport, Recorder, SessionInfo};
 
 /// Why data cannot be written or read.
@@ -61,6 +64,16 @@ pub enum RecordingError {
         .0.display()
     )]
     Exists(PathBuf),
+    /// There are data of a participant whose code differs in capital letters only; on some computers both have one folder.
+    #[error(
+        "participant {given}: there are data of {known}; allowed is {known} itself, or a code that differs in more than capital letters"
+    )]
+    AlikeCode {
+        /// The code that was given.
+        given: String,
+        /// The one that is there.
+        known: String,
+    },
     /// What was recorded belongs to another session file or seed.
     #[error("{}: recorded with {what} {recorded}; given is {given}", path.display())]
     OtherSession {

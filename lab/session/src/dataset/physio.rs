@@ -45,18 +45,27 @@ const STATES: [StateName; 7] = [
 /// Number of the state `tripped`.
 const TRIPPED: usize = STATES.len();
 
-/// The rows of a finger, one every `interval_ms` from the begin of the session on, from `telemetry.csv`: compressed, without a
-/// time in it, so that equal telemetry gives equal bytes.
+/// The rows of a finger.
+pub(super) struct Rows {
+    /// Compressed, without a time in it, so that equal telemetry gives equal bytes.
+    pub gzip: Vec<u8>,
+    /// Largest distance of a line's time from that of its row, s: the device's ticks are not those of the session.
+    pub off_max_s: f64,
+}
+
+/// The rows of a finger, one every `interval_ms` from the begin of the session on, from `telemetry.csv`.
 pub(super) fn compressed(
     telemetry: &Path,
     finger: u8,
     interval_ms: u32,
-) -> Result<Vec<u8>, RecordingError> {
+) -> Result<Rows, RecordingError> {
     let mut gzip = GzBuilder::new().mtime(0).write(Vec::new(), Compression::default());
     let nothing = [UNKNOWN; COLUMNS.len()].join("\t") + "\n";
     let mut next_row: i64 = 0;
+    let mut off_max_s: f64 = 0.0;
+    let interval_s = 1e-3 * f64::from(interval_ms);
     for (t_s, received) in telemetry::read(telemetry)? {
-        let row = (t_s * 1e3 / f64::from(interval_ms)).round() as i64;
+        let row = (t_s / interval_s).round() as i64;
         // Of two lines that are nearest to the same row the first counts.
         if received.finger != Some(finger) || row < next_row {
             continue;
@@ -69,17 +78,20 @@ pub(super) fn compressed(
         });
         gzip.write_all((cells.join("\t") + "\n").as_bytes()).map_err(error_at(telemetry))?;
         next_row = row + 1;
+        off_max_s = off_max_s.max((t_s - row as f64 * interval_s).abs());
     }
-    gzip.finish().map_err(error_at(telemetry))
+    Ok(Rows { gzip: gzip.finish().map_err(error_at(telemetry))?, off_max_s })
 }
 
-/// What the columns are.
-pub(super) fn sidecar(interval_ms: u32) -> Value {
+/// What the columns are, and how far the rows' times are off, s.
+pub(super) fn sidecar(interval_ms: u32, off_max_s: f64) -> Value {
     let names: Vec<_> = COLUMNS.iter().map(|(name, ..)| *name).collect();
     let mut about = json!({
         "SamplingFrequency": 1e3 / f64::from(interval_ms),
         "StartTime": 0.0,
         "PhysioType": "generic",
+        "TimeErrorMax": (off_max_s * 1e4).round() / 1e4,
+        "TimeErrorDescription": "A row is the line of telemetry nearest to its time; the largest distance, in seconds",
         "Columns": names,
     });
     for (name, unit, description, _) in COLUMNS {

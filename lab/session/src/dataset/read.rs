@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::check::contradictions;
 use super::log::{Entry, LogLine};
-use super::recorder::{INFO, LOG, SESSION, SessionInfo, TELEMETRY};
-use super::{Folder, RecordingError, telemetry, unreadable};
+use super::recorder::{INFO, LOG, SESSION, SessionInfo, TELEMETRY, sha256};
+use super::{DataSetError, Folder, RecordingError, telemetry, unreadable};
 use crate::record::TrialRecord;
 use crate::{Plan, Session, Update};
 
@@ -24,27 +25,50 @@ pub struct RecordedSession {
     pub records: Vec<TrialRecord>,
     /// Everything that happened.
     pub log: Vec<LogLine>,
+    /// What in its files is not as it was recorded, but does not change the trials above.
+    pub remarks: Vec<String>,
 }
 
 impl RecordedSession {
-    /// Reads the session of a participant and task.
+    /// Reads the session of a folder with this description.
     ///
     /// # Errors
-    /// A file cannot be read or does not say what it should.
-    pub fn read(folder: Folder) -> Result<Self, RecordingError> {
-        let info_path = folder.source(INFO);
-        let info = fs::read(&info_path).map_err(unreadable(&info_path))?;
-        let info: SessionInfo = serde_json::from_slice(&info)
-            .map_err(|error| content(&info_path, error.line(), &error))?;
+    /// A file cannot be read or does not say what it should, or the files contradict each other.
+    pub(super) fn of(folder: Folder, info: SessionInfo) -> Result<Self, DataSetError> {
         let session_path = folder.source(SESSION);
         let text = fs::read_to_string(&session_path).map_err(unreadable(&session_path))?;
         let session = Session::parse(&text, &session_path)
             .map_err(|error| content(&session_path, 1, &error))?;
         let plan = Plan::new(&session, &info.participant, info.seed)
             .map_err(|error| content(&session_path, 1, &error))?;
-        let (log, _) = read_log(&folder.source(LOG))?;
-        let (records, _) = records_of(&log);
-        Ok(Self { folder, info, session, plan, records, log })
+        let mut remarks = Vec::new();
+        if sha256(plan.csv().as_bytes()) != info.plan_sha256 {
+            return Err(DataSetError::OtherPlan(folder.path()));
+        }
+        if sha256(text.as_bytes()) != info.session_sha256 {
+            remarks.push(format!("{}: changed after the recording", session_path.display()));
+        }
+        let log_path = folder.source(LOG);
+        let ReadLog { lines: log, damaged, .. } = read_log(&log_path)?;
+        let contradictions = contradictions(&plan, &log);
+        if let Some((line, first)) = contradictions.first() {
+            let problem = match contradictions.len() {
+                1 => first.clone(),
+                count => format!("{first}; {count} contradictions in all"),
+            };
+            return Err(RecordingError::Content { path: log_path, line: *line, problem }.into());
+        }
+        let (records, telemetry_bytes) = records_of(&log);
+        remarks.extend(damaged.map(|error| format!("{error}; what follows is left out")));
+        let telemetry = folder.source(TELEMETRY);
+        let length = fs::metadata(&telemetry).map_or(0, |metadata| metadata.len());
+        if let Some(bytes) = telemetry_bytes.filter(|bytes| length < *bytes) {
+            remarks.push(format!(
+                "{}: it has {length} bytes; the log says that {bytes} were recorded",
+                telemetry.display()
+            ));
+        }
+        Ok(Self { folder, info, session, plan, records, log, remarks })
     }
 
     /// The file with its telemetry.
@@ -74,40 +98,23 @@ impl RecordedSession {
     }
 }
 
-/// All sessions of a data set, by participant and task.
-///
-/// # Errors
-/// The folder is no data set, or a file cannot be read.
-pub fn recorded_sessions(root: &Path) -> Result<Vec<RecordedSession>, RecordingError> {
-    let source = root.join("sourcedata");
-    let mut sessions = Vec::new();
-    for participant in names(&source, "sub-")? {
-        for task in names(&source.join(format!("sub-{participant}")), "task-")? {
-            let folder = Folder::new(root, &participant, &task);
-            // A session that was killed while it began has no log yet.
-            if folder.source(LOG).exists() {
-                sessions.push(RecordedSession::read(folder)?);
-            }
-        }
-    }
-    Ok(sessions)
+/// The description of a session.
+pub(super) fn read_info(folder: &Folder) -> Result<SessionInfo, RecordingError> {
+    let path = folder.source(INFO);
+    let text = fs::read(&path).map_err(unreadable(&path))?;
+    serde_json::from_slice(&text).map_err(|error| content(&path, error.line(), &error))
 }
 
-/// The folders whose names begin with a word, in order, without the word.
-fn names(folder: &Path, word: &str) -> Result<Vec<String>, RecordingError> {
-    let mut names = Vec::new();
-    for entry in fs::read_dir(folder).map_err(unreadable(folder))? {
-        let name = entry.map_err(unreadable(folder))?.file_name();
-        let name = name.to_str().and_then(|name| name.strip_prefix(word));
-        names.extend(name.map(str::to_owned));
-    }
-    names.sort_unstable();
-    Ok(names)
+/// A log up to and including the last record. What follows is of a trial that has not ended, and may be damaged.
+pub(super) struct ReadLog {
+    pub lines: Vec<LogLine>,
+    /// Their length.
+    pub bytes: u64,
+    /// The first damaged line after them, if it has an end: a program that was killed leaves a line without one.
+    pub damaged: Option<RecordingError>,
 }
 
-/// The lines of a log up to and including the last record, and their length in bytes. What follows is of a trial that has not
-/// ended, and may be damaged.
-pub(super) fn read_log(path: &Path) -> Result<(Vec<LogLine>, u64), RecordingError> {
+pub(super) fn read_log(path: &Path) -> Result<ReadLog, RecordingError> {
     let text = fs::read(path).map_err(unreadable(path))?;
     let (mut lines, mut bytes) = (Vec::new(), 0u64);
     let mut committed = (0, 0);
@@ -116,20 +123,21 @@ pub(super) fn read_log(path: &Path) -> Result<(Vec<LogLine>, u64), RecordingErro
         bytes += line.len() as u64;
         match serde_json::from_slice::<LogLine>(line) {
             Ok(line) => lines.push(line),
+            Err(_) if !line.ends_with(b"\n") => continue,
             Err(error) => {
-                damaged = damaged.or(Some((number, error)));
+                damaged = damaged.or(Some(content(path, number, &error)));
                 continue;
             }
         }
         if let Some(LogLine { entry: Entry::Record { .. }, .. }) = lines.last() {
-            if let Some((number, error)) = &damaged {
-                return Err(content(path, *number, error));
+            if let Some(error) = damaged {
+                return Err(error);
             }
             committed = (lines.len(), bytes);
         }
     }
     lines.truncate(committed.0);
-    Ok((lines, committed.1))
+    Ok(ReadLog { lines, bytes: committed.1, damaged })
 }
 
 /// The records of a log, and the length of the telemetry up to the last one.

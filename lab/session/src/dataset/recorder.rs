@@ -12,7 +12,7 @@ use thermal_client::client::{Identity, Telemetry};
 use super::append::AppendFile;
 use super::folder::write_whole;
 use super::log::{Entry, LogLine};
-use super::read::{read_log, records_of};
+use super::read::{read_info, read_log, records_of};
 use super::{Folder, RecordingError, bids, telemetry, unreadable};
 use crate::record::TrialRecord;
 use crate::{Plan, Session, Update};
@@ -42,11 +42,21 @@ pub struct SessionInfo {
     pub devices: Vec<Value>,
 }
 
+impl SessionInfo {
+    /// Whether participant and device were simulated, or the device was simulated by another program.
+    pub fn has_simulated_part(&self) -> bool {
+        let says_so = |device: &Value| device["is_simulated"] == true;
+        self.is_simulated || self.devices.iter().any(says_so)
+    }
+}
+
 /// What a device says of itself.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DeviceReport {
     /// Name, version, fingers, capabilities.
     pub identity: Identity,
+    /// Whether it is simulated, also one that is served by another program; `None` if it does not say.
+    pub is_simulated: Option<bool>,
     /// Lines of the settings of each finger.
     pub settings: Vec<Vec<String>>,
 }
@@ -98,9 +108,10 @@ impl Recorder {
         is_simulated: bool,
     ) -> Result<Self, RecordingError> {
         let folder = Folder::new(root, participant, &session.task);
+        folder.check_code()?;
         let log_path = folder.source(LOG);
         // A session that has ended before its first trial leaves nothing that could be lost.
-        if log_path.exists() && !records_of(&read_log(&log_path)?.0).0.is_empty() {
+        if log_path.exists() && !records_of(&read_log(&log_path)?.lines).0.is_empty() {
             return Err(RecordingError::Exists(log_path));
         }
         let plan_csv = plan.csv();
@@ -153,20 +164,14 @@ impl Recorder {
         if !log_path.exists() {
             return Err(RecordingError::Missing(log_path));
         }
-        let (lines, committed) = read_log(&log_path)?;
-        let (records, telemetry_bytes) = records_of(&lines);
+        let recorded = read_log(&log_path)?;
+        let (records, telemetry_bytes) = records_of(&recorded.lines);
         let Some(telemetry_bytes) = telemetry_bytes else {
             // It was interrupted before its first trial had ended.
             return Self::create(root, session, plan, (participant, seed), is_simulated);
         };
         let info_path = folder.source(INFO);
-        let info = fs::read(&info_path).map_err(unreadable(&info_path))?;
-        let info: SessionInfo =
-            serde_json::from_slice(&info).map_err(|error| RecordingError::Content {
-                line: error.line(),
-                problem: error.to_string(),
-                path: info_path.clone(),
-            })?;
+        let info = read_info(&folder)?;
         let given = [
             sha256(session.text.as_bytes()),
             seed.to_string(),
@@ -191,7 +196,8 @@ impl Recorder {
                 });
             }
         }
-        let log = AppendFile::open(&log_path, committed, true)?;
+        check_line_ends(&folder.source(TELEMETRY), telemetry_bytes)?;
+        let log = AppendFile::open(&log_path, recorded.bytes, true)?;
         let rows = AppendFile::open(&folder.source(TELEMETRY), telemetry_bytes, false)?;
         // A clock that cannot be read has nothing that the data need.
         let clock = fs::read(folder.source(CLOCK)).unwrap_or_default();
@@ -314,7 +320,31 @@ const fn kind(is_simulated: bool) -> &'static str {
     if is_simulated { "simulated" } else { "real" }
 }
 
-fn sha256(bytes: &[u8]) -> String {
+/// Refuses a file whose first `recorded` bytes are not those that were recorded, because a text tool has changed its line ends:
+/// cut there, it would lose rows.
+fn check_line_ends(path: &Path, recorded: u64) -> Result<(), RecordingError> {
+    let bytes = fs::read(path).map_err(unreadable(path))?;
+    let wrong = |line: usize, problem: &str| {
+        let problem = format!(
+            "{problem}; a file as it was recorded is allowed, with LF alone at each end of a line"
+        );
+        Err(RecordingError::Content { path: path.into(), line, problem })
+    };
+    if let Some(at) = bytes.iter().position(|byte| *byte == b'\r') {
+        let line = bytes[..at].iter().filter(|byte| **byte == b'\n').count() + 1;
+        return wrong(line, "this line ends with CR LF");
+    }
+    match bytes.get(..recorded as usize) {
+        Some(whole) if !whole.ends_with(b"\n") => {
+            let line = whole.iter().filter(|byte| **byte == b'\n').count() + 1;
+            wrong(line, "what was recorded ends within this line")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// SHA-256 in hexadecimal digits.
+pub(super) fn sha256(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use thermal_client::client::{ClientError, PlainCommand, QueryCause, QueryIdentity, QueryState};
+use thermal_client::client::{
+    ClientError, PlainCommand, QueryBoard, QueryCause, QueryIdentity, QueryState,
+};
 use thermal_client::commissioning::settings;
 use thermal_client::link::Link;
 use thermal_device::safety::Fault;
@@ -47,7 +49,13 @@ impl<L: Link> Executor<'_, L> {
             let address = self.fingers.address(finger);
             all_settings.push(settings(&mut self.client, address).map_err(ends)?);
         }
-        self.recorder.device(&DeviceReport { identity, settings: all_settings })?;
+        let is_simulated = if identity.can("board") {
+            Some(self.client.ask(&QueryBoard).map_err(ends)?.is_simulated())
+        } else {
+            None
+        };
+        let settings = all_settings;
+        self.recorder.device(&DeviceReport { identity, is_simulated, settings })?;
         for finger in displays {
             self.require_tuned(finger)?;
         }

@@ -283,8 +283,15 @@ impl<'a> Reader<'a, '_> {
         if !is_name(name) || RESERVED.contains(&name) {
             return Err(error(format!("as a name {NAME}, and none of {}", listed(&RESERVED))));
         }
-        if self.stations.iter().any(|station| station.name == name) {
-            return Err(error("a name that no station has".into()));
+        let is_of_station = |station: &Station| {
+            name.strip_prefix(&*station.name)
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
+        };
+        if let Some(station) = self.stations.iter().find(|station| is_of_station(station)) {
+            return Err(error(format!(
+                "a name that is not that of the station {0:?} and does not begin with \"{0}_\", as that station's columns do",
+                station.name
+            )));
         }
         if self.factors.iter().any(|factor| factor.part == part && factor.name == name) {
             return Err(error("each factor once in a part".into()));

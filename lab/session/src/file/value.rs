@@ -50,13 +50,14 @@ impl Whole {
 }
 
 /// Names and levels are columns and words of recorded tables.
-pub(super) const NAME: &str = "1 to 40 letters, digits and _, with a letter first";
+pub(super) const NAME: &str = "1 to 40 letters, digits and _, with a small letter first";
 pub(super) const LEVEL: &str = "1 to 40 letters, digits, - _ and .";
 
-/// Whether a text is the name of a factor or a station.
+/// Whether a text is the name of a factor or a station. Names with a capital letter first are keys of BIDS: a sidecar describes
+/// columns and has such keys side by side.
 pub(super) fn is_name(text: &str) -> bool {
     is_level(text)
-        && text.starts_with(|first: char| first.is_ascii_alphabetic())
+        && text.starts_with(|first: char| first.is_ascii_lowercase())
         && !text.contains(['-', '.'])
 }
 

@@ -1,6 +1,7 @@
 //! The ready sessions, and plans of trials.
 
 mod any_file;
+mod data_sets;
 mod plans;
 mod ready_sessions;
 

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use thermal_session::{PlanError, PlannedTrial};
+use thermal_session::{Plan, PlanError, PlannedTrial, Session};
 
 use crate::{changed, plan, ready};
 
@@ -160,4 +160,57 @@ fn breaks_can_come_after_a_number_of_trials_or_never() {
     assert_eq!(breaks("blocks = \"none\""), [0; 0]);
     assert_eq!(breaks("blocks = \"none\"\nbreak_after = 24"), [25, 49]);
     assert_eq!(breaks("blocks = \"repetition\"\nbreak_after = 0"), [0; 0]);
+}
+
+/// Two materials on two displays, whose objects have a temperature, °C.
+fn colder_of_two(object_c: &str) -> Session {
+    let text = format!(
+        r#"format = 1
+title = "Which is colder?"
+task = "colder"
+cite = "own"
+instruction = "Touch both."
+[device]
+object_c = {object_c}
+[stations.left]
+finger = "left index"
+[stations.right]
+finger = "right index"
+[present]
+left = {{ display = "abs", device_finger = 0 }}
+right = {{ display = "test", device_finger = 1 }}
+[rest]
+skin_c = 33
+[trial]
+contact = "hold"
+answer = {{ ask = "Which is colder?", one_of = ["left", "right"] }}
+[design]
+factors.test = ["copper", "foam"]
+[score]
+correct = "colder"
+"#
+    );
+    Session::parse(&text, Path::new("colder.toml")).expect("a valid session")
+}
+
+/// Copper takes more heat than ABS from a skin that is warmer, and gives more to one that is colder (Bergmann Tiest and Kappers
+/// 2008 have found the same reversal in people); foam does both less.
+#[test]
+fn the_colder_of_two_materials_is_the_one_at_which_the_skin_is_colder() {
+    for (object_c, beside_copper, beside_foam) in [
+        ("\"room\"", Some("right"), Some("left")),
+        ("15", Some("right"), Some("left")),
+        ("41", Some("left"), Some("right")),
+        ("33", None, None),
+    ] {
+        let session = colder_of_two(object_c);
+        let plan = Plan::new(&session, "01", 1).expect("a plan");
+        for trial in &plan.trials {
+            let expected = match plan.level(trial, "test") {
+                Some("copper") => beside_copper,
+                _ => beside_foam,
+            };
+            assert_eq!(trial.correct.as_deref(), expected, "{object_c}: {:?}", trial.levels);
+        }
+    }
 }

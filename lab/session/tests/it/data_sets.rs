@@ -1,0 +1,298 @@
+//! Data sets with files that were copied, renamed, damaged or changed after the recording.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use thermal_session::dataset::{DataSetError, Recorder, recorded_sessions};
+use thermal_session::record::TrialRecord;
+use thermal_session::{PlannedTrial, Session};
+
+use crate::{plan, ready};
+
+/// A data set in a new folder of the tests, with the first trials of these participants.
+struct Recorded {
+    root: PathBuf,
+}
+
+const TRIALS: usize = 6;
+
+/// A trial of a participant who knows the correct answer, and says "left" where none is.
+fn record(planned: &PlannedTrial) -> TrialRecord {
+    let begin_s = 30.0 * f64::from(planned.number);
+    let answer = planned.correct.clone().unwrap_or_else(|| "left".into());
+    TrialRecord {
+        trial: planned.number,
+        attempt: 1,
+        part: planned.part.clone(),
+        block: planned.block,
+        levels: planned.levels.clone(),
+        begin_s,
+        end_s: begin_s + 20.0,
+        expected: planned.correct.clone(),
+        is_correct: planned.correct.is_some().then_some(true),
+        answer: Some(answer),
+        ..TrialRecord::default()
+    }
+}
+
+impl Recorded {
+    fn new(name: &str, participants: &[&str]) -> Self {
+        let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let _ignored = fs::remove_dir_all(&root);
+        let session = ready("p1-discrimination");
+        let recorded = Self { root };
+        for participant in participants {
+            recorded.add(&session, participant);
+        }
+        recorded
+    }
+
+    fn add(&self, session: &Session, participant: &str) {
+        let plan = plan(session, participant, 1);
+        let who = (participant, 1);
+        let mut recorder =
+            Recorder::create(&self.root, session, &plan, who, true).expect("a recorder");
+        for planned in &plan.trials[..TRIALS] {
+            recorder.trial_ended(&record(planned), std::iter::empty()).expect("a record");
+        }
+        recorder.finish().expect("a data set");
+    }
+
+    fn source(&self, name: &str) -> PathBuf {
+        self.root.join("sourcedata").join(name)
+    }
+
+    /// Changes a file of participant 02, given its lines.
+    fn change(&self, file: &str, change: impl Fn(&mut Vec<String>)) {
+        let path = self.source("sub-02/task-p1").join(file);
+        let text = fs::read_to_string(&path).expect("a file");
+        let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        change(&mut lines);
+        fs::write(&path, lines.join("\n") + "\n").expect("a file");
+    }
+
+    /// The participants that can be read, and the messages of what is left out, without the folder of the data set.
+    fn read(&self) -> (Vec<String>, Vec<String>) {
+        let found = recorded_sessions(&self.root).expect("a data set");
+        let codes = found.sessions.iter().map(|session| session.info.participant.clone());
+        (codes.collect(), found.left_out.iter().map(|error| self.words(error)).collect())
+    }
+
+    /// The message of the error that the whole data set is.
+    fn refused(&self) -> String {
+        self.words(&recorded_sessions(&self.root).expect_err("an error"))
+    }
+
+    fn words(&self, error: &DataSetError) -> String {
+        let root = self.root.join("sourcedata").display().to_string() + "/";
+        error.to_string().replace('\\', "/").replace(&root, "")
+    }
+
+    /// Asserts that 01 and 03 are read, and 02 is left out with these words.
+    #[track_caller]
+    fn assert_left_out(&self, words: &str) {
+        let (participants, left_out) = self.read();
+        assert_eq!(participants, ["01", "03"]);
+        assert!(left_out.len() == 1 && left_out[0].contains(words), "{left_out:?}");
+    }
+}
+
+const THREE: [&str; 3] = ["01", "02", "03"];
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a folder");
+    for entry in fs::read_dir(from).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let target = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            fs::copy(&path, &target).expect("a copy");
+        }
+    }
+}
+
+#[test]
+fn a_copied_folder_is_refused_by_the_names_of_both() {
+    for (from, to) in [
+        ("sub-01", "sub-01 - Copy"),
+        ("sub-01", "sub-09"),
+        ("sub-01/task-p1", "sub-01/task-p1 (conflicted copy)"),
+        ("sub-01/task-p1", "sub-02/task-p1"),
+    ] {
+        let recorded = Recorded::new("copied", &["01", "02"]);
+        copy(&recorded.source(from), &recorded.source(to));
+        let words = recorded.refused();
+        let task = |folder: &str| match folder.split_once('/') {
+            Some(_) => folder.to_owned(),
+            None => format!("{folder}/task-p1"),
+        };
+        for folder in [task(from), task(to)] {
+            assert!(words.contains(&folder), "{folder}: {words}");
+        }
+        assert!(words.contains("both are of participant 01, task p1"), "{words}");
+    }
+}
+
+#[test]
+fn a_renamed_folder_is_refused() {
+    let recorded = Recorded::new("renamed", &["01", "02"]);
+    fs::rename(recorded.source("sub-02"), recorded.source("sub-07")).expect("a new name");
+    let words = recorded.refused();
+    assert!(words.contains("sub-07/task-p1: session.json says participant 02, task p1"), "{words}");
+}
+
+/// Another code gives another order of the trials: the records would be of other stimuli.
+#[test]
+fn a_session_that_was_renamed_in_its_description_too_is_left_out() {
+    let recorded = Recorded::new("renamed-twice", &THREE);
+    recorded.change("session.json", |lines| {
+        let renamed = |line: &mut String| *line = line.replace("\"02\"", "\"07\"");
+        lines.iter_mut().for_each(renamed);
+    });
+    fs::rename(recorded.source("sub-02"), recorded.source("sub-07")).expect("a new name");
+    recorded
+        .assert_left_out("sub-07/task-p1: the plan of session.toml, participant and seed is not");
+}
+
+#[test]
+fn codes_that_differ_in_case_only_are_refused_by_the_names_of_both() {
+    let recorded = Recorded::new("case", &["p03"]);
+    let other = Recorded::new("case-other", &["P03"]);
+    copy(&other.source("sub-P03"), &recorded.source("sub-P03"));
+    let words = recorded.refused();
+    assert!(words.contains("sub-P03/task-p1 and ") && words.contains("sub-p03/task-p1"), "{words}");
+    assert!(words.contains("differ in case only"), "{words}");
+}
+
+#[test]
+fn what_cannot_be_read_is_named_and_the_rest_is_read() {
+    type Change = fn(&Recorded);
+    let changes: [(Change, &str); 6] = [
+        (
+            |recorded| fs::remove_file(recorded.source("sub-02/task-p1/log.jsonl")).unwrap(),
+            "sub-02/task-p1/log.jsonl: ",
+        ),
+        (
+            |recorded| fs::remove_file(recorded.source("sub-02/task-p1/session.json")).unwrap(),
+            "sub-02/task-p1/session.json: ",
+        ),
+        (
+            |recorded| fs::remove_dir_all(recorded.source("sub-02/task-p1")).unwrap(),
+            "sub-02: has no folder task-TASK",
+        ),
+        (
+            |recorded| {
+                fs::remove_dir_all(recorded.source("sub-02")).unwrap();
+                fs::write(recorded.source("sub-02"), "no folder").unwrap();
+            },
+            "sub-02: is no folder sub-CODE",
+        ),
+        (
+            |recorded| {
+                fs::rename(recorded.source("sub-02"), recorded.source("Copy of sub-02")).unwrap();
+            },
+            "Copy of sub-02: is no folder sub-CODE",
+        ),
+        (
+            |recorded| recorded.change("log.jsonl", |lines| lines[2].truncate(20)),
+            "sub-02/task-p1/log.jsonl:3: ",
+        ),
+    ];
+    for (change, words) in changes {
+        let recorded = Recorded::new("unreadable", &THREE);
+        change(&recorded);
+        recorded.assert_left_out(words);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_cannot_be_entered_is_named() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let recorded = Recorded::new("closed", &THREE);
+    let folder = recorded.source("sub-02");
+    let allow = |mode: u32| {
+        fs::set_permissions(&folder, fs::Permissions::from_mode(mode)).expect("a permission");
+    };
+    allow(0o000);
+    // The superuser enters every folder.
+    if fs::read_dir(&folder).is_err() {
+        recorded.assert_left_out("sub-02: ");
+    }
+    allow(0o755);
+    fs::remove_dir_all(&folder).expect("a folder");
+    symlink("sub-02", &folder).expect("a link to itself");
+    recorded.assert_left_out("sub-02: ");
+}
+
+#[test]
+fn records_that_contradict_each_other_or_the_plan_are_named_by_line() {
+    type Change = fn(&mut Vec<String>);
+    let changes: [(Change, &str); 7] = [
+        (
+            |lines| lines.push(lines[4].clone()),
+            "log.jsonl:7: trial 5, attempt 1: it is recorded twice, first in line 5",
+        ),
+        (
+            |lines| lines.swap(2, 4),
+            "log.jsonl:4: trial 4, attempt 1: it begins at 120 s, before the trial of line 3 has ended, at 170 s; 2 contradictions in all",
+        ),
+        (
+            |lines| lines[1] = lines[1].replace("\"end_s\":80.0", "\"end_s\":20.0"),
+            "log.jsonl:2: trial 2, attempt 1: it ends at 20 s, before its begin at 60 s",
+        ),
+        (
+            |lines| lines[0] = lines[0].replace("\"answer\":\"right\"", "\"answer\":\"left\""),
+            "log.jsonl:1: trial 1, attempt 1: the answer 'left' is recorded as correct, and the correct one is 'right'",
+        ),
+        (
+            |lines| lines[0] = lines[0].replace("\"is_correct\":true", "\"is_correct\":null"),
+            "the answer 'right' is recorded as not scored",
+        ),
+        (
+            |lines| lines[0] = lines[0].replace(":\"right\"", ":\"left\""),
+            "the correct answer is 'left'; by the plan it is 'right'",
+        ),
+        (
+            |lines| lines[0] = lines[0].replace("\"trial\":1,", "\"trial\":200,"),
+            "log.jsonl:1: trial 200, attempt 1: the plan has 84 trials",
+        ),
+    ];
+    for (change, words) in changes {
+        let recorded = Recorded::new("contradictions", &THREE);
+        recorded.change("log.jsonl", change);
+        recorded.assert_left_out(words);
+    }
+}
+
+#[test]
+fn a_damaged_end_and_a_changed_session_file_are_remarks() {
+    let recorded = Recorded::new("remarks", &THREE);
+    let log = |text: &str| recorded.change("log.jsonl", |lines| lines.push(text.into()));
+    let remarks = || {
+        let found = recorded_sessions(&recorded.root).expect("a data set");
+        assert!(found.left_out.is_empty(), "{:?}", found.left_out);
+        found.sessions.iter().map(|session| session.remarks.join("; ")).collect::<Vec<_>>()
+    };
+    assert_eq!(remarks(), ["", "", ""]);
+    log("{\"t_s\":1");
+    assert!(remarks()[1].contains("log.jsonl:7: "), "{:?}", remarks());
+    recorded.change("log.jsonl", |lines| lines.truncate(TRIALS));
+    recorded.change("telemetry.csv", Vec::clear);
+    assert!(remarks()[1].contains("telemetry.csv: it has 1 bytes"), "{:?}", remarks());
+    recorded.change("session.toml", |lines| lines.push("# Day 2".into()));
+    assert!(remarks()[1].contains("session.toml: changed after the recording"), "{:?}", remarks());
+}
+
+/// A program that was killed while it wrote leaves a line without an end.
+#[test]
+fn a_line_that_was_not_written_to_its_end_is_no_damage() {
+    let recorded = Recorded::new("killed", &["01"]);
+    let path = recorded.source("sub-01/task-p1/log.jsonl");
+    let text = fs::read_to_string(&path).expect("a log");
+    fs::write(&path, text + "{\"t_s\":1").expect("a log");
+    let found = recorded_sessions(&recorded.root).expect("a data set");
+    assert_eq!(found.sessions[0].records.len(), TRIALS);
+    assert!(found.sessions[0].remarks.is_empty());
+}
