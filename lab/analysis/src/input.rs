@@ -88,7 +88,8 @@ pub fn tasks(sessions: &[RecordedSession], simulated: Simulated) -> Vec<Task> {
     let mut tasks: Vec<(Session, Task)> = Vec::new();
     let is_mixed = |task: &str| {
         let own = || sessions.iter().filter(|one| one.session.task == task);
-        own().any(|one| one.info.has_simulated_part()) && own().any(|one| !one.info.has_simulated_part())
+        own().any(|one| one.info.has_simulated_part())
+            && own().any(|one| !one.info.has_simulated_part())
     };
     for recorded in sessions {
         let is_left_out = simulated == Simulated::Apart && recorded.info.has_simulated_part();
@@ -121,7 +122,8 @@ pub fn tasks(sessions: &[RecordedSession], simulated: Simulated) -> Vec<Task> {
 
 /// What was done with the simulated participants of a task that has real ones, too.
 fn mixed(sessions: &[RecordedSession], task: &str, simulated: Simulated) -> String {
-    let own = sessions.iter().filter(|one| one.session.task == task && one.info.has_simulated_part());
+    let own =
+        sessions.iter().filter(|one| one.session.task == task && one.info.has_simulated_part());
     let codes: Vec<_> = own.map(|one| &*one.info.participant).collect();
     let (count, codes) = (codes.len(), codes.join(", "));
     match simulated {
