@@ -56,10 +56,10 @@ pub fn chi_squared_against(task: &Task) -> Section {
     };
     let own = distinct(answers.iter().map(|answer| answer.pair));
     let own = own.into_iter().filter(|pair| !is_published(pair)).map(|pair| pair.join(BETWEEN));
-    for (pairs, why) in
-        [(unanswered, "has no answers here"), (own.collect(), "is not in Table 3-3")]
-    {
-        section.warn(pairs.into_iter().map(|pair| format!("Left out: {pair} {why}.")));
+    let own: Vec<_> = own.collect();
+    for (pairs, why) in [(unanswered, "without answers here"), (own, "not in Table 3-3")] {
+        let names = pairs.join(", ");
+        section.warn((!pairs.is_empty()).then(|| format!("Left out, {why}: {names}.")));
     }
     let pairs = rows.len() as f64;
     for (published, total, correct, of_40) in rows {

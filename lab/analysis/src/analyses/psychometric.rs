@@ -83,7 +83,7 @@ pub fn psychometric_fit(task: &Task) -> Section {
     let others: Vec<_> = others.map(|(participant, _)| participant).collect();
     let what = "trials without a positive level or without a scored answer";
     left_out::count(&mut section, task, &others, what);
-    let mut curves = Vec::new();
+    let (mut curves, mut poor) = (Vec::new(), Vec::new());
     for (series, condition) in conditions(task).into_iter().enumerate() {
         let mut groups = vec![("all".to_owned(), (0..task.participants.len()).collect::<Vec<_>>())];
         if task.participants.len() > 1 {
@@ -118,7 +118,8 @@ pub fn psychometric_fit(task: &Task) -> Section {
                              function."
                         )
                     }));
-                    section.warn(few_answers(&condition, &name, fit, &levels));
+                    let few = few_answers(fit, &levels);
+                    poor.extend(few.map(|few| format!("{condition}, {name}: {few}")));
                     let interval = bootstrap.map(|bootstrap| bootstrap.interval);
                     table.row(cells![
                         condition.clone(),
@@ -146,6 +147,13 @@ pub fn psychometric_fit(task: &Task) -> Section {
             }
         }
     }
+    section.warn((!poor.is_empty()).then(|| {
+        format!(
+            "p of the deviance is a poor approximation where fewer than {EXPECTED_MIN} correct or wrong answers are expected at a \
+             level ({}).",
+            poor.join("; ")
+        )
+    }));
     if !curves.is_empty() {
         let range =
             positive_range(curves.iter().flat_map(|curve| curve.points.iter().map(|(x, _)| *x)));
@@ -161,20 +169,14 @@ pub fn psychometric_fit(task: &Task) -> Section {
     section
 }
 
-/// A warning, if at some levels few correct or wrong answers are expected.
-fn few_answers(condition: &str, name: &str, fit: &Fit, levels: &[Level]) -> Option<String> {
+/// Number of levels at which few correct or wrong answers are expected, in words; `None` without such levels or without p.
+fn few_answers(fit: &Fit, levels: &[Level]) -> Option<String> {
     let expected = |level: &&Level| {
         let p = fit.probability(level.level).unwrap_or(0.0);
         f64::from(level.answers.total()) * p.min(1.0 - p)
     };
     let few = levels.iter().filter(|level| expected(level) < EXPECTED_MIN).count();
-    (fit.deviance_p.is_some() && few > 0).then(|| {
-        format!(
-            "{condition}, {name}: at {few} of {} levels fewer than {EXPECTED_MIN} correct or wrong answers are expected; p of the \
-             deviance is a poor approximation.",
-            levels.len()
-        )
-    })
+    (fit.deviance_p.is_some() && few > 0).then(|| format!("{few} of {} levels", levels.len()))
 }
 
 /// What a function is fitted for: a staircase, or what the factors say.

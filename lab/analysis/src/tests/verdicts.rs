@@ -135,7 +135,7 @@ fn a_slope_that_the_answers_do_not_determine_is_said_and_no_function_is_fitted()
 #[test]
 fn a_deviance_of_few_answers_is_warned_of() {
     let few = [(0.25, 6, 10), (0.35, 7, 10), (0.5, 8, 10), (0.7, 9, 10)];
-    let sentence = "cooling, all: at 4 of 4 levels fewer than 5 correct or wrong answers are expected; p of the deviance is a poor approximation.";
+    let sentence = "p of the deviance is a poor approximation where fewer than 5 correct or wrong answers are expected at a level (cooling, all: 4 of 4 levels).";
     assert!(of_task(&staircase(&few)).warnings("psychometric-fit").contains(&sentence));
     let many = [(0.25, 60, 100), (0.35, 70, 100), (0.5, 80, 100), (0.7, 90, 100)];
     assert!(of_task(&staircase(&many)).warnings("psychometric-fit").is_empty());
