@@ -54,6 +54,21 @@ fn the_plain_laws_keep_the_surface_within_its_limits_whatever_the_lag() {
     }
 }
 
+/// A reference that is as slow as the display winds up the integral: the surface then goes 0.6 K below a copper object of 24 deg C
+/// that appears under a finger, and the skin is more than 50 mK too cold for 10 s.
+#[test]
+fn the_plain_laws_take_the_set_point_of_a_room_at_once() {
+    for law in ["pi", "pi-10hz"] {
+        let tables = forces(&[(0.5, 0.5)]);
+        let mut scene = scene("copper", 8.0, &format!("law = \"{law}\""), &tables);
+        (scene.skin_c, scene.object.appears_t_s) = (34.0, 2.0);
+        let outcome = natively(&scene);
+        let (coldest_c, _) = range(outcome.trace.rows().iter().map(|row| row.display_c));
+        println!("{law}: {coldest_c:.2} C");
+        assert!((23.7..24.0).contains(&coldest_c), "{law}: {coldest_c} C");
+    }
+}
+
 /// A law that is chosen so that it would take over while the law `model` answers a landing with 5 A: it waits until the current is
 /// steady, and the surface does not follow that current to 11.5 deg C.
 #[test]

@@ -27,6 +27,9 @@ const APPROACH_PER_DEAD_TIME: f64 = 7.0;
 /// How much slower the reference falls than it rises, as a power of two: near its limit more current cools less, so the loop is
 /// slower there. With equal rates 8 of 400 drawn runs ended below 14 °C, with half the rate none.
 const COOLING_SLOWER_LOG2: u32 = 1;
+/// Rate, K/s, of the display at its current limit. A reference that moves at least as fast limits nothing: it only winds up the
+/// integral of a loop that lags behind it anyway.
+const FASTEST_DISPLAY_K_S: f64 = 5.0;
 /// Half an update of the law `pi-10hz`, s; the limits are the same for both laws.
 const HALF_UPDATE_S: f64 = 0.05;
 /// By how much both ends of the range are drawn in under the plain laws, K for each second of effective dead time beyond this one, s.
@@ -68,8 +71,9 @@ impl SetpointRange {
 enum LargestStep {
     /// By so much, K, under every law, because the tile was never identified.
     Untuned(Celsius),
-    /// Under the plain laws, by this part of its distance from the limit of the surface.
-    Plain(Fraction),
+    /// Under the plain laws, by this part of its distance from the limit of the surface; not limited in the range in which that
+    /// would be faster than the display.
+    Plain { part: Fraction, unlimited: SetpointRange },
 }
 
 impl ReferenceLimits {
@@ -95,9 +99,17 @@ impl ReferenceLimits {
         };
         let plain_k = [COLD_END_K, WARM_END_K].map(|end_k| end_k + DRAWN_IN_K_S * slow_s);
         let model_k = MODEL_DRAWN_IN_K_S.map(|k_s| k_s * slow_s);
-        let approach_ticks = APPROACH_PER_DEAD_TIME * dead_time_s * f64::from(TICK_HZ);
+        let approach_s = APPROACH_PER_DEAD_TIME * dead_time_s;
+        let warm_k = FASTEST_DISPLAY_K_S * approach_s;
+        let cold_k = warm_k * f64::from(1 << COOLING_SLOWER_LOG2);
         Self {
-            largest_step: LargestStep::Plain(to_fixed(1.0 / approach_ticks)),
+            largest_step: LargestStep::Plain {
+                part: to_fixed(1.0 / (approach_s * f64::from(TICK_HZ))),
+                unlimited: SetpointRange {
+                    min: SURFACE_MIN_WITHOUT_FAULT.saturating_add(to_fixed(cold_k)),
+                    max: SURFACE_MAX_WITHOUT_FAULT.saturating_sub(to_fixed(warm_k)),
+                },
+            },
             range: range(plain_k),
             model_range: (slow_s > 0.0).then(|| range(model_k)),
         }
@@ -136,23 +148,23 @@ impl ReferenceLimits {
         }
         let last_c = last.map_or(reading, |last| last.setpoint.celsius());
         let allowed_c = self.range.nearest(wanted_c);
-        let toward_allowed = |down: Celsius, up: Celsius| {
-            allowed_c.max(last_c.saturating_sub(down)).min(last_c.saturating_add(up))
-        };
         let (next_c, is_limited) = match self.largest_step {
             LargestStep::Untuned(step) => {
-                let next_c = toward_allowed(step, step);
+                let next_c =
+                    allowed_c.max(last_c.saturating_sub(step)).min(last_c.saturating_add(step));
                 (next_c, next_c != wanted_c)
             }
-            LargestStep::Plain(part) => {
+            LargestStep::Plain { part, unlimited } => {
                 let step = |distance: Celsius| -> Celsius {
                     saturating_product(distance.max(Celsius::ZERO), part)
                 };
                 let up = step(SURFACE_MAX_WITHOUT_FAULT.saturating_sub(last_c));
                 let down =
                     step(last_c.saturating_sub(SURFACE_MIN_WITHOUT_FAULT)) >> COOLING_SLOWER_LOG2;
+                let lowest_c = last_c.saturating_sub(down).min(unlimited.min);
+                let highest_c = last_c.saturating_add(up).max(unlimited.max);
                 // A plain law lags behind its set-point anyway, so only the range is reported.
-                (toward_allowed(down, up), allowed_c != wanted_c)
+                (allowed_c.max(lowest_c).min(highest_c), allowed_c != wanted_c)
             }
         };
         Reference { limited: wanted.limited || is_limited, ..Reference::at(next_c) }

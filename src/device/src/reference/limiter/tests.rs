@@ -21,18 +21,23 @@ fn way(limits: &ReferenceLimits, reading_c: f64, wanted_c: f64, ticks: usize) ->
     (0..ticks).map(|_| next()).collect()
 }
 
-/// `T = limit + (start - limit) e^(-t/tau)`: towards 43 °C with seven effective dead times, towards 14 °C with fourteen.
+/// `T = limit + (start - limit) e^(-t/tau)`: towards 43 °C with seven effective dead times, towards 14 °C with fourteen, from where
+/// this is as slow as the display, 5 K/s: 5 tau before the limit. The reference jumps there.
 #[test]
 fn the_reference_approaches_the_limits_of_the_surface_exponentially() {
-    for (lag_s, dead_time_s) in [(0.05, 0.12), (0.13, 0.2), (0.5, 0.57)] {
+    for (lag_s, dead_time_s) in [(0.02, 0.09), (0.05, 0.12), (0.13, 0.2), (0.5, 0.57)] {
         let limits = limits(lag_s);
         for (wanted_c, limit_c, tau_s) in
-            [(42.0, 43.0, 7.0 * dead_time_s), (15.0, 14.0, 14.0 * dead_time_s)]
+            [(42.0, 43.0, 7.0 * dead_time_s), (15.0, 14.0, -14.0 * dead_time_s)]
         {
-            let start_c = 27.0;
-            for (tick, celsius) in way(&limits, start_c, wanted_c, 1000).iter().enumerate() {
-                let t_s = 1e-3 * (tick + 1) as f64;
-                let exact_c = limit_c + (start_c - limit_c) * libm::exp(-t_s / tau_s);
+            let from_c = 27.0f64;
+            let jumps_to_c = limit_c - 5.0 * tau_s;
+            let start_c = if tau_s > 0.0 { from_c.max(jumps_to_c) } else { from_c.min(jumps_to_c) };
+            let first_s = if start_c == from_c { 1e-3 } else { 0.0 };
+            for (tick, celsius) in way(&limits, from_c, wanted_c, 1000).iter().enumerate() {
+                let t_s = first_s + 1e-3 * tick as f64;
+                let exact_c = limit_c + (start_c - limit_c) * libm::exp(-t_s / tau_s.abs());
+                let exact_c = exact_c.clamp(17.0, 41.0);
                 assert!((celsius - exact_c).abs() < 0.02, "{lag_s} s: {celsius}, not {exact_c} °C");
             }
         }
