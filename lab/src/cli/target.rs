@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use anyhow::{Context, anyhow};
 use clap::Args;
-use thermal_client::client::{Client, PlainCommand};
+use thermal_client::client::{Client, ClientError};
 use thermal_client::link::{Interruptible, Link};
 use thermal_lab::link::{self, LazyLink, SimulatedLink};
 use thermal_plant::Params;
@@ -67,11 +67,11 @@ impl Target {
         let done = work(&mut client);
         let was_driven = done.is_err() && client.may_be_driven();
         if was_driven || interrupted.load(Ordering::Relaxed) {
-            match client.ask(&PlainCommand::Abort) {
+            match client.switch_off() {
                 Ok(()) if was_driven => eprintln!("thermal-lab: the bridge is off"),
-                Err(error) if client.may_be_driven() => eprintln!(
-                    "thermal-lab: THE BRIDGE MAY STILL BE ON: abort was not confirmed ({error}). PRESS THE EMERGENCY STOP"
-                ),
+                Err(error) if was_driven || matches!(error, ClientError::NotOff { .. }) => {
+                    eprintln!("thermal-lab: {error}");
+                }
                 // The failure of the work is reported, and that of the link with it.
                 _ => {}
             }

@@ -136,7 +136,12 @@ fn wrong_arguments_say_what_is_allowed() {
     }
 }
 
-/// A device that answers as `answer` says, and the lines that it has received.
+/// Answer to `id`.
+const IDENTITY: &str =
+    "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000 protocol=2 capabilities=course";
+
+/// A device that answers as `answer` says, and the lines that it has received. In place of a mere `ok` to `id` and `state` it says what it
+/// is, and whether it is driven: it was armed, and has not accepted `abort` since.
 fn device(
     answer: impl Fn(&str) -> String + Send + 'static,
 ) -> (SocketAddr, JoinHandle<Vec<String>>) {
@@ -144,16 +149,27 @@ fn device(
     let address = listener.local_addr().unwrap();
     let server = thread::spawn(move || {
         let (mut stream, _) = listener.accept().unwrap();
-        let mut lines = Vec::new();
+        let (mut lines, mut is_driven) = (Vec::new(), false);
         for line in BufReader::new(stream.try_clone().unwrap()).lines() {
             let line = line.unwrap();
             if line.is_empty() {
                 continue;
             }
-            let answer = if line.starts_with("synchronize") {
-                format!("err unknown command '{line}'")
-            } else {
-                answer(&line)
+            let answer = match (line.as_str(), answer(&line)) {
+                (line, _) if line.starts_with("synchronize") => {
+                    format!("err unknown command '{line}'")
+                }
+                ("id", ok) if ok == "ok" => IDENTITY.into(),
+                ("state", ok) if ok == "ok" => {
+                    let state = if is_driven { "armed" } else { "ready" };
+                    format!(
+                        "ok state={state} fault=- material=- object_c=room mode=contact setpoint_c=- body=half-space"
+                    )
+                }
+                (line, answer) => {
+                    is_driven = line == "arm" || is_driven && (line != "abort" || answer != "ok");
+                    answer
+                }
             };
             lines.push(line);
             if stream.write_all((answer + "\n").as_bytes()).is_err() {
@@ -186,7 +202,7 @@ fn ctrl_c_ends_a_log_with_abort() {
     let signalled = Command::new("kill").args(["-INT", &logger.id().to_string()]).status();
     assert!(signalled.unwrap().success());
     assert!(logger.wait().unwrap().success());
-    assert_eq!(server.join().unwrap(), ["stream 10", "stream 0", "abort"]);
+    assert_eq!(server.join().unwrap(), ["stream 10", "stream 0", "abort", "id", "state"]);
 }
 
 /// What an armed device refuses, for a reason that no program can know before, switches its bridge off again.
@@ -194,38 +210,54 @@ fn ctrl_c_ends_a_log_with_abort() {
 fn a_command_that_fails_after_it_has_armed_the_device_switches_the_bridge_off() {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("refused-course.csv");
     std::fs::write(&path, "0,30\n2,28\n").unwrap();
-    let state =
-        "ok state=armed fault=- setpoint_c=33 display_c=33 force_n=0 demand_a=0 cem43_min=0";
-    for refused in ["upload commit", "play landing", "state"] {
+    for refused in ["upload commit", "play landing", "law"] {
         let (address, server) = device(move |line| match line {
             line if line.starts_with(refused) => "err so it is".into(),
-            "state" => state.into(),
             _ => "ok".into(),
         });
         let path = path.display();
-        let played = run(&format!("play --arm {path} --tcp {address}"));
-        assert_eq!(played.status.code(), Some(1), "{refused}");
-        let said = text(&played.stderr);
+        let command =
+            if refused == "law" { "send arm law".into() } else { format!("play --arm {path}") };
+        let failed = run(&format!("{command} --tcp {address}"));
+        assert_eq!(failed.status.code(), Some(1), "{refused}");
+        let said = text(&failed.stderr);
         assert!(said.contains("the bridge is off"), "{refused}: {said}");
         let lines = server.join().unwrap();
-        assert_eq!(
-            lines[0], "stream 60000",
-            "a device that is armed trips if the program vanishes"
-        );
-        assert_eq!(lines.last().unwrap(), "abort", "{refused}");
+        if refused != "law" {
+            assert_eq!(
+                lines[0], "stream 60000",
+                "a device that is armed trips if the program vanishes"
+            );
+        }
+        assert!(lines.ends_with(&["abort", "id", "state"].map(String::from)), "{lines:?}");
     }
-    let (address, server) = device(|line| match line {
-        "abort" => "ok T 1 and other noise".into(),
-        "law" => "err so it is".into(),
-        _ => "ok".into(),
-    });
-    assert_eq!(run(&format!("send --tcp {address} arm law")).status.code(), Some(1));
-    assert_eq!(server.join().unwrap(), ["arm", "law", "abort"]);
     // A device that this program has not armed is left as it is.
     let (address, server) =
         device(|line| if line == "law" { "err so it is".into() } else { "ok".into() });
     assert_eq!(run(&format!("send --tcp {address} law")).status.code(), Some(1));
     assert_eq!(server.join().unwrap(), ["law"]);
+}
+
+/// A damaged answer to `abort`, and an `ok` after which the device goes on.
+#[test]
+fn a_bridge_that_may_still_be_on_is_said() {
+    for (abort, says) in [
+        ("ok T 1 and other noise", "the answer to 'abort' is not understood"),
+        ("ok ", "finger 0 is in state armed"),
+    ] {
+        let (address, server) = device(move |line| match line {
+            "abort" => abort.into(),
+            "law" => "err so it is".into(),
+            _ => "ok".into(),
+        });
+        let failed = run(&format!("send --tcp {address} arm law"));
+        assert_eq!(failed.status.code(), Some(1));
+        let said = text(&failed.stderr);
+        assert!(said.contains("THE BRIDGE MAY STILL BE ON") && said.contains(says), "{said}");
+        assert!(!said.contains("bridge is off"), "{said}");
+        let aborts = server.join().unwrap().iter().filter(|line| *line == "abort").count();
+        assert_eq!(aborts, 3, "{says}");
+    }
 }
 
 /// A course that the device would refuse is refused before the line is opened: there is no device at this address.

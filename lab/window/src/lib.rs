@@ -11,6 +11,7 @@ mod monitor;
 mod native;
 mod participant;
 mod people;
+mod silence;
 mod stop;
 pub mod texts;
 mod tone;

@@ -6,12 +6,12 @@ use thermal_client::client::{Client, ClientError, PlainCommand, QueryIdentity, R
 use thermal_client::link::{Link, LinkError};
 use thermal_session::{People, Update};
 
+use crate::silence::Silence;
+
 /// Longest wait for telemetry, after which orders are looked at.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// What is said when the device has confirmed that.
 const BRIDGE_OFF: &str = "bridge off";
-/// Times that the bridge is ordered off until the device answers.
-const OFF_ATTEMPTS: u32 = 3;
 
 /// What the operator of a monitored device can order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +60,7 @@ pub trait MonitorPeople: People {
 /// those of the client.
 ///
 /// # Errors
-/// The link is gone, or the device does not answer at the start or the end.
+/// The link is gone, the device does not answer at the start, or it has not confirmed at the end that its bridge is off.
 pub fn monitor<L: Link>(
     client: &mut Client<L>,
     people: &mut impl MonitorPeople,
@@ -68,20 +68,20 @@ pub fn monitor<L: Link>(
 ) -> Result<(), ClientError> {
     let watched = watch(client, people, interval_ms);
     // Also after a failure: the bridge may be driven.
-    let off = carry_out(client, Order::Off);
-    if let Ok(text) = &off {
-        people.inform(&Update::Notice(text.clone()));
+    let off = client.switch_off();
+    if off.is_ok() {
+        people.inform(&Update::Notice(BRIDGE_OFF.into()));
     }
-    match watched {
+    match (watched, off) {
         // Whoever closes the window interrupts the wait, too.
-        Ok(()) | Err(ClientError::Link(LinkError::Interrupted)) => {
+        (Ok(()) | Err(ClientError::Link(LinkError::Interrupted)), off) => {
             // Only after a confirmed `abort`: a device that streams to nobody switches its bridge off by itself.
-            if off? == BRIDGE_OFF {
-                client.ask(&PlainCommand::stream(0))?;
-            }
-            Ok(())
+            off?;
+            client.ask(&PlainCommand::stream(0))
         }
-        failed => failed,
+        // Nothing is more important than a bridge that may be on.
+        (_, Err(not_off @ ClientError::NotOff { .. })) => Err(not_off),
+        (failed, _) => failed,
     }
 }
 
@@ -102,12 +102,19 @@ fn watch<L: Link>(
         Err(error) => return Err(error),
     }
     client.ask(&PlainCommand::stream(interval_ms))?;
+    let mut silence = Silence::new(interval_ms, client);
     while !people.is_closing() {
-        match client.next_telemetry(POLL_INTERVAL) {
-            Ok(Some(line)) => people.inform(&Update::Telemetry(line)),
+        let notice = match client.next_telemetry(POLL_INTERVAL) {
+            Ok(Some(line)) => {
+                people.inform(&Update::Telemetry(line));
+                silence.ends(client)
+            }
             // Whoever interrupts the wait has an order.
-            Ok(None) | Err(LinkError::Interrupted) => {}
+            Ok(None) | Err(LinkError::Interrupted) => silence.lasts(client),
             Err(error) => return Err(error.into()),
+        };
+        if let Some(notice) = notice {
+            people.inform(&Update::Notice(notice));
         }
         while let Some(event) = client.take_event() {
             people.inform(&Update::Event(event));
@@ -128,26 +135,14 @@ fn event_text(received: &ReceivedEvent) -> String {
 
 /// Carries an order out, and says what the device answered. A refusal is no error.
 fn carry_out<L: Link>(client: &mut Client<L>, order: Order) -> Result<String, ClientError> {
-    let command = match order {
-        Order::Off => PlainCommand::Abort,
-        Order::Arm => PlainCommand::Arm,
-        Order::Clear => PlainCommand::Clear,
+    let (done, text) = match order {
+        Order::Off => (client.switch_off(), BRIDGE_OFF.into()),
+        Order::Arm => (client.ask(&PlainCommand::Arm), format!("`{}`: ok", order.word())),
+        Order::Clear => (client.ask(&PlainCommand::Clear), format!("`{}`: ok", order.word())),
     };
-    let attempts = if order == Order::Off { OFF_ATTEMPTS } else { 1 };
-    let mut answer = client.ask(&command);
-    for _ in 1..attempts {
-        if answer.is_ok() {
-            break;
-        }
-        answer = client.ask(&command);
-    }
-    match answer {
-        Ok(()) if order == Order::Off => Ok(BRIDGE_OFF.into()),
-        Ok(()) => Ok(format!("`{}`: ok", order.word())),
+    match done {
+        Ok(()) => Ok(text),
         Err(ClientError::Link(error @ LinkError::Gone(_))) => Err(error.into()),
-        Err(error) if order == Order::Off => Ok(format!(
-            "the device has not confirmed that the bridge is off: {error}. PRESS THE EMERGENCY STOP"
-        )),
         Err(error) => Ok(error.to_string()),
     }
 }

@@ -88,18 +88,6 @@ pub const fn state(state: StateName) -> (&'static str, &'static str) {
     }
 }
 
-/// Whether the bridge is driven in a state.
-pub const fn is_driven(state: StateName) -> bool {
-    matches!(
-        state,
-        StateName::SelfTest
-            | StateName::Armed
-            | StateName::Preset
-            | StateName::Contact
-            | StateName::Stimulus
-    )
-}
-
 /// What happens in a phase, for the operator.
 pub const fn phase(phase: Phase) -> &'static str {
     match phase {
@@ -217,7 +205,7 @@ mod tests {
         for one in all {
             let (word, meaning) = state(one);
             assert_eq!(word.to_lowercase(), one.name());
-            assert_eq!(meaning.contains("bridge is off"), !is_driven(one), "{meaning}");
+            assert_eq!(meaning.contains("bridge is off"), !one.is_driven(), "{meaning}");
         }
     }
 }

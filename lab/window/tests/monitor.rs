@@ -1,5 +1,6 @@
 //! The worker of `monitor` with a scripted line.
 
+use std::cell::Cell;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -18,6 +19,10 @@ struct ScriptedLink {
     /// Number of lines after which the cable is pulled.
     ends_after: Option<usize>,
     answers_abort: bool,
+    /// It accepts `abort` and goes on.
+    ignores_abort: bool,
+    /// Time, ms, after which it sends telemetry that is not understood.
+    is_garbled_after: Option<u128>,
 }
 
 impl Link for ScriptedLink {
@@ -27,6 +32,12 @@ impl Link for ScriptedLink {
             let answer = match line {
                 "id" => "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000 protocol=2 capabilities=course".into(),
                 "abort" if !self.answers_abort => continue,
+                "state" => {
+                    let state = if self.ignores_abort { "armed" } else { "off" };
+                    format!(
+                        "ok state={state} fault=- material=- object_c=room mode=contact setpoint_c=- body=half-space"
+                    )
+                }
                 line if line.starts_with("synchronize") => format!("err unknown '{line}'"),
                 line => {
                     self.streams |= line.starts_with("stream ");
@@ -49,7 +60,12 @@ impl Link for ScriptedLink {
         if self.streams && timeout >= Duration::from_millis(10) {
             self.now += Duration::from_millis(10);
             let tick = self.now.as_millis();
-            return line(format!("T {tick} armed 30 30 27 33 24 0 0 0 - -"), self.now);
+            let state = if self.is_garbled_after.is_some_and(|after_ms| tick > after_ms) {
+                "unknown"
+            } else {
+                "armed"
+            };
+            return line(format!("T {tick} {state} 30 30 27 33 24 0 0 0 - -"), self.now);
         }
         self.now += timeout;
         Ok(None)
@@ -60,9 +76,11 @@ impl Link for ScriptedLink {
     }
 }
 
-/// An operator with orders, who closes the window after the last.
+/// An operator with orders, who looks on for some time after the last and then closes the window.
+#[derive(Default)]
 struct Operator {
     orders: VecDeque<Order>,
+    looks: Cell<u32>,
     lines: u32,
     notices: Vec<String>,
 }
@@ -91,13 +109,14 @@ impl MonitorPeople for Operator {
     }
 
     fn is_closing(&self) -> bool {
-        self.orders.is_empty()
+        let looks = self.looks.get();
+        self.looks.set(looks.saturating_sub(1));
+        self.orders.is_empty() && looks == 0
     }
 }
 
 fn watch(link: ScriptedLink, orders: &[Order]) -> (Result<(), ClientError>, Vec<String>, Operator) {
-    let mut operator =
-        Operator { orders: orders.iter().copied().collect(), lines: 0, notices: Vec::new() };
+    let mut operator = Operator { orders: orders.iter().copied().collect(), ..Operator::default() };
     let mut client = Client::new(link);
     let done = monitor(&mut client, &mut operator, 10);
     (done, client.into_link().sent, operator)
@@ -111,7 +130,20 @@ fn orders_are_sent_and_the_bridge_is_off_at_the_end() {
     let orders: Vec<_> = sent.iter().map(String::as_str).collect();
     assert_eq!(
         orders,
-        ["id", "events on", "stream 10", "clear", "arm", "abort", "abort", "stream 0"]
+        [
+            "id",
+            "events on",
+            "stream 10",
+            "clear",
+            "arm",
+            "abort",
+            "id",
+            "state",
+            "abort",
+            "id",
+            "state",
+            "stream 0"
+        ]
     );
     assert!(operator.lines >= 3);
     assert!(operator.notices.contains(&"bridge off".to_owned()));
@@ -122,6 +154,39 @@ fn an_abort_that_is_not_confirmed_is_repeated_and_then_said() {
     let (_, sent, operator) = watch(ScriptedLink::default(), &[Order::Off]);
     assert!(sent.iter().filter(|line| *line == "abort").count() >= 3, "{sent:?}");
     assert!(operator.notices[1].contains("PRESS THE EMERGENCY STOP"), "{:?}", operator.notices);
+}
+
+#[test]
+fn the_monitor_fails_if_the_device_goes_on_after_an_abort() {
+    for link in [
+        ScriptedLink::default(),
+        ScriptedLink { answers_abort: true, ignores_abort: true, ..ScriptedLink::default() },
+    ] {
+        let ignores = link.ignores_abort;
+        let (done, _, operator) = watch(link, &[Order::Arm]);
+        let Err(ClientError::NotOff { why }) = done else {
+            panic!("{done:?}");
+        };
+        assert!(
+            why.contains(if ignores { "is in state armed" } else { "does not answer" }),
+            "{why}"
+        );
+        assert!(!operator.notices.contains(&"bridge off".to_owned()), "{:?}", operator.notices);
+    }
+}
+
+#[test]
+fn telemetry_that_stays_out_or_is_not_understood_is_said_once() {
+    let link = ScriptedLink {
+        answers_abort: true,
+        is_garbled_after: Some(100),
+        ..ScriptedLink::default()
+    };
+    let mut operator = Operator { looks: Cell::new(100), ..Operator::default() };
+    let mut client = Client::new(link);
+    monitor(&mut client, &mut operator, 10).unwrap();
+    let said = |text: &str| operator.notices.iter().filter(|notice| notice.contains(text)).count();
+    assert_eq!(said("no telemetry for 0.5 s"), 1, "{:?}", operator.notices);
 }
 
 #[test]

@@ -45,6 +45,14 @@ impl StateName {
         }
     }
 
+    /// Whether the bridge is driven in this state.
+    pub const fn is_driven(self) -> bool {
+        match self {
+            Self::SelfTest | Self::Armed | Self::Preset | Self::Contact | Self::Stimulus => true,
+            Self::Off | Self::Ready | Self::Tripped(_) => false,
+        }
+    }
+
     /// The fault that has tripped the station; `None` in every state other than tripped.
     pub const fn fault(self) -> Option<Fault> {
         match self {

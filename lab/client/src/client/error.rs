@@ -41,6 +41,22 @@ pub enum ClientError {
         /// Its last answer.
         answer: String,
     },
+    /// The device has accepted `abort`, and a finger's state is still one in which its bridge is driven.
+    #[error("'abort' was accepted, but finger {finger} is in state {state}")]
+    StillDriven {
+        /// The finger, from 0.
+        finger: u8,
+        /// Its state.
+        state: &'static str,
+    },
+    /// The device has not confirmed that its bridges are off.
+    #[error(
+        "THE BRIDGE MAY STILL BE ON: 'abort' was not confirmed ({why}). PRESS THE EMERGENCY STOP"
+    )]
+    NotOff {
+        /// What happened in its place.
+        why: String,
+    },
     /// The line cannot be sent.
     #[error("'{line}' cannot be sent: a line has 1 to {max} printable ASCII characters", max = thermal_protocol::LINE_MAX_BYTES)]
     Unsendable {

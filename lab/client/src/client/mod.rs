@@ -7,6 +7,7 @@ mod clock;
 mod error;
 mod event;
 mod fields;
+mod off;
 mod person;
 mod plain_command;
 mod query;
@@ -42,6 +43,7 @@ pub use reply::{
     BoardReport, CalibrationFit, Cause, FluxReport, IdentifiedTile, Identity, RawReadings,
     SIMULATED_UNIQUE_ID, SelfTestReport, SettingsLine, Status,
 };
+pub use streams::longest_gap;
 pub use telemetry::{ReceivedTelemetry, Telemetry};
 
 /// Timeout of an answer.

@@ -5,6 +5,15 @@ use std::time::Duration;
 
 use thermal_device::TelemetryFields;
 
+/// Time without telemetry after which a device that streams has stopped: this many intervals, and at least this time.
+const SILENT_INTERVALS: u32 = 3;
+const SILENT: Duration = Duration::from_millis(500);
+
+/// Longest time between two lines of telemetry of a device that streams at an interval, ms.
+pub fn longest_gap(interval_ms: u32) -> Duration {
+    (SILENT_INTERVALS * Duration::from_millis(interval_ms.into())).max(SILENT)
+}
+
 /// What a finger streams.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {

@@ -45,10 +45,8 @@ pub enum SessionEnd {
     )]
     Gone(String),
     /// The device has not confirmed that its bridge is off.
-    #[error(
-        "THE BRIDGE MAY STILL BE ON: `abort` was not confirmed ({0}). PRESS THE EMERGENCY STOP. What was recorded is whole"
-    )]
-    NotOff(String),
+    #[error("{0}. What was recorded is whole")]
+    NotOff(ClientError),
     /// The device cannot run the session.
     #[error("the device cannot run this session: {0}")]
     Unsuitable(String),

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{ClientError, PlainCommand, ReceivedTelemetry};
+use thermal_client::client::{ClientError, PlainCommand, ReceivedTelemetry, longest_gap};
 use thermal_client::link::{Link, LinkError};
 use thermal_device::StateName;
 use thermal_device::events::DeviceEventKind;
@@ -12,11 +12,6 @@ use crate::{Decision, OperatorQuestion, Update};
 
 /// Longest time between two looks at the keys.
 const KEY_POLL_INTERVAL: Duration = Duration::from_millis(10);
-/// Number of times that the bridge is ordered off until the device confirms it.
-const OFF_ATTEMPTS: u32 = 3;
-/// Time without telemetry after which a device that streams has stopped: this many intervals, and at least this, s.
-const SILENT_INTERVALS: f64 = 3.0;
-const SILENT_S: f64 = 0.5;
 
 impl<L: Link> Executor<'_, L> {
     /// Lets time pass until a time of the session, s.
@@ -84,8 +79,7 @@ impl<L: Link> Executor<'_, L> {
             return Ok(());
         };
         let silent_s = self.now_s() - since_s;
-        let most_s = (SILENT_INTERVALS * f64::from(device.stream_ms) / 1e3).max(SILENT_S);
-        if silent_s > most_s {
+        if silent_s > longest_gap(device.stream_ms).as_secs_f64() {
             return Err(TrialEnd::Void(format!("no telemetry for {silent_s:.1} s")));
         }
         Ok(())
@@ -163,22 +157,14 @@ impl<L: Link> Executor<'_, L> {
         (self.client.ask_finger(address, command)).map_err(trial_end_of)
     }
 
-    /// Switches the bridge off, and then telemetry: only a confirmed `abort` means that the bridge is off, and a device that
-    /// streams to nobody switches it off by itself.
+    /// Switches the bridge off, and then telemetry: a device that streams to nobody switches it off by itself.
     pub(super) fn switch_off(&mut self) -> Result<(), SessionEnd> {
         if self.fingers.count() == 0 {
             return Ok(());
         }
-        let mut off = self.client.ask(&PlainCommand::Abort);
-        for _ in 1..OFF_ATTEMPTS {
-            if off.is_ok() {
-                break;
-            }
-            off = self.client.ask(&PlainCommand::Abort);
-        }
-        off.map_err(|error| match error {
+        self.client.switch_off().map_err(|error| match error {
             ClientError::Link(LinkError::Gone(why)) => SessionEnd::Gone(why),
-            error => SessionEnd::NotOff(error.to_string()),
+            error => SessionEnd::NotOff(error),
         })?;
         // The bridge is off; that telemetry goes on for a while harms nobody.
         let _ignored = self.client.ask(&PlainCommand::stream(0));

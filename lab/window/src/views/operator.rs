@@ -147,7 +147,7 @@ fn device(ui: &mut Ui, model: &Model, state: &mut OperatorState, now: Duration) 
                 let (word, meaning) = texts::state(view.last.state);
                 let colour = match view.last.state {
                     StateName::Tripped(_) => colours.alarm,
-                    driven if texts::is_driven(driven) => colours.warning,
+                    driven if driven.is_driven() => colours.warning,
                     _ => colours.good,
                 };
                 ui.label(RichText::new(word).heading().strong().color(colour));
