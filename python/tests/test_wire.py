@@ -229,6 +229,15 @@ def test_the_clock_finds_offset_and_drift_below_irregular_delays() -> None:
     np.testing.assert_allclose(clock.times_of(ticks), [clock.time_of(tick) for tick in ticks], rtol=0, atol=1e-9)
 
 
+def test_lines_that_wait_while_the_computer_sleeps_do_not_move_the_clock() -> None:
+    clock = DeviceClock()
+    for tick, at_s in _arrivals(12, 0.0):
+        asleep = 2000 <= tick < 6000
+        clock.observe(tick, 56.0 + 1e-6 * tick if asleep else at_s)
+    assert abs(clock.time_of(4000) - 54.002) < 1e-3
+    assert clock.estimate.error_s < 5e-3
+
+
 def test_one_damaged_tick_does_not_move_the_clock_and_a_restart_begins_it_anew() -> None:
     clock = DeviceClock()
     for tick, at_s in _arrivals(5, 0.0):

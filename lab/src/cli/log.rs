@@ -109,7 +109,7 @@ fn log(
             Err(error) => return Err(Failure::run(error)),
         };
         if let Some(line) = line {
-            let time = client.clock().time_of(line.telemetry.tick);
+            let time = client.clock().time_of_arrived(line.telemetry.tick, line.at);
             out.write_record(row(&line, time, zero_s)).map_err(Failure::run)?;
         }
         out.flush().context("--out").map_err(Failure::run)?;

@@ -46,6 +46,16 @@ def _ticks_since(tick: int, before: int) -> int:
     return passed - _WRAP if passed >= _WRAP // 2 else passed
 
 
+def _in_time(minima: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """The minima that are less late than the rates of two clocks allow, by all others. Where all lines of a span were late, as those
+    that have waited while the computer slept, they say nothing of the ticks."""
+    return [
+        (t_s, late_s)
+        for t_s, late_s in minima
+        if all(late_s - other_late_s <= _RATE_TOLERANCE * abs(t_s - other_s) for other_s, other_late_s in minima)
+    ]
+
+
 class DeviceClock:
     """Estimate of when ticks happen by the host's clock. It begins anew when the device restarts."""
 
@@ -134,13 +144,14 @@ class DeviceClock:
             last_s = self._minima[-1][0]
             # The span that is not complete has not seen its earliest arrival yet.
             complete = self._minima[:-1] if len(self._minima) >= 3 else self._minima
+            in_time = _in_time(complete)
             slopes = [
-                (b[1] - a[1]) / (b[0] - a[0]) for i, a in enumerate(complete) for b in complete[i + 1 :]
+                (b[1] - a[1]) / (b[0] - a[0]) for i, a in enumerate(in_time) for b in in_time[i + 1 :]
             ]
             # Two spans alone say little of a drift of some parts in a million.
-            drift = statistics.median(slopes) if len(complete) >= 3 else 0.0
-            offsets = [late_s - drift * (t_s - last_s) for t_s, late_s in complete]
-            offset_s = statistics.median(offsets) if len(complete) >= 3 else min(offsets)
+            drift = statistics.median(slopes) if len(in_time) >= 3 else 0.0
+            offsets = [late_s - drift * (t_s - last_s) for t_s, late_s in in_time]
+            offset_s = statistics.median(offsets) if len(in_time) >= 3 else min(offsets)
             error_s = max(abs(one - offset_s) for one in offsets)
             self._fit = (last_s, offset_s, drift, error_s)
         return self._fit

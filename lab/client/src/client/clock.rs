@@ -169,6 +169,13 @@ impl DeviceClock {
         (wrapped + u64::from(tick)) as f64 * TICK_S
     }
 
+    /// When the tick of a line happened that arrived at a time of the link's clock: what has arrived has happened. `None` before the first
+    /// telemetry.
+    pub fn time_of_arrived(&self, tick: u32, at: Duration) -> Option<TickTime> {
+        let time = self.time_of(tick)?;
+        Some(TickTime { at_s: time.at_s.min(at.as_secs_f64()), ..time })
+    }
+
     /// When a tick since the device's last restart happened; `None` before its first telemetry.
     pub fn time_of(&self, tick: u32) -> Option<TickTime> {
         let &(last_s, _) = self.minima.last()?;
@@ -177,13 +184,20 @@ impl DeviceClock {
             [complete @ .., _] if complete.len() >= 2 => complete,
             all => all,
         };
-        let slopes = complete.iter().enumerate().flat_map(|(i, a)| {
-            let later = complete.iter().skip(i + 1);
+        let in_time = in_time(complete);
+        let slopes = in_time.iter().enumerate().flat_map(|(i, a)| {
+            let later = in_time.iter().skip(i + 1);
             later.map(move |b| (b.1 - a.1) / (b.0 - a.0))
         });
-        let drift = median(slopes.collect()).unwrap_or(0.0);
-        let offsets = complete.iter().map(|(t_s, late_s)| late_s - drift * (t_s - last_s));
-        let offset_s = median(offsets.clone().collect())?;
+        // Two spans alone say little of a drift of some parts in a million.
+        let is_enough = in_time.len() >= 3;
+        let drift = median(slopes.collect()).filter(|_| is_enough).unwrap_or(0.0);
+        let offsets = in_time.iter().map(|(t_s, late_s)| late_s - drift * (t_s - last_s));
+        let offset_s = if is_enough {
+            median(offsets.clone().collect())?
+        } else {
+            offsets.clone().reduce(f64::min)?
+        };
         let errors_s = offsets.map(|one_s| (one_s - offset_s).abs());
         let tick_s = self.tick_s(tick);
         Some(TickTime {
@@ -192,6 +206,15 @@ impl DeviceClock {
             drift_ppm: 1e6 * drift,
         })
     }
+}
+
+/// The minima that are less late than the rates of two clocks allow, by all others. Where all lines of a span were late, as those that have
+/// waited while the computer slept, they say nothing of the ticks.
+fn in_time(minima: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let is_in_time = |one: &&(f64, f64)| {
+        minima.iter().all(|other| one.1 - other.1 <= RATE_TOLERANCE * (one.0 - other.0).abs())
+    };
+    minima.iter().filter(is_in_time).copied().collect()
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {

@@ -49,6 +49,36 @@ fn offset_and_drift_are_found_within_the_stated_error() {
     }
 }
 
+/// A computer that sleeps for 4 s reads what came meanwhile all at once when it wakes: no tick happens after its line has arrived, and
+/// each within the stated error.
+#[test]
+fn lines_that_wait_while_the_computer_sleeps_do_not_move_the_estimate() {
+    for sleeps_from_s in [0.0, 0.3, 1.5, 3.0, 20.0] {
+        let mut clock = DeviceClock::default();
+        let mut seed = 3;
+        for i in 0..3000 {
+            let true_s = 5.0 + 0.01 * f64::from(i);
+            let asleep = (sleeps_from_s..sleeps_from_s + 4.0).contains(&(true_s - 5.0));
+            let wakes_s = 5.0 + sleeps_from_s + 4.0;
+            let at_s = if asleep { wakes_s } else { true_s } + 4e-3 * noise(&mut seed);
+            let at = Duration::from_secs_f64(at_s);
+            clock.observe(10 * i, at);
+            let time = clock.time_of_arrived(10 * i, at).unwrap();
+            assert!(time.at_s <= at.as_secs_f64(), "{time:?}");
+            // Before it has slept and woken again, nothing but late lines may have come.
+            if sleeps_from_s > 1.0 {
+                assert!((time.at_s - true_s).abs() <= time.error_s + 4e-3, "{true_s} s: {time:?}");
+                assert!(time.error_s < 0.02, "{true_s} s: {time:?}");
+            }
+        }
+        let time = clock.time_of(15_000).unwrap();
+        assert!(
+            (time.at_s - 20.0).abs() <= time.error_s + 4e-3 && time.error_s < 0.02,
+            "{sleeps_from_s} s: {time:?}"
+        );
+    }
+}
+
 #[test]
 fn a_restart_begins_a_new_estimate() {
     let mut clock = DeviceClock::default();
