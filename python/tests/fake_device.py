@@ -26,6 +26,7 @@ class FakeDevice:
         self.received: list[str] = []
         self.failures: defaultdict[str, list[str]] = defaultdict(list)
         self.answers: dict[str, str] = {}
+        self.answers_without_checksums: dict[str, str] = {}
         self.checksums = False
         self.state = "off"
         self.fault = "-"
@@ -120,6 +121,8 @@ class FakeDevice:
             self.say(answer)
 
     def _execute(self, command: str) -> str:
+        if command in self.answers_without_checksums and not self.checksums:
+            return self.answers_without_checksums[command]
         if command in self.answers:
             return self.answers[command]
         word = command.split(" ")[0]

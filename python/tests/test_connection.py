@@ -185,6 +185,22 @@ def test_what_may_have_been_executed_is_not_repeated(
     assert display.state().state in (State.OFF, State.STIMULUS)
 
 
+@pytest.mark.parametrize("fingers", [0, -1, 6, 4_000_000_000])
+def test_a_number_of_fingers_that_no_device_has_is_not_understood(fake: FakeDevice, fingers: int) -> None:
+    fake.fingers = fingers
+    with pytest.raises(NotUnderstood):
+        Display(fake)
+
+
+def test_the_number_of_fingers_is_asked_again_once_checksums_protect_it(fake: FakeDevice) -> None:
+    # One damaged digit of the unprotected answer.
+    fake.answers_without_checksums["id"] = (
+        "ok thermal-display 0.2.0 fingers=3 tick_hz=1000 scan_hz=16000 protocol=1 capabilities=upload,checksum,course"
+    )
+    with Display(fake) as display:
+        assert display.identity.fingers == 1
+
+
 def test_a_damaged_line_was_not_executed_and_says_so(fake: FakeDevice, display: Display) -> None:
     fake.failures["hold 30"] = ["line-damaged"]
     with pytest.raises(LineDamaged):

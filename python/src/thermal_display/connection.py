@@ -144,9 +144,11 @@ class Connection:
             self._send(wire.with_checksum("checksum off"))
             self._synchronise(self.timeout_s)
         identity = self.ask("id", Identity.read)
-        self.fingers = identity.fingers
         if checksums and identity.can("checksum"):
             self.set_checksums(True)
+            # What was said before was not protected, and decides how many fingers are asked and switched off.
+            identity = self.ask("id", Identity.read)
+        self.fingers = identity.fingers
         self.set_stream(None, stream)
         if identity.can("course"):
             self.tell("events on" if events else "events off")

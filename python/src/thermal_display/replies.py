@@ -54,6 +54,10 @@ class Fields:
         return {"0": False, "1": True}[self.word(name)]
 
 
+FINGERS_MAX = 5
+"""Most fingers of a device."""
+
+
 @dataclass(frozen=True)
 class Identity:
     """Answer to `id`."""
@@ -71,12 +75,16 @@ class Identity:
 
     @classmethod
     def read(cls, reply: Fields) -> Identity:
+        fingers = reply.integer("fingers")
+        # A damaged number would let this end wait for fingers that are not there, or for none.
+        if not 1 <= fingers <= FINGERS_MAX:
+            raise ValueError("fingers")
         protocol = reply.optional("protocol")
         capabilities = reply.optional("capabilities") or ""
         return cls(
             name=reply.words[0],
             version=reply.words[1],
-            fingers=reply.integer("fingers"),
+            fingers=fingers,
             tick_hz=reply.integer("tick_hz"),
             scan_hz=reply.integer("scan_hz"),
             protocol=None if protocol is None else int(protocol),

@@ -18,6 +18,9 @@ use super::fields::{
     state_word,
 };
 
+/// Most fingers of a device. A damaged number would let a client wait for fingers that are not there, or for none.
+const FINGERS_MAX: u8 = 5;
+
 /// Answer to `id`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Identity {
@@ -25,7 +28,7 @@ pub struct Identity {
     pub name: String,
     /// Its version.
     pub version: String,
-    /// Number of fingers.
+    /// Number of fingers, 1 to 5.
     pub fingers: u8,
     /// Control ticks per second.
     pub tick_hz: u32,
@@ -45,7 +48,9 @@ impl Identity {
         Some(Self {
             name: words.next()?.into(),
             version: words.next()?.into(),
-            fingers: reply.number("fingers")?,
+            fingers: reply
+                .number("fingers")
+                .filter(|fingers| (1..=FINGERS_MAX).contains(fingers))?,
             tick_hz: reply.number("tick_hz")?,
             scan_hz: reply.number("scan_hz")?,
             protocol: reply.number("protocol"),

@@ -126,6 +126,17 @@ fn the_word_that_synchronizes_has_20_characters_and_is_another_each_time() {
 }
 
 #[test]
+fn a_number_of_fingers_that_no_device_has_is_not_understood() {
+    for fingers in ["0", "6", "255", "4000000000", "-1"] {
+        let identity =
+            format!("ok thermal-display 0.2.0 fingers={fingers} tick_hz=1000 scan_hz=16000");
+        let error =
+            FakeDevice::client(move |_| answers(&identity)).ask(&QueryIdentity).unwrap_err();
+        assert!(matches!(error, ClientError::NotUnderstood { .. }), "{fingers}: {error}");
+    }
+}
+
+#[test]
 fn what_is_no_answer_is_shown() {
     let garbage = |_: &str| answers("\u{fffd}\u{fffd}ok?\u{1}");
     let error = FakeDevice::client(garbage).ask(&PlainCommand::Arm).unwrap_err();
