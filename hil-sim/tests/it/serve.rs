@@ -5,9 +5,10 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::process::{Child, ChildStdout, Command, Stdio};
 
+use thermal_lab::bring_up::EmulatedBench;
 use thermal_lab::client::Client;
 use thermal_lab::commissioning::commission;
-use thermal_lab::link::{ServedLink, ServedOperator};
+use thermal_lab::link::ServedLink;
 use thermal_sim::commissioning::{settings_for_device, settings_for_scene};
 use thermal_sim::scene::Scene;
 
@@ -94,7 +95,7 @@ fn a_served_device_is_commissioned_over_tcp_as_by_the_simulated_operator() {
     let mut served = Served::start(&[&[SCENE, "--speed", "max"][..], &listen].concat());
     let (device, surroundings) = (served.place(), served.line("surroundings on "));
     let link = ServedLink::connect(device, surroundings).expect("a connection");
-    let mut operator = ServedOperator { watch: &mut |_| () };
+    let mut operator = EmulatedBench { watch: &mut |_| () };
     let record = commission(&mut Client::new(link), None, &mut operator).expect("commissioned");
     let scene = Scene::read(SCENE.as_ref()).expect("a scene");
     let operators = settings_for_device(&scene.params, scene.room_c, scene.seed);

@@ -60,6 +60,11 @@ impl<L> Interruptible<L> {
     pub const fn new(link: L, requested: Arc<AtomicBool>) -> Self {
         Self { link, requested }
     }
+
+    /// The link.
+    pub const fn inner(&mut self) -> &mut L {
+        &mut self.link
+    }
 }
 
 impl<L: Link> Link for Interruptible<L> {

@@ -13,20 +13,12 @@ use thermal_device::safety::ThermistorId;
 use super::bench::{Bench, BenchError, Measurement};
 use super::check::{ManualStep, Stage};
 use super::report::Record;
+use crate::link::AskSurroundings;
 
 /// Step by which a resistor is turned, as a fraction of its value: 0.05 K.
 const TURN_STEP: f64 = 0.002;
 /// Time between two steps: the comparator and the next tick have seen it by then.
 const TURN_MS: u64 = 5;
-
-/// Sends lines to the surroundings of the device at the other end of a link.
-pub trait AskSurroundings {
-    /// Sends a line; returns the answer after `ok`.
-    ///
-    /// # Errors
-    /// The surroundings refuse the line, or cannot be reached.
-    fn ask_surroundings(&mut self, request: &SurroundingsRequest) -> Result<String, String>;
-}
 
 /// The bench of an emulated board. `watch` is called for each result and each event, as one line.
 pub struct EmulatedBench<'a> {

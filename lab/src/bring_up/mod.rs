@@ -25,7 +25,7 @@ mod unit;
 
 pub use bench::{Bench, BenchError, Measurement};
 pub use check::{Check, Expected, ManualStep, Reading, Routine, Stage, StageId, Step, Value};
-pub use emulated::{AskSurroundings, EmulatedBench};
+pub use emulated::EmulatedBench;
 pub use page::page;
 pub use procedure::{Interruption, OtherDevice, bring_up};
 pub use report::{OtherImage, Record, Report, Resume, Verdict};

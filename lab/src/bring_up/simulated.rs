@@ -9,8 +9,7 @@ use thermal_sim::commissioning::{SimulatedSurroundings, SurroundingsAction};
 use thermal_sim::engine::Engine;
 use thermal_sim::simulated_link::SimulatedLink;
 
-use super::emulated::AskSurroundings;
-use crate::link::ServedLink;
+use crate::link::AskSurroundings;
 
 /// The line to a simulated board, and to its surroundings.
 #[derive(Debug)]
@@ -52,11 +51,5 @@ impl<E: Engine> AskSurroundings for SimulatedBoard<'_, E> {
             }
             SurroundingsAction::Wait { .. } => Err("time passes by the device's own line".into()),
         }
-    }
-}
-
-impl AskSurroundings for ServedLink {
-    fn ask_surroundings(&mut self, request: &SurroundingsRequest) -> Result<String, String> {
-        self.request(request).map_err(|error| error.to_string())
     }
 }

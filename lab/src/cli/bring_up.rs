@@ -11,7 +11,6 @@ use thermal_lab::bench_operator::{BenchOperator, lines};
 use thermal_lab::bring_up::{
     EmulatedBench, Report, STAGES, SimulatedBoard, Stage, Terminal, bring_up, page,
 };
-use thermal_lab::link::ServedLink;
 use thermal_settings::CRC_32;
 use thermal_sim::board::{BROKEN_BOARDS, Board, BoardBench, LossyLine, SOUND};
 use thermal_sim::engine::NativeEngine;
@@ -97,10 +96,8 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let mut saved = |report: &Report| {
         unsaved = save(&arguments.out, report).err();
     };
-    let report = match (&arguments.surroundings, &target.tcp) {
-        (Some(surroundings), Some(device)) => {
-            served(device, surroundings, report, arguments, &mut saved)?
-        }
+    let report = match &arguments.surroundings {
+        Some(surroundings) => served(target, surroundings, report, arguments, &mut saved)?,
         _ if target.simulated => simulated(report, arguments, &mut saved)?,
         _ => by_a_person(target, report, arguments, &mut saved)?,
     };
@@ -186,19 +183,17 @@ fn by_a_person(
 
 /// On an emulated board that another program serves.
 fn served(
-    device: &str,
+    target: &Target,
     surroundings: &str,
     mut report: Report,
     arguments: &Arguments,
     saved: &mut dyn FnMut(&Report),
 ) -> Result<Report, Failure> {
-    let link = ServedLink::connect(device, surroundings)
-        .with_context(|| format!("--tcp {device} --surroundings {surroundings}"))
-        .map_err(Failure::input)?;
     report.emulated = true;
     let mut bench = EmulatedBench { watch: &mut watch };
-    bring_up(&mut Client::new(link), &mut bench, report, arguments.from, saved)
-        .map_err(Failure::input)
+    target.with_served_client(surroundings, |client| {
+        bring_up(client, &mut bench, report, arguments.from, saved).map_err(Failure::input)
+    })
 }
 
 /// On a board that is simulated here.

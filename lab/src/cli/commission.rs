@@ -2,7 +2,7 @@
 
 use std::io::{BufReader, Write, stderr, stdin};
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use clap::Args;
 use serde::Serialize;
 use thermal_client::client::{Client, PlainCommand};
@@ -11,8 +11,9 @@ use thermal_client::commissioning::{
 };
 use thermal_client::link::Link;
 use thermal_lab::bench_operator::{BenchOperator, WATCHED_STREAM_MS, lines};
+use thermal_lab::bring_up::EmulatedBench;
 use thermal_lab::commissioning::{clear_calibration, commission, commission_flux_sensor};
-use thermal_lab::link::{ServedLink, ServedOperator, SimulatedLink};
+use thermal_lab::link::SimulatedLink;
 use thermal_settings::FluxSensor;
 use thermal_sim::commissioning::{SimulatedOperator, SimulatedSurroundings};
 use thermal_sim::engine::NativeEngine;
@@ -69,13 +70,8 @@ impl Arguments {
 }
 
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
-    let record = match (&arguments.surroundings, &target.tcp) {
-        (Some(surroundings), Some(device)) => served(device, surroundings, arguments)?,
-        (Some(_), None) => {
-            return Err(Failure::input(anyhow!(
-                "--surroundings is for a device that is served at --tcp ADDR"
-            )));
-        }
+    let record = match &arguments.surroundings {
+        Some(surroundings) => served(target, surroundings, arguments)?,
         _ if target.simulated && arguments.only_flux_sensor => {
             return Err(Failure::input(anyhow!(
                 "--only-flux-sensor is for a device that is commissioned; that of --simulated is not"
@@ -107,13 +103,11 @@ fn by_a_person(target: &Target, arguments: &Arguments) -> Result<Record, Failure
 }
 
 /// On a device that another program serves with its surroundings.
-fn served(device: &str, surroundings: &str, arguments: &Arguments) -> Result<Record, Failure> {
-    let link = ServedLink::connect(device, surroundings)
-        .with_context(|| format!("--tcp {device} --surroundings {surroundings}"))
-        .map_err(Failure::input)?;
-    let mut client = Client::new(link);
-    let mut operator = ServedOperator { watch: &mut print_event };
-    (arguments.commission(&mut client, &mut operator)).map_err(Failure::run)
+fn served(target: &Target, surroundings: &str, arguments: &Arguments) -> Result<Record, Failure> {
+    let mut operator = EmulatedBench { watch: &mut print_line };
+    target.with_served_client(surroundings, |client| {
+        arguments.commission(client, &mut operator).map_err(Failure::run)
+    })
 }
 
 /// On a device that is simulated here. It is told of the heat-flux sensor of its scene.
@@ -127,12 +121,12 @@ fn simulated(target: &Target, arguments: &Arguments) -> Result<Record, Failure> 
     }
     let mut operator = SimulatedOperator {
         surroundings: SimulatedSurroundings::new(&setup),
-        watch: &mut print_event,
+        watch: &mut |event: &CommissioningEvent| print_line(&event.to_string()),
     };
     (arguments.commission(&mut client, &mut operator)).map_err(Failure::run)
 }
 
-/// Prints an event on standard error, which may be closed.
-fn print_event(event: &CommissioningEvent) {
-    let _ignored = writeln!(stderr(), "{event}");
+/// Prints a line of progress on standard error, which may be closed.
+fn print_line(line: &str) {
+    let _ignored = writeln!(stderr(), "{line}");
 }

@@ -9,7 +9,7 @@ use anyhow::{Context, anyhow};
 use clap::Args;
 use thermal_client::client::{Client, ClientError};
 use thermal_client::link::{Interruptible, Link};
-use thermal_lab::link::{self, LazyLink, SimulatedLink};
+use thermal_lab::link::{self, LazyLink, ServedLink, SimulatedLink};
 use thermal_plant::Params;
 use thermal_sim::World;
 use thermal_sim::commissioning::{CommissioningSetup, settings_for_scene};
@@ -53,7 +53,6 @@ impl Target {
         &self,
         work: impl FnOnce(&mut AnyClient<'_>) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
-        let (requested, interrupted) = interruptions()?;
         let mut engine;
         let link: Box<dyn Link + '_> = if self.simulated {
             let world = self.simulated_setup()?.in_use().map_err(Failure::input)?;
@@ -62,21 +61,25 @@ impl Target {
         } else {
             self.open().map_err(Failure::input)?
         };
-        let link = Interruptible::new(link, requested);
-        let mut client = Client::attach(link).map_err(Failure::run)?;
-        let done = work(&mut client);
-        let was_driven = done.is_err() && client.may_be_driven();
-        if was_driven || interrupted.load(Ordering::Relaxed) {
-            match client.switch_off() {
-                Ok(()) if was_driven => eprintln!("thermal-lab: the bridge is off"),
-                Err(error) if was_driven || matches!(error, ClientError::NotOff { .. }) => {
-                    eprintln!("thermal-lab: {error}");
-                }
-                // The failure of the work is reported, and that of the link with it.
-                _ => {}
-            }
-        }
-        done
+        with_link(link, Client::attach, work)
+    }
+
+    /// As [`with_client`](Self::with_client), with the device that another program serves at `--tcp` with its surroundings at this
+    /// address.
+    pub fn with_served_client<T>(
+        &self,
+        surroundings: &str,
+        work: impl FnOnce(&mut Client<Interruptible<ServedLink>>) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        let Some(device) = &self.tcp else {
+            return Err(Failure::input(anyhow!(
+                "--surroundings is for a device that is served at --tcp ADDR"
+            )));
+        };
+        let link = ServedLink::connect(device, surroundings)
+            .with_context(|| format!("--tcp {device} --surroundings {surroundings}"))
+            .map_err(Failure::input)?;
+        with_link(link, |link| Ok(Client::new(link)), work)
     }
 
     /// Does something with the simulated device of the scene, which has the scene's settings. `command` is the subcommand that
@@ -142,6 +145,30 @@ impl Target {
         let scene = Scene::read(path).map_err(Failure::input)?;
         Ok(CommissioningSetup::new(&scene.params, scene.room_c, scene.seed))
     }
+}
+
+/// Does something with a client of the device at the other end of a link. Ctrl-C interrupts it. The bridge is switched off then, and if the
+/// work fails after it has armed the device.
+fn with_link<L: Link, T>(
+    link: L,
+    attach: impl FnOnce(Interruptible<L>) -> Result<Client<Interruptible<L>>, ClientError>,
+    work: impl FnOnce(&mut Client<Interruptible<L>>) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let (requested, interrupted) = interruptions()?;
+    let mut client = attach(Interruptible::new(link, requested)).map_err(Failure::run)?;
+    let done = work(&mut client);
+    let was_driven = done.is_err() && client.may_be_driven();
+    if was_driven || interrupted.load(Ordering::Relaxed) {
+        match client.switch_off() {
+            Ok(()) if was_driven => eprintln!("thermal-lab: the bridge is off"),
+            Err(error) if was_driven || matches!(error, ClientError::NotOff { .. }) => {
+                eprintln!("thermal-lab: {error}");
+            }
+            // The failure of the work is reported, and that of the link with it.
+            _ => {}
+        }
+    }
+    done
 }
 
 fn which_device() -> anyhow::Error {

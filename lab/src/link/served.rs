@@ -6,12 +6,10 @@ use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
-use thermal_client::client::Client;
-use thermal_client::commissioning::{
-    CommissioningEvent, PhantomPlace, Surroundings, SurroundingsError, SurroundingsRequest,
-};
+use thermal_client::commissioning::SurroundingsRequest;
 use thermal_client::link::{LineSplitter, Link, LinkError, ReceivedLine};
-use thermal_device::safety::ThermistorId;
+
+use super::AskSurroundings;
 
 /// Longest real time for a line of the server, which simulates a millisecond for it.
 const TIMEOUT: Duration = Duration::from_secs(30);
@@ -120,55 +118,8 @@ impl Link for ServedLink {
     }
 }
 
-/// The simulated operator of a served device.
-pub struct ServedOperator<'a> {
-    /// Called for each event.
-    pub watch: &'a mut dyn FnMut(&CommissioningEvent),
-}
-
-fn failed(error: LinkError) -> SurroundingsError {
-    SurroundingsError::Failed(error.to_string())
-}
-
-impl Surroundings<ServedLink> for ServedOperator<'_> {
-    fn reference_c(
-        &mut self,
-        client: &mut Client<ServedLink>,
-        thermistor: ThermistorId,
-    ) -> Result<f64, SurroundingsError> {
-        let request = SurroundingsRequest::Reference(thermistor);
-        let answer = client.link().request(&request).map_err(failed)?;
-        answer.parse().map_err(|_| {
-            SurroundingsError::Failed(format!(
-                "the surroundings answer '{request}' with 'ok {answer}'"
-            ))
-        })
-    }
-
-    fn put_into_bath(
-        &mut self,
-        client: &mut Client<ServedLink>,
-        thermistor: ThermistorId,
-        bath_c: f64,
-    ) -> Result<(), SurroundingsError> {
-        let request = SurroundingsRequest::Bath(thermistor, bath_c);
-        client.link().request(&request).map(drop).map_err(failed)
-    }
-
-    fn move_phantom(
-        &mut self,
-        client: &mut Client<ServedLink>,
-        place: PhantomPlace,
-    ) -> Result<(), SurroundingsError> {
-        let request = SurroundingsRequest::Phantom(place);
-        client.link().request(&request).map(drop).map_err(failed)
-    }
-
-    fn reads_again(&mut self, _why: &str) -> bool {
-        false
-    }
-
-    fn notice(&mut self, event: &CommissioningEvent) {
-        (self.watch)(event);
+impl AskSurroundings for ServedLink {
+    fn ask_surroundings(&mut self, request: &SurroundingsRequest) -> Result<String, String> {
+        self.request(request).map_err(|error| error.to_string())
     }
 }

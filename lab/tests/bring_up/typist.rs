@@ -11,8 +11,8 @@ use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
 use thermal_lab::bench_operator::BenchOperator;
 use thermal_lab::bring_up::{
-    AskSurroundings, Bench, BenchError, EmulatedBench, ManualStep, Measurement, Record, Report,
-    SimulatedBoard, Stage, Terminal, bring_up,
+    Bench, BenchError, EmulatedBench, ManualStep, Measurement, Record, Report, SimulatedBoard,
+    Stage, Terminal, bring_up,
 };
 use thermal_lab::link::Link;
 use thermal_sim::board::{Board, SOUND};
