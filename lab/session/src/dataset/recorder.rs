@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use thermal_client::client::{Identity, Telemetry};
+use thermal_client::text;
 
 use super::append::AppendFile;
 use super::change::Renaming;
@@ -230,13 +231,13 @@ impl Recorder {
         let log = AppendFile::open(&log_path, recorded.bytes, true)?;
         let rows = AppendFile::open(&folder.source(TELEMETRY), telemetry_bytes, false)?;
         // A clock that cannot be read has nothing that the data need.
-        let clock = fs::read(folder.source(CLOCK)).unwrap_or_default();
+        let clock = text::read(&folder.source(CLOCK)).unwrap_or_default();
         Self {
             folder,
             session: session.clone(),
             plan: plan.clone(),
             info,
-            clock: serde_json::from_slice(&clock).unwrap_or_default(),
+            clock: serde_json::from_str(&clock).unwrap_or_default(),
             log,
             telemetry: rows,
             pending: Vec::new(),
