@@ -161,7 +161,7 @@ fn a_renaming_that_is_refused_changes_nothing() {
         error.to_string()
     };
     for (old, new, words) in [
-        ("01", "02", "there is a participant 02 already"),
+        ("01", "02", "sub-02: there is a participant 02 already"),
         ("01", "P04", "participants.tsv: there is a participant P04 already"),
         ("01", "P03", "there are data of p03"),
         ("01", "01", "participant 01 has this code"),
