@@ -10,6 +10,7 @@ use thermal_client::commissioning::{
     CommissioningEvent, PhantomPlace, Surroundings, SurroundingsError,
 };
 use thermal_client::link::{Link, LinkError};
+use thermal_client::text;
 use thermal_device::safety::ThermistorId;
 
 /// Range of a reading, °C, and its largest distance from what was asked for, K.
@@ -52,12 +53,21 @@ pub struct BenchOperator<'a> {
     points: u32,
 }
 
-/// Lines of a reader, such as standard input, which another thread waits for.
+/// Lines of a reader, such as standard input, which another thread waits for: UTF-8, with or without a byte order mark.
 pub fn lines(reader: impl BufRead + Send + 'static) -> Lines {
     let (sender, lines) = mpsc::channel();
     thread::spawn(move || {
+        let lines = reader.split(b'\n').map(|line| {
+            let mut line = text::decode(line?)?;
+            line.truncate(line.trim_end_matches('\r').len());
+            Ok(line)
+        });
         // Ends when nobody listens.
-        reader.lines().all(|line| sender.send(line).is_ok())
+        for line in lines {
+            if sender.send(line).is_err() {
+                break;
+            }
+        }
     });
     lines
 }

@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use cli::{
-    Failure, Target, analyse, bring_up, commission, contact, enrol, info, log, monitor, play,
-    ports, predict, replay, run, send,
+    Failure, Target, analyse, bring_up, commission, contact, enrol, info, log, monitor,
+    participants, play, ports, predict, replay, run, send,
 };
 
 /// The operator's side of a thermal display.
@@ -39,6 +39,10 @@ enum Command {
     Run(run::Arguments),
     /// Score a data set, and write a page, JSON and CSV
     Analyse(analyse::Arguments),
+    /// Give a participant of a data set another code
+    Rename(participants::Rename),
+    /// Leave the data of a participant out of the analyses, and record why
+    Exclude(participants::Exclude),
     /// Print what simulated participants give for the experiments of the thesis, beside what was published
     Predict(predict::Arguments),
     /// Show a recorded session once more
@@ -64,6 +68,8 @@ fn main() -> ExitCode {
         Command::Monitor(arguments) => monitor::run(&target, &arguments),
         Command::Run(arguments) => run::run(&target, &arguments),
         Command::Analyse(arguments) => analyse::run(&arguments),
+        Command::Rename(arguments) => participants::run_rename(&arguments),
+        Command::Exclude(arguments) => participants::run_exclude(&arguments),
         Command::Predict(arguments) => predict::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Commission(arguments) => commission::run(&target, &arguments),

@@ -21,6 +21,7 @@ from thermal_display import (
     CommandError,
     ContactLaw,
     DeviceBusy,
+    DeviceRestarted,
     DeviceTripped,
     Display,
     LineBroken,
@@ -461,6 +462,22 @@ def test_a_tripped_device_says_why(hil_sim: str, tmp_path: Path) -> None:
             display.arm()
         assert error.value.fault == "emergency-stop"
         assert error.value.cause is not None and error.value.cause.fault == "emergency-stop"
+
+
+@pytest.mark.parametrize("kind", ["power-cycle", "brown-out", "reset-pin"])
+def test_a_wait_for_an_event_ends_when_the_device_restarts(hil_sim: str, tmp_path: Path, kind: str) -> None:
+    scene = tmp_path / "restart.toml"
+    scene.write_text(
+        "duration_s = 30\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = 'copper'\n"
+        f"[[fault]]\nkind = '{kind}'\nt_s = 1\n"
+    )
+    with Display.simulated(hil_sim, scene) as display:
+        display.arm(wait_s=5)
+        display.hold(30)
+        # Without the question to a silent device this ends with EventTimeout, after a minute.
+        with pytest.raises((DeviceRestarted, LineBroken)):
+            display.events.wait("end", timeout_s=60)
+        assert display.state().state == "off"
 
 
 def test_a_missing_simulator_is_named_with_what_helps(

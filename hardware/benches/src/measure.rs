@@ -34,15 +34,18 @@ const ROUNDING: f64 = 1e-9;
 /// # Errors
 /// The first line that does not meet this.
 pub fn check(deck: &str) -> Result<()> {
-    let deck = deck.to_ascii_lowercase();
+    // A line that begins with + continues the one before.
+    let deck = deck.to_ascii_lowercase().replace("\n+", " ");
     let lines = || deck.lines().filter(|line| !line.starts_with('*'));
     let points = lines().find_map(points);
     for line in lines() {
         let (code, _comment) = line.split_once(';').unwrap_or((line, ""));
         let has_power = ["^", "**", "pow("].iter().any(|power| code.contains(power));
         ensure!(!has_power, "{line}: ngspice loses the sign of a power's base; write a product");
+        // Spaces are allowed around an equals sign.
+        let code = code.split('=').map(str::trim).collect::<Vec<_>>().join("=");
         let words: Vec<_> = code.split_whitespace().collect();
-        if let [".meas", "tran", _, function, ..] = words[..] {
+        if let [".meas" | ".measure", "tran", _, function, ..] = words[..] {
             ensure!(function != "avg", "{line}: AVG exceeds its window; use measure::mean");
             check_window(&words, points.as_ref()).with_context(|| line.to_owned())?;
         }
@@ -64,12 +67,13 @@ fn check_window(words: &[&str], points: Option<&Points>) -> Result<()> {
         let value = words.iter().find_map(|word| word.strip_prefix(key))?;
         Some(number::parse(value).with_context(|| format!("{key}{value} is not a number")))
     };
-    let (Some(from), Some(to)) = (time("from="), time("to=")) else {
+    let (from, to) = (time("from=").transpose()?, time("to=").transpose()?);
+    if from.is_none() && to.is_none() {
         return Ok(());
-    };
-    let (from, to) = (from?, to?);
+    }
     let Points { kept_s, longest_step_s } =
         points.context("a window needs a line `.tran STEP END START LONGEST_STEP`")?;
+    let (from, to) = (from.unwrap_or(kept_s.start), to.unwrap_or(kept_s.end));
     ensure!(
         from >= kept_s.start * (1.0 - ROUNDING) && to <= kept_s.end * (1.0 + ROUNDING),
         "the run is from {:.3e} to {:.3e} s",
@@ -128,6 +132,10 @@ mod tests {
             (".meas tran x pp i(vi) from=200u to=150u", "longest step"),
             (".meas tran x max i(vi) from=200u to=200.05u", "longest step"),
             (".meas tran x max i(vi) from=early to=200u", "from=early is not a number"),
+            (".meas tran x max i(vi) from=600u", "longest step"),
+            (".meas tran x max i(vi) to=50u", "longest step"),
+            (".meas tran x max i(vi) from = 600u to =700u", "from 1.000e-4 to 5.000e-4 s"),
+            (".measure tran x avg i(vi) from=150u to=200u", "measure::mean"),
             ("B1 a 0 V=V(b)**3", "product"),
             ("B1 a 0 V=pow(V(b),3)", "product"),
             (".param x={y^3}", "product"),
@@ -136,11 +144,13 @@ mod tests {
             assert!(error.contains(expected), "{lines}: {error}");
             assert!(error.starts_with(&lines.to_ascii_lowercase()), "{error}");
         }
+        let continued = check(&format!("{run}.meas tran x max i(vi)\n+ from=600u to=700u"));
+        assert!(continued.is_err());
         let unbounded = check(".tran 20n 500u\n.meas tran x max i(vi) from=150u to=200u");
         assert!(unbounded.is_err());
         for lines in [
             "* x**2 in a comment\nR1 a 0 1k ; x^2",
-            ".meas tran x max i(vi) from=100u to=0.5m",
+            ".meas tran x max i(vi) from=100u to=0.5m\n.meas tran y max i(vi) from=150u",
             ".meas tran x min i(vi)\n.meas tran y when v(a)=1 fall=1 td=900u",
             ".meas dc x find v(a) at=9",
         ] {

@@ -7,6 +7,7 @@ use anyhow::{Context, ensure};
 use clap::Args;
 use serde_json::json;
 use thermal_campaigns::{parallel_map, survey_device, survey_table};
+use thermal_client::text;
 use thermal_plant::{Params, parameters};
 use thermal_sim::commissioning::{
     CommissioningEvent, CommissioningRecord, CommissioningSetup, commission, restore,
@@ -112,8 +113,7 @@ fn commission_on<E: Engine>(
 
 /// The lines of a file, without empty ones.
 fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
-    let text =
-        std::fs::read_to_string(path).with_context(|| format!("--restore {}", path.display()))?;
+    let text = text::read(path).with_context(|| format!("--restore {}", path.display()))?;
     let lines: Vec<String> =
         (text.lines().map(|line| line.trim().to_owned())).filter(|line| !line.is_empty()).collect();
     for (number, line) in (1..).zip(&lines) {

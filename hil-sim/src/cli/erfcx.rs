@@ -2,8 +2,9 @@
 
 use std::io::{self, BufRead, BufWriter, Write};
 
-use anyhow::anyhow;
+use anyhow::{Context, anyhow};
 use contact_model::fixed_point::{Fraction, MantissaExponent, Ticks, erfcx};
+use thermal_client::text;
 
 use super::Failure;
 
@@ -11,8 +12,8 @@ use super::Failure;
 pub fn run() -> Result<(), Failure> {
     let mut out = BufWriter::new(io::stdout().lock());
     writeln!(out, "z,E_bits").map_err(Failure::run)?;
-    for (index, line) in io::stdin().lock().lines().enumerate() {
-        let line = line.map_err(Failure::run)?;
+    for (index, line) in io::stdin().lock().split(b'\n').enumerate() {
+        let line = line.and_then(text::decode).context("standard input").map_err(Failure::run)?;
         let word = line.trim();
         if word.is_empty() {
             continue;

@@ -2,6 +2,7 @@
 
 mod cli;
 mod course;
+mod encodings;
 mod infrared;
 mod roughness;
 mod serve;

@@ -84,14 +84,14 @@ pub enum Simulated {
 }
 
 /// The tasks of a data set, by name. Where session files of a task differ, each makes a task of its own; comments do not count.
-pub fn tasks(sessions: &[RecordedSession], simulated: Simulated) -> Vec<Task> {
+pub fn tasks(sessions: &[&RecordedSession], simulated: Simulated) -> Vec<Task> {
     let mut tasks: Vec<(Session, Task)> = Vec::new();
     let is_mixed = |task: &str| {
         let own = || sessions.iter().filter(|one| one.session.task == task);
         own().any(|one| one.info.has_simulated_part())
             && own().any(|one| !one.info.has_simulated_part())
     };
-    for recorded in sessions {
+    for &recorded in sessions {
         let is_left_out = simulated == Simulated::Apart && recorded.info.has_simulated_part();
         if is_left_out && is_mixed(&recorded.session.task) {
             continue;
@@ -121,7 +121,7 @@ pub fn tasks(sessions: &[RecordedSession], simulated: Simulated) -> Vec<Task> {
 }
 
 /// What was done with the simulated participants of a task that has real ones, too.
-fn mixed(sessions: &[RecordedSession], task: &str, simulated: Simulated) -> String {
+fn mixed(sessions: &[&RecordedSession], task: &str, simulated: Simulated) -> String {
     let own =
         sessions.iter().filter(|one| one.session.task == task && one.info.has_simulated_part());
     let codes: Vec<_> = own.map(|one| &*one.info.participant).collect();

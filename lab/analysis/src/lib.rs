@@ -10,6 +10,8 @@ mod report;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeMap;
+
 use thermal_session::dataset::DataSet;
 
 pub use input::Simulated;
@@ -21,9 +23,15 @@ pub use report::{Analysis, Cell, Column, Picture, Section, Table, TaskAnalysis};
 /// are, every number is finite; what cannot be computed is a sentence in [`Section::not_possible`], what was left out one in
 /// [`Section::warnings`] or [`Analysis::left_out`].
 pub fn analyse(data: &DataSet, simulated: Simulated) -> Analysis {
-    let tasks = input::tasks(&data.sessions, simulated);
+    let excluded: BTreeMap<_, _> = (data.sessions.iter())
+        .filter_map(|session| Some((&session.info.participant, session.excluded.as_ref()?)))
+        .collect();
+    let excluded = excluded.iter().map(|(code, why)| format!("participant {code}: {why}"));
+    let sessions: Vec<_> =
+        data.sessions.iter().filter(|session| session.excluded.is_none()).collect();
+    let tasks = input::tasks(&sessions, simulated);
     Analysis {
-        left_out: data.left_out.iter().map(ToString::to_string).collect(),
+        left_out: data.left_out.iter().map(ToString::to_string).chain(excluded).collect(),
         tasks: tasks.iter().map(analyses::of_task).collect(),
     }
 }

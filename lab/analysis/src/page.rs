@@ -24,7 +24,7 @@ pub fn page(analysis: &Analysis) -> String {
         [] => "<p>The data set has no sessions.</p>".into(),
         _ => tasks.iter().map(|task| of_task(task, tasks.len() > 1)).collect(),
     };
-    let left_out = list("Not read, and not in any table of this page:", &analysis.left_out);
+    let left_out = list("Not in any table of this page:", &analysis.left_out);
     document(&title, STYLE, &(left_out + &body))
 }
 

@@ -84,11 +84,13 @@ fn recorded(session: &Session, person: u32) -> RecordedSession {
             session_sha256: String::new(),
             plan_sha256: String::new(),
             devices: Vec::new(),
+            renamed: Vec::new(),
         },
         records: records.collect(),
         session: session.clone(),
         plan,
         log: Vec::new(),
+        excluded: None,
         remarks: Vec::new(),
     }
 }

@@ -6,5 +6,6 @@ pub mod commissioning;
 pub mod course;
 mod fault_words;
 pub mod link;
+pub mod text;
 
 pub use fault_words::{FaultWords, fault_words};

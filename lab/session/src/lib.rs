@@ -21,7 +21,7 @@ pub use design::{
 pub use executor::{Executor, SessionEnd};
 pub use file::SessionError;
 pub use people::{Cue, Decision, OperatorQuestion, People, Phase, Question, Response, Update};
-pub use plan::{Departure, Plan, PlanError, PlannedTrial, Presented};
+pub use plan::{Departure, Plan, PlanError, PlannedTrial, Presented, check_participant};
 pub use planned_dose::DoseReached;
 pub use schedule::{Next, OtherSession, Schedule};
 pub use session::{

@@ -223,7 +223,10 @@ impl PlannedTrial {
 }
 
 /// Reports a participant that is no code.
-fn check_participant(code: &str) -> Result<(), PlanError> {
+///
+/// # Errors
+/// It is not of 1 to 20 letters and digits, or has no digit.
+pub fn check_participant(code: &str) -> Result<(), PlanError> {
     let known = code.chars().all(|c| c.is_ascii_alphanumeric());
     let has_digit = code.contains(|c: char| c.is_ascii_digit());
     if known && has_digit && code.len() <= 20 {

@@ -29,7 +29,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let data = recorded_sessions(&arguments.folder).map_err(Failure::input)?;
     let simulated = if arguments.pool_simulated { Simulated::Pooled } else { Simulated::Apart };
     let analysis = analyse(&data, simulated);
-    if data.sessions.is_empty() && !analysis.left_out.is_empty() {
+    if analysis.tasks.is_empty() && !analysis.left_out.is_empty() {
         return Err(Failure::input(anyhow!("{}", analysis.left_out.join("\n"))));
     }
     for left_out in &analysis.left_out {

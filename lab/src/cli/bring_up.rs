@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use thermal_client::client::Client;
+use thermal_client::text;
 use thermal_lab::bench_operator::{BenchOperator, lines};
 use thermal_lab::bring_up::{
     EmulatedBench, Report, STAGES, SimulatedBoard, Stage, Terminal, bring_up, page,
@@ -129,7 +130,7 @@ fn first_report(arguments: &Arguments) -> anyhow::Result<Report> {
     let mut report = Report::default();
     if let Some(from) = arguments.from {
         let path = arguments.out.join(RECORD);
-        let text = fs::read_to_string(&path).with_context(|| {
+        let text = text::read(&path).with_context(|| {
             format!("--from {}: {}: the results of the earlier stages", from.name, path.display())
         })?;
         report = serde_json::from_str(&text).with_context(|| path.display().to_string())?;

@@ -10,6 +10,7 @@ use clap::Args;
 use serde::{Deserialize, Serialize};
 use thermal_client::client::{Client, PlainCommand, QueryBoard, QueryDisplaySurface, person_data};
 use thermal_client::link::Link;
+use thermal_client::text;
 use thermal_lab::enrolment::{EnrolmentOptions, Step, enrol};
 use thermal_lab::step_screen::StepScreen;
 use thermal_settings::{Person, PersonCode};
@@ -165,7 +166,7 @@ fn at_device<L: Link>(
 /// The person of a file, which must be this one.
 fn read(path: &Path, code: PersonCode) -> anyhow::Result<Person> {
     let context = || format!("--restore {}", path.display());
-    let text = fs::read_to_string(path).with_context(context)?;
+    let text = text::read(path).with_context(context)?;
     let file: PersonFile = toml::from_str(&text).with_context(context)?;
     if file.code != code.to_string() {
         anyhow::bail!("--restore {}: it is of {:?}, not of {code}", path.display(), file.code);

@@ -9,6 +9,7 @@ pub mod info;
 mod kept_files;
 pub mod log;
 pub mod monitor;
+pub mod participants;
 pub mod play;
 pub mod ports;
 pub mod predict;

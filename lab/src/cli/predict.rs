@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::{Deserialize, Serialize};
+use thermal_client::text;
 use thermal_participant::predictions::{RenderedTouch, report, told_apart};
 
 use super::{Failure, print_text};
@@ -53,7 +54,8 @@ struct Line {
 fn read(file: &Path) -> anyhow::Result<Vec<RenderedTouch>> {
     let context = |problem: csv::Error| anyhow::anyhow!("{}: {problem}", file.display());
     let mut touches = Vec::new();
-    for line in csv::Reader::from_path(file).map_err(context)?.deserialize() {
+    let text = text::open(file).map_err(|problem| context(problem.into()))?;
+    for line in csv::Reader::from_reader(text).deserialize() {
         let line: Line = line.map_err(context)?;
         if line.told == "as-it-is" {
             touches.push(RenderedTouch {

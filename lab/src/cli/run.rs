@@ -12,10 +12,13 @@ use thermal_lab::link::{LazyLink, PacedLink};
 use thermal_lab::terminal_people::TerminalPeople;
 use thermal_lab::watched::{Progress, Watched};
 use thermal_participant::{Bench, BenchOptions};
-use thermal_session::dataset::{Recorder, RecordingError};
-use thermal_session::{DoseReached, Executor, People, Plan, Schedule, Session, SessionEnd};
+use thermal_session::dataset::{Folder, Recorder, RecordingError};
+use thermal_session::{
+    DoseReached, Executor, People, Plan, Schedule, Session, SessionEnd, check_participant,
+};
 use thermal_window::{SessionView, StopFlag, Tones};
 
+use super::participants::NewPerson;
 use super::target::stop_on_signals;
 use super::{Failure, Target, print_text, window};
 
@@ -39,6 +42,8 @@ pub struct Arguments {
     /// Seed of the order of the trials; with --simulated also of participant and device
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    new_person: NewPerson,
     /// Print the trials as CSV, and run nothing
     #[arg(long)]
     plan: bool,
@@ -56,10 +61,21 @@ pub struct Arguments {
     real_time: bool,
 }
 
+impl Arguments {
+    /// The code with which the plan is drawn: that which the participant had when the session was begun.
+    fn plan_code(&self, session: &Session) -> Result<String, Failure> {
+        check_participant(&self.participant).map_err(Failure::input)?;
+        if !self.resume {
+            return Ok(self.participant.clone());
+        }
+        Folder::new(&self.out, &self.participant, &session.task).plan_code().map_err(refused)
+    }
+}
+
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let session = Session::read(&arguments.session).map_err(Failure::input)?;
-    let who = (arguments.participant.as_str(), arguments.seed);
-    let plan = Plan::new(&session, who.0, who.1)
+    let code = arguments.plan_code(&session)?;
+    let plan = Plan::new(&session, &code, arguments.seed)
         .with_context(|| arguments.session.display().to_string())
         .map_err(Failure::input)?;
     if let Some(DoseReached { trial, device_finger, plan_min }) =
@@ -74,9 +90,12 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     if arguments.plan {
         return print_text(&plan.csv());
     }
+    if !arguments.resume {
+        arguments.new_person.check(&arguments.out, &arguments.participant, None)?;
+    }
     let stop = StopFlag::default();
     stop_on_signals(&stop)?;
-    let all = Run { arguments, session: &session, plan: &plan };
+    let all = Run { arguments, session: &session, plan: &plan, plan_code: &code };
     if arguments.headless {
         let tones = (!target.simulated).then(Tones::start);
         let mut screen = stderr();
@@ -98,7 +117,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// A folder that is not fit for the session is a wrong argument.
-fn refused(error: RecordingError) -> Failure {
+pub(super) fn refused(error: RecordingError) -> Failure {
     match error {
         RecordingError::Exists(_)
         | RecordingError::AlikeCode { .. }
@@ -116,6 +135,8 @@ struct Run<'a> {
     arguments: &'a Arguments,
     session: &'a Session,
     plan: &'a Plan,
+    /// The code with which it was drawn, and a simulated participant with it.
+    plan_code: &'a str,
 }
 
 impl Run<'_> {
@@ -127,7 +148,7 @@ impl Run<'_> {
         people: &mut dyn People,
     ) -> Result<(), Failure> {
         if target.simulated {
-            let who = (self.arguments.participant.as_str(), self.arguments.seed);
+            let who = (self.plan_code, self.arguments.seed);
             let options = BenchOptions::of_session(self.session);
             let bench = Bench::new(self.session, self.plan, who.0, who.1, options)
                 .map_err(Failure::input)?;
@@ -158,7 +179,7 @@ impl Run<'_> {
         people: &mut dyn People,
         is_simulated: bool,
     ) -> Result<(), Failure> {
-        let Self { arguments, session, plan } = *self;
+        let Self { arguments, session, plan, .. } = *self;
         let who = (arguments.participant.as_str(), arguments.seed);
         let recorder = if arguments.resume {
             Recorder::resume(&arguments.out, session, plan, who, is_simulated)

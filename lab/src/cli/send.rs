@@ -1,10 +1,10 @@
 //! `thermal-lab send`: lines to the device, and its answers.
 
-use std::io::{BufReader, stdin};
+use std::io::{self, BufReader, ErrorKind, stdin};
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use clap::Args;
 use serde_json::json;
 use thermal_client::client::ClientError;
@@ -37,7 +37,10 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             loop {
                 match entered.recv_timeout(POLL_INTERVAL) {
                     Ok(line) => {
-                        let line = line.context("standard input").map_err(Failure::run)?;
+                        let line = line.map_err(|error| match error.kind() {
+                            ErrorKind::InvalidData => Failure::input(unreadable(&error)),
+                            _ => Failure::run(unreadable(&error)),
+                        })?;
                         if !line.trim().is_empty() {
                             send(client, line.trim(), arguments.json)?;
                         }
@@ -51,6 +54,10 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
         }
         Ok(())
     })
+}
+
+fn unreadable(error: &io::Error) -> anyhow::Error {
+    anyhow!("standard input: {error}")
 }
 
 /// Sends a line and prints its answer. A refusal is an error, so that no further line is sent.

@@ -82,12 +82,14 @@ pub fn t_tail(t: f64, df: f64) -> Result<f64> {
 /// # Errors
 /// A probability that is not between 0 and 1, or degrees of freedom that are not above 0 and up to 1e5.
 pub fn t_quantile(probability: f64, df: f64) -> Result<f64> {
-    /// Above the quantile of 1e-9 with one degree of freedom.
-    const T_MAX: f64 = 1e9;
     let probability = inner_probability("probability", probability)?;
     let df = degrees(df)?;
-    let falling = |t: f64| -t_tail(t, df).unwrap_or(0.0);
-    Ok(bisect(falling, -probability, 0.0, T_MAX))
+    let tail = |t: f64| t_tail(t, df).unwrap_or(0.0);
+    let mut high = 1.0;
+    while tail(high) > probability {
+        high *= 2.0;
+    }
+    Ok(bisect(|t| -tail(t), -probability, 0.0, high))
 }
 
 /// Probability of a correlation of `r` or more of either sign between `pairs` uncorrelated pairs: that of

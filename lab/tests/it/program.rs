@@ -74,17 +74,36 @@ fn answers_are_printed_and_a_refusal_is_a_failure() {
     assert_eq!(lines[1]["ok"], false);
 }
 
-#[test]
-fn lines_of_standard_input_are_sent() {
+/// `send -` with this standard input.
+fn send_all(input: &[u8]) -> Output {
     let mut sender = thermal_lab()
         .args(["send", "--simulated", "-"])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    sender.stdin.take().unwrap().write_all(b"law\n\n  finger\n").unwrap();
-    let output = sender.wait_with_output().unwrap();
-    assert_eq!(text(&output.stdout), "ok law=model\nok finger=mean\n");
+    sender.stdin.take().unwrap().write_all(input).unwrap();
+    sender.wait_with_output().unwrap()
+}
+
+#[test]
+fn lines_of_standard_input_are_sent() {
+    for mark in ["", "\u{feff}"] {
+        let output = send_all(format!("{mark}law\r\n\n  finger\n").as_bytes());
+        assert_eq!(text(&output.stdout), "ok law=model\nok finger=mean\n");
+    }
+}
+
+#[test]
+fn standard_input_in_utf_16_is_refused_before_anything_is_sent() {
+    for mark in ["", "\u{feff}"] {
+        let input = format!("{mark}law\nfinger\n");
+        let output = send_all(&input.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<_>>());
+        assert_eq!((output.status.code(), text(&output.stdout)), (Some(2), ""));
+        let error = text(&output.stderr);
+        assert!(error.contains("standard input: this is UTF-16; allowed is UTF-8"), "{error}");
+    }
 }
 
 #[test]

@@ -4,4 +4,5 @@ mod analyse;
 mod folder;
 mod interruptions;
 mod lines;
+mod participants;
 mod program;

@@ -78,6 +78,7 @@ fn the_data_set_has_the_structure_of_bids() {
     let columns = physio["Columns"].as_array().unwrap().len();
     assert_eq!(physio["SamplingFrequency"], 100.0);
     assert_eq!(physio["StartTime"], 0.0);
+    assert_eq!(physio["TaskName"], about["TaskName"]);
     let packed = &files[Path::new("sub-01/beh/sub-01_task-p5_recording-finger0_physio.tsv.gz")];
     // RFC 1952: the time is in bytes 4 to 7.
     assert_eq!(packed[..2], [0x1f, 0x8b]);

@@ -17,6 +17,7 @@ use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, interface_temperature};
 use thermal_client::course::Course;
+use thermal_client::text;
 pub use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
@@ -157,8 +158,7 @@ impl Scene {
     /// # Errors
     /// The first thing that is wrong, with file and line, and what is allowed.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
+        let text = text::read(path).map_err(|error| SceneError::unreadable(path, &error))?;
         Self::parse(&text, path)
     }
 

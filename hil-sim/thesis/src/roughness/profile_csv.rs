@@ -1,10 +1,10 @@
 //! Reading of profiles from CSV.
 
-use std::fs::File;
 use std::io;
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
+use thermal_client::text;
 use thiserror::Error;
 
 use super::Profile;
@@ -134,7 +134,7 @@ impl Profile {
     /// # Errors
     /// The file cannot be read, or as [`Self::parse`].
     pub fn read(path: &Path) -> Result<Self, ProfileError> {
-        Self::parse(File::open(path)?)
+        Self::parse(text::open(path)?)
     }
 
     /// Reads CSV with the columns `x_m` and `z_m`, in m; other columns and lines that start with `#` are

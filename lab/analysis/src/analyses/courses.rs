@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use experiment_statistics::exponential::fit_exponential;
+use thermal_client::text;
 
 use super::falls::{group, parts_with_both_modes};
 use super::left_out;
@@ -154,7 +155,7 @@ fn add_telemetry(
     contacts: &[Contact],
     sums: &mut [Sums],
 ) -> anyhow::Result<LeftOut> {
-    let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path)?;
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text::open(path)?);
     let headers = reader.headers()?.clone();
     let place = |name: &str| headers.iter().position(|header| header == name);
     let (Some(time), Some(finger), Some(value)) = (place("t_s"), place("finger"), place(column))

@@ -86,11 +86,7 @@ impl CourseFile {
 /// The first thing that is wrong, with file and line, and what is allowed.
 pub fn read_course(path: &Path, selection: Selection<'_>) -> Result<CourseFile, CourseFileError> {
     let unreadable = |problem: String| CourseFileError::Unreadable { file: path.into(), problem };
-    let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        return Err(unreadable("this is UTF-16; allowed is UTF-8".into()));
-    }
-    let text = String::from_utf8(bytes).map_err(|error| unreadable(error.to_string()))?;
+    let text = crate::text::read(path).map_err(|error| unreadable(error.to_string()))?;
     parse_course(&text, path, selection)
 }
 
@@ -102,8 +98,6 @@ fn parse_course(
 ) -> Result<CourseFile, CourseFileError> {
     let wrong =
         |line: u64, problem: String| CourseFileError::Line { file: path.into(), line, problem };
-    // A byte order mark is that of a spreadsheet.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .trim(csv::Trim::All)

@@ -24,11 +24,7 @@ impl AppendFile {
         let options = OpenOptions::new().create(true).truncate(false).write(true).clone();
         let mut file = options.open(path).map_err(error_at(path))?;
         if alone {
-            match file.try_lock() {
-                Ok(()) => {}
-                Err(TryLockError::WouldBlock) => return Err(RecordingError::InUse(path.into())),
-                Err(TryLockError::Error(error)) => return Err(error_at(path)(error)),
-            }
+            lock(&file, path)?;
         }
         let length = file.metadata().map_err(error_at(path))?.len();
         if length < bytes {
@@ -41,6 +37,15 @@ impl AppendFile {
         file.set_len(bytes).map_err(error_at(path))?;
         file.seek(SeekFrom::End(0)).map_err(error_at(path))?;
         Ok(Self { path: path.into(), file, bytes })
+    }
+
+    /// Refuses a file that another program has opened alone.
+    ///
+    /// # Errors
+    /// It has, or the file cannot be opened.
+    pub fn check_alone(path: &Path) -> Result<(), RecordingError> {
+        let file = OpenOptions::new().write(true).open(path).map_err(error_at(path))?;
+        lock(&file, path)
     }
 
     /// Appends, and waits until it is on the disk.
@@ -57,5 +62,14 @@ impl AppendFile {
     /// Its length, bytes.
     pub const fn bytes(&self) -> u64 {
         self.bytes
+    }
+}
+
+/// Keeps a file to this program until it is closed.
+fn lock(file: &File, path: &Path) -> Result<(), RecordingError> {
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => Err(RecordingError::InUse(path.into())),
+        Err(TryLockError::Error(error)) => Err(error_at(path)(error)),
     }
 }

@@ -1,13 +1,13 @@
 //! The files that BIDS describes, written from the records.
 
 use std::collections::BTreeSet;
-use std::fs;
 
 use serde_json::json;
 
-use super::folder::write_whole;
+use super::folder::{SharedFiles, write_whole};
+use super::participants::ParticipantList;
 use super::recorder::{TELEMETRY, pretty};
-use super::{Folder, RecordingError, error_at, events, physio};
+use super::{Folder, RecordingError, events, physio};
 use crate::record::TrialRecord;
 use crate::{Plan, Session};
 
@@ -21,6 +21,7 @@ Behavioural data of experiments with a Peltier thermal display, recorded by ther
 
 - `sub-*/beh/*_events.tsv`: a row for each trial; the columns are described in the `.json` beside it. Rows with a reason in
   `void` do not count.
+- `participants.tsv`: who took part. The analysis leaves out whoever has `yes` in its column `excluded`, if there is one.
 - `sub-*/beh/*_physio.tsv.gz`: telemetry of the device: set-point, temperatures, force, current. Rows in breaks are n/a.
 - `sourcedata/`: session file, plan, log and telemetry from which these files are written.
 
@@ -29,8 +30,7 @@ said is in `sourcedata/sub-*/task-*/clock.json`.
 ";
 
 /// Writes the files that describe a data set, unless it has them.
-pub(super) fn describe(folder: &Folder) -> Result<(), RecordingError> {
-    let _alone = folder.lock_shared_files()?;
+pub(super) fn describe(folder: &Folder, _shared: &SharedFiles) -> Result<(), RecordingError> {
     let description = json!({
         "Name": "Experiments on a thermal display",
         "BIDSVersion": BIDS_VERSION,
@@ -76,7 +76,7 @@ pub(super) fn write(
                 |end: &str| folder.behaviour(&format!("recording-finger{finger}_physio.{end}"));
             let rows = physio::compressed(&folder.source(TELEMETRY), finger, device.stream_ms)?;
             write_whole(&name("tsv.gz"), &rows.gzip)?;
-            let sidecar = physio::sidecar(device.stream_ms, rows.off_max_s);
+            let sidecar = physio::sidecar(&session.title, device.stream_ms, rows.off_max_s);
             write_whole(&name("json"), &pretty(&sidecar))?;
         }
     }
@@ -85,18 +85,11 @@ pub(super) fn write(
 
 /// Adds the participant to the list.
 fn add_participant(folder: &Folder) -> Result<(), RecordingError> {
-    let _alone = folder.lock_shared_files()?;
-    let path = folder.root().join("participants.tsv");
-    let mut list = fs::read_to_string(&path).map_err(error_at(&path))?;
-    let code = format!("sub-{}", folder.participant());
-    if list.lines().any(|line| line.split('\t').next() == Some(&code)) {
+    let _shared = SharedFiles::lock(folder.root())?;
+    let mut list = ParticipantList::read(folder.root())?;
+    if list.has(folder.participant()) {
         return Ok(());
     }
-    // A list with more columns, which a person has added, has no values of this participant in them.
-    let others = list.lines().next().map_or(0, |header| header.split('\t').count() - 1);
-    if !list.ends_with('\n') {
-        list.push('\n');
-    }
-    list += &format!("{code}{}\n", "\tn/a".repeat(others));
-    write_whole(&path, list.as_bytes())
+    list.add(folder.participant());
+    list.write()
 }

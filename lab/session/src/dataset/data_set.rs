@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::participants::ParticipantList;
 use super::read::read_info;
 use super::{Folder, RecordedSession, RecordingError, SessionInfo, unreadable};
 
@@ -102,10 +103,12 @@ pub fn recorded_sessions(root: &Path) -> Result<DataSet, DataSetError> {
         }
     }
     check_identities(&known)?;
+    let exclusions = ParticipantList::read(root)?.exclusions()?;
     let mut sessions = Vec::new();
     for (folder, info) in known {
+        let excluded = exclusions.get(folder.participant()).cloned();
         match RecordedSession::of(folder, info) {
-            Ok(session) => sessions.push(session),
+            Ok(session) => sessions.push(RecordedSession { excluded, ..session }),
             Err(error) => left_out.push(error),
         }
     }

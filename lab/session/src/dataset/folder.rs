@@ -4,6 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use super::codes::names_in;
 use super::{RecordingError, error_at};
 
 /// The folder of a data set, and in it the files of one participant and task.
@@ -47,35 +48,11 @@ impl Folder {
         self.path().join(name)
     }
 
-    /// Refuses a code that differs from one with data in capital letters only.
-    ///
-    /// # Errors
-    /// There is such a code.
-    pub(super) fn check_code(&self) -> Result<(), RecordingError> {
-        let given = &self.participant;
-        let entries = fs::read_dir(self.root.join("sourcedata")).into_iter().flatten();
-        let codes = entries.filter_map(|entry| {
-            let name = entry.ok()?.file_name().into_string().ok()?;
-            name.strip_prefix("sub-").map(str::to_owned)
-        });
-        let alike = |code: &String| code != given && code.eq_ignore_ascii_case(given);
-        match codes.into_iter().find(alike) {
-            Some(known) => Err(RecordingError::AlikeCode { given: given.clone(), known }),
-            None => Ok(()),
-        }
-    }
-
-    /// Keeps other programs from the files that all participants share, until the returned file is closed.
-    ///
-    /// # Errors
-    /// The operating system does not lock it.
-    pub(super) fn lock_shared_files(&self) -> Result<fs::File, RecordingError> {
-        let folder = self.root.join("sourcedata");
-        let path = folder.join("shared-files.lock");
-        fs::create_dir_all(&folder).map_err(error_at(&folder))?;
-        let file = fs::File::create(&path).map_err(error_at(&path))?;
-        file.lock().map_err(error_at(&path))?;
-        Ok(file)
+    /// The sessions of a participant; none if there are no data.
+    pub(super) fn all_of(root: &Path, participant: &str) -> Result<Vec<Self>, RecordingError> {
+        let folder = root.join("sourcedata").join(format!("sub-{participant}"));
+        let tasks = names_in(&folder, "task-")?;
+        Ok(tasks.into_iter().map(|task| Self::new(root, participant, &task)).collect())
     }
 
     /// A file of behavioural data, by the end of its name, such as `events.tsv`.
@@ -83,6 +60,32 @@ impl Folder {
         let Self { root, participant, task } = self;
         let folder = root.join(format!("sub-{participant}")).join("beh");
         folder.join(format!("sub-{participant}_task-{task}_{end}"))
+    }
+}
+
+/// The codes of participants with recorded sessions, by the names of folders.
+pub(super) fn participant_folders(root: &Path) -> Result<Vec<String>, RecordingError> {
+    names_in(&root.join("sourcedata"), "sub-")
+}
+
+/// Keeps other programs from the files that all participants share, from beginning a session, and from renaming participants,
+/// until it is dropped.
+pub(super) struct SharedFiles(
+    #[expect(dead_code, reason = "the lock ends when it is closed")] fs::File,
+);
+
+impl SharedFiles {
+    /// Waits until no other program has them.
+    ///
+    /// # Errors
+    /// The operating system does not lock them.
+    pub(super) fn lock(root: &Path) -> Result<Self, RecordingError> {
+        let folder = root.join("sourcedata");
+        let path = folder.join("shared-files.lock");
+        fs::create_dir_all(&folder).map_err(error_at(&folder))?;
+        let file = fs::File::create(&path).map_err(error_at(&path))?;
+        file.lock().map_err(error_at(&path))?;
+        Ok(Self(file))
     }
 }
 

@@ -16,11 +16,14 @@
 
 mod append;
 mod bids;
+mod change;
 mod check;
+mod codes;
 mod data_set;
 mod events;
 mod folder;
 mod log;
+mod participants;
 mod physio;
 mod read;
 mod recorder;
@@ -29,9 +32,12 @@ mod telemetry;
 use std::io;
 use std::path::PathBuf;
 
+pub use change::{ChangeError, Renaming, exclude, rename};
+pub use codes::{KnownCode, alike_codes};
 pub use data_set::{DataSet, DataSetError, recorded_sessions};
 pub use folder::Folder;
 pub use log::{Entry, LogLine};
+pub use participants::Exclusion;
 pub use read::RecordedSession;
 pub use recorder::{DeviceReport, Recorder, SessionInfo};
 

@@ -83,10 +83,11 @@ pub(super) fn compressed(
     Ok(Rows { gzip: gzip.finish().map_err(error_at(telemetry))?, off_max_s })
 }
 
-/// What the columns are, and how far the rows' times are off, s.
-pub(super) fn sidecar(interval_ms: u32, off_max_s: f64) -> Value {
+/// What the columns of a task are, and how far the rows' times are off, s.
+pub(super) fn sidecar(task: &str, interval_ms: u32, off_max_s: f64) -> Value {
     let names: Vec<_> = COLUMNS.iter().map(|(name, ..)| *name).collect();
     let mut about = json!({
+        "TaskName": task,
         "SamplingFrequency": 1e3 / f64::from(interval_ms),
         "StartTime": 0.0,
         "PhysioType": "generic",

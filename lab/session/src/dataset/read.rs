@@ -3,10 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use thermal_client::text;
+
 use super::check::contradictions;
 use super::log::{Entry, LogLine};
 use super::recorder::{INFO, LOG, SESSION, SessionInfo, TELEMETRY, sha256};
-use super::{DataSetError, Folder, RecordingError, telemetry, unreadable};
+use super::{DataSetError, Exclusion, Folder, RecordingError, telemetry, unreadable};
 use crate::record::TrialRecord;
 use crate::{Plan, Session, Update};
 
@@ -25,6 +27,8 @@ pub struct RecordedSession {
     pub records: Vec<TrialRecord>,
     /// Everything that happened.
     pub log: Vec<LogLine>,
+    /// That the participant is excluded.
+    pub excluded: Option<Exclusion>,
     /// What in its files is not as it was recorded, but does not change the trials above.
     pub remarks: Vec<String>,
 }
@@ -36,10 +40,10 @@ impl RecordedSession {
     /// A file cannot be read or does not say what it should, or the files contradict each other.
     pub(super) fn of(folder: Folder, info: SessionInfo) -> Result<Self, DataSetError> {
         let session_path = folder.source(SESSION);
-        let text = fs::read_to_string(&session_path).map_err(unreadable(&session_path))?;
+        let text = text::read(&session_path).map_err(unreadable(&session_path))?;
         let session = Session::parse(&text, &session_path)
             .map_err(|error| content(&session_path, 1, &error))?;
-        let plan = Plan::new(&session, &info.participant, info.seed)
+        let plan = Plan::new(&session, info.plan_code(), info.seed)
             .map_err(|error| content(&session_path, 1, &error))?;
         let mut remarks = Vec::new();
         if sha256(plan.csv().as_bytes()) != info.plan_sha256 {
@@ -68,7 +72,7 @@ impl RecordedSession {
                 telemetry.display()
             ));
         }
-        Ok(Self { folder, info, session, plan, records, log, remarks })
+        Ok(Self { folder, info, session, plan, records, log, excluded: None, remarks })
     }
 
     /// The file with its telemetry.
@@ -101,8 +105,8 @@ impl RecordedSession {
 /// The description of a session.
 pub(super) fn read_info(folder: &Folder) -> Result<SessionInfo, RecordingError> {
     let path = folder.source(INFO);
-    let text = fs::read(&path).map_err(unreadable(&path))?;
-    serde_json::from_slice(&text).map_err(|error| content(&path, error.line(), &error))
+    let text = text::read(&path).map_err(unreadable(&path))?;
+    serde_json::from_str(&text).map_err(|error| content(&path, error.line(), &error))
 }
 
 /// A log up to and including the last record. What follows is of a trial that has not ended, and may be damaged.
@@ -116,10 +120,11 @@ pub(super) struct ReadLog {
 
 pub(super) fn read_log(path: &Path) -> Result<ReadLog, RecordingError> {
     let text = fs::read(path).map_err(unreadable(path))?;
-    let (mut lines, mut bytes) = (Vec::new(), 0u64);
+    let mark = text::mark_length(&text).map_err(unreadable(path))?;
+    let (mut lines, mut bytes) = (Vec::new(), mark as u64);
     let mut committed = (0, 0);
     let mut damaged = None;
-    for (number, line) in (1..).zip(text.split_inclusive(|byte| *byte == b'\n')) {
+    for (number, line) in (1..).zip(text[mark..].split_inclusive(|byte| *byte == b'\n')) {
         bytes += line.len() as u64;
         match serde_json::from_slice::<LogLine>(line) {
             Ok(line) => lines.push(line),

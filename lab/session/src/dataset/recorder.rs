@@ -8,9 +8,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use thermal_client::client::{Identity, Telemetry};
+use thermal_client::text;
 
 use super::append::AppendFile;
-use super::folder::write_whole;
+use super::change::Renaming;
+use super::folder::{SharedFiles, write_whole};
 use super::log::{Entry, LogLine};
 use super::read::{read_info, read_log, records_of};
 use super::{Folder, RecordingError, bids, telemetry, unreadable};
@@ -40,9 +42,22 @@ pub struct SessionInfo {
     pub plan_sha256: String,
     /// The device, and others with which the session was resumed; none if the session has no displays.
     pub devices: Vec<Value>,
+    /// How the participant was renamed since the session was begun, in order. The plan was drawn with the first code.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub renamed: Vec<Renaming>,
 }
 
 impl SessionInfo {
+    /// The code with which the plan was drawn: that which the participant had when the session was begun.
+    pub fn plan_code(&self) -> &str {
+        self.renamed.first().map_or(&self.participant, |first| &first.from)
+    }
+
+    /// Whether the last change of the code was this one.
+    pub(super) fn was_renamed(&self, old: &str, new: &str) -> bool {
+        self.renamed.last().is_some_and(|last| last.from == old && last.to == new)
+    }
+
     /// Whether participant and device were simulated, or the device was simulated by another program.
     pub fn has_simulated_part(&self) -> bool {
         let says_so = |device: &Value| device["is_simulated"] == true;
@@ -107,8 +122,21 @@ impl Recorder {
         (participant, seed): (&str, u64),
         is_simulated: bool,
     ) -> Result<Self, RecordingError> {
+        let shared = SharedFiles::lock(root)?;
         let folder = Folder::new(root, participant, &session.task);
-        folder.check_code()?;
+        folder.check_code(None)?;
+        Self::begin(folder, session, plan, (seed, is_simulated), Vec::new(), &shared)
+    }
+
+    /// Begins to record in a folder, whose participant may have been renamed.
+    fn begin(
+        folder: Folder,
+        session: &Session,
+        plan: &Plan,
+        (seed, is_simulated): (u64, bool),
+        renamed: Vec<Renaming>,
+        shared: &SharedFiles,
+    ) -> Result<Self, RecordingError> {
         let log_path = folder.source(LOG);
         // A session that has ended before its first trial leaves nothing that could be lost.
         if log_path.exists() && !records_of(&read_log(&log_path)?.lines).0.is_empty() {
@@ -119,19 +147,20 @@ impl Recorder {
             title: session.title.clone(),
             task: session.task.clone(),
             cite: session.cite.clone(),
-            participant: participant.into(),
+            participant: folder.participant().into(),
             seed,
             is_simulated,
             program_version: env!("CARGO_PKG_VERSION").into(),
             session_sha256: sha256(session.text.as_bytes()),
             plan_sha256: sha256(plan_csv.as_bytes()),
             devices: Vec::new(),
+            renamed,
         };
         write_whole(&folder.source(SESSION), session.text.as_bytes())?;
         let log = AppendFile::open(&log_path, 0, true)?;
         write_whole(&folder.source(PLAN), plan_csv.as_bytes())?;
         write_whole(&folder.source(INFO), &pretty(&info))?;
-        bids::describe(&folder)?;
+        bids::describe(&folder, shared)?;
         let mut rows = AppendFile::open(&folder.source(TELEMETRY), 0, false)?;
         rows.append(telemetry::header().as_bytes())?;
         Self {
@@ -164,11 +193,13 @@ impl Recorder {
         if !log_path.exists() {
             return Err(RecordingError::Missing(log_path));
         }
+        let shared = SharedFiles::lock(root)?;
         let recorded = read_log(&log_path)?;
         let (records, telemetry_bytes) = records_of(&recorded.lines);
         let Some(telemetry_bytes) = telemetry_bytes else {
             // It was interrupted before its first trial had ended.
-            return Self::create(root, session, plan, (participant, seed), is_simulated);
+            let renamed = folder.renamings()?;
+            return Self::begin(folder, session, plan, (seed, is_simulated), renamed, &shared);
         };
         let info_path = folder.source(INFO);
         let info = read_info(&folder)?;
@@ -200,13 +231,13 @@ impl Recorder {
         let log = AppendFile::open(&log_path, recorded.bytes, true)?;
         let rows = AppendFile::open(&folder.source(TELEMETRY), telemetry_bytes, false)?;
         // A clock that cannot be read has nothing that the data need.
-        let clock = fs::read(folder.source(CLOCK)).unwrap_or_default();
+        let clock = text::read(&folder.source(CLOCK)).unwrap_or_default();
         Self {
             folder,
             session: session.clone(),
             plan: plan.clone(),
             info,
-            clock: serde_json::from_slice(&clock).unwrap_or_default(),
+            clock: serde_json::from_str(&clock).unwrap_or_default(),
             log,
             telemetry: rows,
             pending: Vec::new(),
@@ -349,6 +380,7 @@ pub(super) fn sha256(bytes: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn utc_now() -> String {
+/// Now, in UTC, as RFC 3339 writes it.
+pub(super) fn utc_now() -> String {
     humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
 }

@@ -15,6 +15,7 @@ mod tests;
 
 use std::path::Path;
 
+use thermal_client::text;
 use toml::de::DeTable;
 
 use self::design::Parts;
@@ -57,7 +58,7 @@ pub(crate) fn read(path: &Path) -> Result<Session, SessionError> {
         let problem = format!("has {bytes} bytes; allowed is 0 to {BYTES_MAX}");
         return Err(SessionError::of_file(path, problem));
     }
-    parse(&std::fs::read_to_string(path).map_err(unreadable)?, path)
+    parse(&text::read(path).map_err(unreadable)?, path)
 }
 
 pub(crate) fn parse(text: &str, path: &Path) -> Result<Session, SessionError> {

@@ -10,7 +10,7 @@ use thermal_session::{PlannedTrial, Session};
 use crate::{plan, ready};
 
 /// A data set in a new folder of the tests, with the first trials of these participants.
-struct Recorded {
+pub struct Recorded {
     root: PathBuf,
 }
 
@@ -36,7 +36,7 @@ fn record(planned: &PlannedTrial) -> TrialRecord {
 }
 
 impl Recorded {
-    fn new(name: &str, participants: &[&str]) -> Self {
+    pub fn new(name: &str, participants: &[&str]) -> Self {
         let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         let _ignored = fs::remove_dir_all(&root);
         let session = ready("p1-discrimination");
@@ -47,7 +47,7 @@ impl Recorded {
         recorded
     }
 
-    fn add(&self, session: &Session, participant: &str) {
+    pub fn add(&self, session: &Session, participant: &str) {
         let plan = plan(session, participant, 1);
         let who = (participant, 1);
         let mut recorder =
@@ -58,7 +58,11 @@ impl Recorded {
         recorder.finish().expect("a data set");
     }
 
-    fn source(&self, name: &str) -> PathBuf {
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    pub fn source(&self, name: &str) -> PathBuf {
         self.root.join("sourcedata").join(name)
     }
 
@@ -283,6 +287,35 @@ fn a_damaged_end_and_a_changed_session_file_are_remarks() {
     assert!(remarks()[1].contains("telemetry.csv: it has 1 bytes"), "{:?}", remarks());
     recorded.change("session.toml", |lines| lines.push("# Day 2".into()));
     assert!(remarks()[1].contains("session.toml: changed after the recording"), "{:?}", remarks());
+}
+
+/// Every text file that is read again, as editors and spreadsheets save it.
+#[test]
+fn a_byte_order_mark_changes_nothing_and_utf_16_is_named_with_its_file() {
+    let of_02 = |file: &str| format!("sourcedata/sub-02/task-p1/{file}");
+    let files = ["session.toml", "session.json", "log.jsonl"].map(of_02);
+    for file in files.iter().map(String::as_str).chain(["participants.tsv"]) {
+        let recorded = Recorded::new("encodings", &THREE);
+        let path = recorded.root.join(file);
+        let text = "\u{feff}".to_owned() + &fs::read_to_string(&path).expect("a file");
+        fs::write(&path, &text).expect("a file");
+        assert_eq!(recorded.read(), (THREE.map(str::to_owned).to_vec(), vec![]), "{file}");
+        let session = ready("p1-discrimination");
+        let plan = plan(&session, "02", 1);
+        let mut resumed = Recorder::resume(&recorded.root, &session, &plan, ("02", 1), true);
+        resumed.as_mut().expect(file).finish().expect(file);
+        assert_eq!(recorded.read(), (THREE.map(str::to_owned).to_vec(), vec![]), "{file}");
+        let utf_16: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        fs::write(&path, utf_16).expect("a file");
+        let words =
+            format!("{}: this is UTF-16; allowed is UTF-8", file.replace("sourcedata/", ""));
+        if file == "participants.tsv" {
+            let refused = recorded.refused();
+            assert!(refused.ends_with(&words), "{refused}");
+        } else {
+            recorded.assert_left_out(&words);
+        }
+    }
 }
 
 /// A program that was killed while it wrote leaves a line without an end.

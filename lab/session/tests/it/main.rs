@@ -2,6 +2,7 @@
 
 mod any_file;
 mod data_sets;
+mod participants;
 mod plans;
 mod ready_sessions;
 

@@ -237,6 +237,16 @@ fn quantiles_are_where_the_tail_is() {
     errors.assert(&[("normal", 1e-12), ("t", 1e-12), ("q", 1e-12)]);
 }
 
+/// With one degree of freedom the variable is a Cauchy variable: the quantile is `cot(pi p / 2)`.
+#[test]
+fn a_far_quantile_of_t_is_that_of_a_cauchy_variable() {
+    for p in [1e-3, 1e-9, 1e-12, 1e-100] {
+        let t = t_quantile(p, 1.0).expect("a t");
+        let exact = (0.5 * std::f64::consts::PI * p).tan().recip();
+        assert!((t / exact - 1.0).abs() < 1e-9, "{p:e}: {t:e}, {exact:e}");
+    }
+}
+
 #[test]
 fn a_range_of_two_means_is_a_t_test() {
     for (q, df) in [(0.1, 4.0), (3.67, 36.0), (9.0, 2.0), (12.0, 60.0)] {
