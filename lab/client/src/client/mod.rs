@@ -13,6 +13,7 @@ mod query;
 mod reply;
 mod streams;
 mod telemetry;
+mod telemetry_columns;
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -43,6 +44,7 @@ pub use reply::{
     SIMULATED_UNIQUE_ID, SelfTestReport, SettingsLine, Status,
 };
 pub use telemetry::{ReceivedTelemetry, Telemetry};
+pub use telemetry_columns::TelemetryColumn;
 
 /// Timeout of an answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);

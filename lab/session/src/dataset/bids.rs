@@ -76,8 +76,7 @@ pub(super) fn write(
                 |end: &str| folder.behaviour(&format!("recording-finger{finger}_physio.{end}"));
             let rows = physio::compressed(&folder.source(TELEMETRY), finger, device.stream_ms)?;
             write_whole(&name("tsv.gz"), &rows.gzip)?;
-            let sidecar = physio::sidecar(device.stream_ms, rows.off_max_s);
-            write_whole(&name("json"), &pretty(&sidecar))?;
+            write_whole(&name("json"), &pretty(&rows.sidecar))?;
         }
     }
     add_participant(folder)
