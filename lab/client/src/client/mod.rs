@@ -391,7 +391,11 @@ impl<L: Link> Client<L> {
     fn answer_until(&mut self, line: &str, end: Duration) -> Result<String, ClientError> {
         let mut damaged = None;
         loop {
-            let received = self.receive_until(end).inspect_err(|_| self.out_of_step = true)?;
+            let mut received = self.receive_until(end).inspect_err(|_| self.out_of_step = true)?;
+            if received.is_none() {
+                // It may wait behind telemetry that has come while this program did not run.
+                received = self.link.receive(Duration::ZERO)?;
+            }
             let Some(received) = received else {
                 self.out_of_step = true;
                 let line = line.into();

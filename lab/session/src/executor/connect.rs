@@ -10,7 +10,7 @@ use thermal_client::link::Link;
 use thermal_device::safety::Fault;
 
 use super::fingers::Fingers;
-use super::{Executor, SessionEnd, TrialEnd};
+use super::{Executor, SessionEnd};
 use crate::dataset::DeviceReport;
 use crate::planned_dose::decay_before_s;
 use crate::{OperatorQuestion, Plan, PlannedTrial, Presented, Update};
@@ -131,14 +131,8 @@ impl<L: Link> Executor<'_, L> {
             trial.number
         )));
         let until_s = self.now_s() + off_s;
-        loop {
-            match self.wait_until(until_s) {
-                Ok(()) => return Ok(()),
-                Err(TrialEnd::Session(end)) => return Err(end),
-                // The device says again and again that it is tripped, and nothing is presented.
-                Err(TrialEnd::Void(_) | TrialEnd::Tripped(_)) => {}
-            }
-        }
+        // The device says again and again that it is tripped.
+        self.wait_between_trials(until_s)
     }
 
     /// Refuses a tile that was never tuned, whose set-points move too slowly for what a session presents.

@@ -59,6 +59,7 @@ impl<L: Link> Executor<'_, L> {
         // A finger that stays on the display from trial to trial is not disturbed.
         if !self.finger_stays_on_display(&displays)? {
             self.arm(&displays)?;
+            self.wait_for_free_displays(&displays)?;
             self.hold_rest_temperature(&displays)?;
             self.phase(Phase::Rest);
             self.place_samples(trial)?;
