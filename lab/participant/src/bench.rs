@@ -14,6 +14,7 @@ use thermal_client::link::{Link, LinkError, ReceivedLine};
 use thermal_device::command::AssumedFinger;
 use thermal_plant::finger::FingerParams;
 use thermal_plant::parameters::stream_seed;
+use thermal_plant::sensors::FluxParams;
 use thermal_plant::{ConfigError, Params};
 use thermal_session::{
     AnswerKind, ContactRule, Decision, Departure, People, Phase, Plan, PlannedTrial, Presented,
@@ -79,6 +80,8 @@ pub struct BenchOptions {
     /// Weight of the skin under the contact in the temperature at the skin thermistor, 0 to 1; `None` for that of the plant,
     /// whose thermistor lies 2 to 3 mm beside the contact.
     pub edge_share: Option<f64>,
+    /// Whether the displays have heat-flux sensors.
+    pub has_flux_sensor: bool,
     /// Seed of the device's parts.
     pub device_seed: u64,
     /// Whether the device stays as it is from trial to trial, as a real one does, instead of being powered up for each: then what
@@ -97,6 +100,7 @@ impl Default for BenchOptions {
             finger: None,
             room_c: 24.0,
             edge_share: None,
+            has_flux_sensor: false,
             keeps_device: false,
             device_seed: 1,
             events: Vec::new(),
@@ -130,6 +134,7 @@ impl BenchOptions {
                 FingerParams { air_w_m2k: 0.0, ..FingerParams::layered() }
             }
         });
+        params.flux = self.has_flux_sensor.then_some(FluxParams::NOMINAL);
         if let Some(share) = self.edge_share {
             params.sensors.skin_sees_contact = share;
         }

@@ -12,7 +12,7 @@ use thermal_plant::parameters::stream_seed;
 use thermal_plant::{Params, Plant, PlantConfig};
 use thermal_settings::StoredSettings;
 use thermal_sim::World;
-use thermal_sim::commissioning::settings_for_device;
+use thermal_sim::commissioning::{flux_sensor_line, settings_for_device};
 use thermal_sim::engine::{Engine, NativeEngine, NativeFiveFingers};
 use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine};
 use thermal_sim::scene::ActiveFault;
@@ -91,6 +91,9 @@ impl PreparedDevice {
         for address in addresses {
             commissioning::restore(&mut client, address, &lines)
                 .map_err(|error| failed(error.to_string()))?;
+        }
+        if let Some(line) = flux_sensor_line(&params) {
+            client.command(&line).map_err(|error| failed(error.to_string()))?;
         }
         client.command("save").map_err(|error| failed(error.to_string()))?;
         let not_saved = || BenchError::Commissioning("the settings were not saved".into());

@@ -39,6 +39,8 @@ pub enum Happening {
     },
     /// The skin is warmer than usual, K.
     SkinOff(f64),
+    /// A finger lies on the display from before the trial until it is told to lift.
+    LiesOnDisplay,
     /// The participant does not touch.
     DoesNotTouch,
     /// The participant does not answer.

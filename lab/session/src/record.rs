@@ -52,6 +52,14 @@ pub struct TrialRecord {
     pub stations: Vec<StationRecord>,
 }
 
+impl TrialRecord {
+    /// Whether the participant was told to touch. Before that nothing is presented, so an attempt that ends then is not one of those that
+    /// a trial has.
+    pub const fn was_presented(&self) -> bool {
+        self.touch_cue_s.is_some()
+    }
+}
+
 /// What display and skin thermistor have measured of the finger at a station; all is `None` for a station without them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StationRecord {

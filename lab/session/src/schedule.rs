@@ -18,10 +18,16 @@ pub struct Schedule<'a> {
     queue: VecDeque<usize>,
     /// Number of attempts at each trial so far.
     attempts: Vec<u32>,
+    /// Number of those in which nothing was presented.
+    unpresented: Vec<u32>,
     staircases: Vec<Staircase>,
     /// Numbers of the trials that were void too many times.
     given_up: Vec<u32>,
 }
+
+/// Most attempts at a trial in which nothing was presented; they do not count as attempts, but a trial that can never be presented
+/// must end.
+const UNPRESENTED_MAX: u32 = 10;
 
 /// The next trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +50,7 @@ impl<'a> Schedule<'a> {
             attempts_max: session.voids.attempts_max,
             queue: (0..plan.trials.len()).collect(),
             attempts: vec![0; plan.trials.len()],
+            unpresented: vec![0; plan.trials.len()],
             staircases: session.staircases.iter().map(|rule| rule.initial.clone()).collect(),
             given_up: Vec::new(),
         }
@@ -101,11 +108,14 @@ impl<'a> Schedule<'a> {
             return;
         };
         let trial = &self.plan.trials[index];
+        let unpresented = &mut self.unpresented[index];
+        *unpresented += u32::from(!record.was_presented());
+        let presented = record.attempt - *unpresented;
         if record.void.is_none() {
             if let (Some(staircase), Some(is_correct)) = (trial.staircase, record.is_correct) {
                 self.staircases[staircase].answered(is_correct);
             }
-        } else if record.attempt < self.attempts_max {
+        } else if presented < self.attempts_max && *unpresented < UNPRESENTED_MAX {
             let is_later = |other: &usize| self.plan.trials[*other].block != trial.block;
             let end_of_block = self.queue.iter().position(is_later).unwrap_or(self.queue.len());
             self.queue.insert(end_of_block, index);

@@ -7,8 +7,11 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use anyhow::Context;
 use clap::Args;
-use thermal_client::client::{PlainCommand, ReceivedTelemetry, TickTime};
+use thermal_client::client::{
+    ClientError, PlainCommand, QueryIdentity, ReceivedTelemetry, TelemetryColumn, TickTime,
+};
 use thermal_client::link::{Link, LinkError};
+use thermal_sim::commissioning::flux_sensor_line;
 
 use super::target::AnyClient;
 use super::{Failure, KeptFiles, Target};
@@ -36,33 +39,63 @@ fn duration(text: &str) -> Result<Duration, String> {
     seconds.map(Duration::from_secs_f64).ok_or_else(|| "allowed are 0 to 1e6 s".into())
 }
 
-/// Columns of the log.
-const COLUMNS: [&str; 18] = [
-    "received_s",
-    "tick_at_s",
-    "tick_error_s",
-    "lost_before",
-    "finger",
-    "tick",
-    "state",
-    "fault",
-    "setpoint_c",
-    "display_c",
-    "sink_c",
-    "skin_c",
-    "room_c",
-    "force_n",
-    "demand_a",
-    "current_a",
-    "evaluations",
-    "limited",
-];
+/// What the rows of a log depend on.
+struct Table {
+    /// Time of the link's zero, s.
+    zero_s: f64,
+    /// Whether a finger of the device has a heat-flux sensor, whose columns come last.
+    has_flux_sensor: bool,
+}
+
+/// Columns before those of the telemetry, and between them and those of a heat-flux sensor.
+const BEFORE: [&str; 8] =
+    ["received_s", "tick_at_s", "tick_error_s", "lost_before", "finger", "tick", "state", "fault"];
+const AFTER: [&str; 1] = ["limited"];
+
+impl Table {
+    fn header(&self) -> impl Iterator<Item = &'static str> {
+        let name = |column: &'static TelemetryColumn| column.name;
+        (BEFORE.into_iter())
+            .chain(TelemetryColumn::default_ones().iter().map(name))
+            .chain(AFTER)
+            .chain(TelemetryColumn::of_flux(self.has_flux_sensor).iter().map(name))
+    }
+
+    /// The cells of a row; what is not known is empty.
+    fn row(&self, line: &ReceivedTelemetry, time: Option<TickTime>) -> Vec<String> {
+        let telemetry = &line.telemetry;
+        let before = [
+            format!("{:.4}", self.zero_s + line.at.as_secs_f64()),
+            time.map_or(String::new(), |time| format!("{:.4}", self.zero_s + time.at_s)),
+            time.map_or(String::new(), |time| format!("{:.4}", time.error_s)),
+            line.lost_before.to_string(),
+            line.finger.map_or(String::new(), |finger| finger.to_string()),
+            telemetry.tick.to_string(),
+            telemetry.state.name().into(),
+            telemetry.fault().map_or("", |fault| fault.name()).into(),
+        ];
+        let after = [u8::from(telemetry.limited).to_string()];
+        let cell = |column: &TelemetryColumn| column.text(telemetry).unwrap_or_default();
+        (before.into_iter())
+            .chain(TelemetryColumn::default_ones().iter().map(cell))
+            .chain(after)
+            .chain(TelemetryColumn::of_flux(self.has_flux_sensor).iter().map(cell))
+            .collect()
+    }
+}
 
 pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.out {
         arguments.kept.check(path)?;
     }
     target.with_client(|client| {
+        // A simulated device has no settings; a sensor that its scene says is fitted has to be set.
+        if target.simulated
+            && let Some(line) = flux_sensor_line(target.simulated_setup()?.params())
+        {
+            client.command(&line).map_err(Failure::run)?;
+        }
+        let has_flux_sensor = has_flux_sensor(client).map_err(Failure::run)?;
         // Only now, so that a device that is not there leaves no empty file.
         let out: Box<dyn Write> = match &arguments.out {
             Some(path) => {
@@ -72,7 +105,6 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             None => Box::new(stdout()),
         };
         let mut out = csv::Writer::from_writer(out);
-        out.write_record(COLUMNS).map_err(Failure::run)?;
         // Virtual time begins with the device; real time is that of the computer.
         let zero_s = if target.simulated {
             0.0
@@ -80,9 +112,16 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             let unix = SystemTime::now().duration_since(UNIX_EPOCH);
             unix.map_err(Failure::run)?.as_secs_f64() - client.link().now().as_secs_f64()
         };
-        client.ask(&PlainCommand::stream(arguments.interval)).map_err(Failure::run)?;
+        let table = Table { zero_s, has_flux_sensor };
+        out.write_record(table.header()).map_err(Failure::run)?;
+        let stream = if has_flux_sensor {
+            PlainCommand::stream_with_flux(arguments.interval)
+        } else {
+            PlainCommand::stream(arguments.interval)
+        };
+        client.ask(&stream).map_err(Failure::run)?;
         let end = arguments.duration.map(|time| client.link().now() + time);
-        let logged = log(client, end, zero_s, &mut out);
+        let logged = log(client, end, &table, &mut out);
         let counts = client.counts();
         eprintln!(
             "thermal-lab: {} lines of telemetry lost, {} damaged; the device restarted {} times",
@@ -99,7 +138,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
 fn log(
     client: &mut AnyClient<'_>,
     end: Option<Duration>,
-    zero_s: f64,
+    table: &Table,
     out: &mut csv::Writer<Box<dyn Write>>,
 ) -> Result<(), Failure> {
     while end.is_none_or(|end| client.link().now() < end) {
@@ -110,35 +149,20 @@ fn log(
         };
         if let Some(line) = line {
             let time = client.clock().time_of_arrived(line.telemetry.tick, line.at);
-            out.write_record(row(&line, time, zero_s)).map_err(Failure::run)?;
+            out.write_record(table.row(&line, time)).map_err(Failure::run)?;
         }
         out.flush().context("--out").map_err(Failure::run)?;
     }
     Ok(())
 }
 
-/// The cells of a row; what is not known is empty.
-fn row(line: &ReceivedTelemetry, time: Option<TickTime>, zero_s: f64) -> Vec<String> {
-    let telemetry = &line.telemetry;
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    vec![
-        format!("{:.4}", zero_s + line.at.as_secs_f64()),
-        time.map_or(String::new(), |time| format!("{:.4}", zero_s + time.at_s)),
-        time.map_or(String::new(), |time| format!("{:.4}", time.error_s)),
-        line.lost_before.to_string(),
-        line.finger.map_or(String::new(), |finger| finger.to_string()),
-        telemetry.tick.to_string(),
-        telemetry.state.name().into(),
-        telemetry.fault().map_or("", |fault| fault.name()).into(),
-        number(telemetry.setpoint_c),
-        number(telemetry.display_c),
-        number(telemetry.sink_c),
-        number(telemetry.skin_c),
-        number(telemetry.room_c),
-        number(telemetry.force_n),
-        number(telemetry.demand_a),
-        number(telemetry.current_a),
-        telemetry.evaluations.map_or(String::new(), |count| count.to_string()),
-        u8::from(telemetry.limited).to_string(),
-    ]
+/// Whether any finger of the device has a heat-flux sensor.
+fn has_flux_sensor(client: &mut AnyClient<'_>) -> Result<bool, ClientError> {
+    let fingers = client.ask(&QueryIdentity)?.fingers;
+    for finger in 0..fingers {
+        if client.flux_report((fingers > 1).then_some(finger))?.is_some() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }

@@ -14,7 +14,7 @@ use thermal_lab::bring_up::{
     Bench, BenchError, EmulatedBench, ManualStep, Measurement, Record, Report, SimulatedBoard,
     Stage, Terminal, bring_up,
 };
-use thermal_lab::link::Link;
+use thermal_lab::link::{AskSurroundings, Link};
 use thermal_sim::board::{Board, SOUND};
 
 use super::on_the_bench;

@@ -127,6 +127,30 @@ fn telemetry_is_logged_with_the_time_of_its_ticks() {
 }
 
 #[test]
+fn a_log_has_the_columns_of_a_heat_flux_sensor_at_its_end_if_the_device_has_one() {
+    const ALWAYS: &str = "received_s,tick_at_s,tick_error_s,lost_before,finger,tick,state,fault,setpoint_c,display_c,sink_c,\
+                          skin_c,room_c,force_n,demand_a,current_a,evaluations,limited";
+    for (sensor, header) in
+        [(false, ALWAYS.to_owned()), (true, format!("{ALWAYS},flux_w_m2,surface_c,known"))]
+    {
+        let scene = command::scene_file(&format!("log-{sensor}.toml"), "copper", sensor, "");
+        let logged =
+            run(&format!("log --simulated --scene {} --duration 0.5", scene.to_str().unwrap()));
+        assert!(logged.status.success(), "{}", text(&logged.stderr));
+        let lines: Vec<_> = text(&logged.stdout).lines().collect();
+        assert_eq!(lines[0], header);
+        let cells: Vec<_> = lines.last().unwrap().split(',').collect();
+        assert_eq!(cells.len(), header.split(',').count());
+        if sensor {
+            // Nobody touches it: the air takes little, and nothing is learnt yet.
+            let flux_w_m2: f64 = cells[18].parse().unwrap();
+            assert!(flux_w_m2.abs() < 200.0, "{flux_w_m2}");
+            assert_eq!(cells[20], "learning");
+        }
+    }
+}
+
+#[test]
 fn a_simulated_device_is_commissioned_as_by_the_simulated_operator() {
     let done = run("commission --simulated --json");
     let record = json(&done.stdout);
@@ -205,6 +229,8 @@ fn device(
 #[test]
 fn ctrl_c_ends_a_log_with_abort() {
     let (address, server) = device(|line| match line {
+        "id" => "ok thermal-display 0.1.0 fingers=1 tick_hz=1000 scan_hz=1000".into(),
+        "flux" => "err unknown command 'flux'".into(),
         "stream 10" => "ok\nT 10 armed - - - - - - 0 0 0 -".into(),
         _ => "ok".into(),
     });
@@ -221,7 +247,10 @@ fn ctrl_c_ends_a_log_with_abort() {
     let signalled = Command::new("kill").args(["-INT", &logger.id().to_string()]).status();
     assert!(signalled.unwrap().success());
     assert!(logger.wait().unwrap().success());
-    assert_eq!(server.join().unwrap(), ["stream 10", "stream 0", "abort", "id", "state"]);
+    assert_eq!(
+        server.join().unwrap(),
+        ["id", "flux", "stream 10", "stream 0", "abort", "id", "state"]
+    );
 }
 
 /// What an armed device refuses, for a reason that no program can know before, switches its bridge off again.

@@ -51,15 +51,19 @@ pub fn settings_for_scene(scene: &Scene) -> Result<Vec<String>, CommissionError>
     } else {
         Vec::new()
     };
-    // Its errors in the plant are those that are left after its gain was calibrated and its zero taken.
-    if let Some(flux) = &scene.params.flux {
-        let sensor = FluxSensor { counts_per_w_m2: flux.counts_per_w_m2, ..FluxSensor::DESIGNED };
-        lines.push(PlainCommand::FluxSensor(Some(sensor)).to_string());
-    }
+    lines.extend(flux_sensor_line(&scene.params));
     if scene.measured_surface {
         lines.push(PlainCommand::DisplaySurface(display_surface(scene)).to_string());
     }
     Ok(lines)
+}
+
+/// The line that sets a calibrated heat-flux sensor, if the plant has one. Its errors in the plant are those that are left after
+/// its gain was calibrated and its zero taken.
+pub fn flux_sensor_line(params: &Params) -> Option<String> {
+    let counts_per_w_m2 = params.flux.as_ref()?.counts_per_w_m2;
+    let sensor = FluxSensor { counts_per_w_m2, ..FluxSensor::DESIGNED };
+    Some(PlainCommand::FluxSensor(Some(sensor)).to_string())
 }
 
 /// The surface that the device of a scene takes for that of its display: the measured one, if it was measured.

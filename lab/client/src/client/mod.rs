@@ -14,6 +14,7 @@ mod query;
 mod reply;
 mod streams;
 mod telemetry;
+mod telemetry_columns;
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -45,6 +46,7 @@ pub use reply::{
 };
 pub use streams::longest_gap;
 pub use telemetry::{ReceivedTelemetry, Telemetry};
+pub use telemetry_columns::TelemetryColumn;
 
 /// Timeout of an answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
@@ -391,7 +393,11 @@ impl<L: Link> Client<L> {
     fn answer_until(&mut self, line: &str, end: Duration) -> Result<String, ClientError> {
         let mut damaged = None;
         loop {
-            let received = self.receive_until(end).inspect_err(|_| self.out_of_step = true)?;
+            let mut received = self.receive_until(end).inspect_err(|_| self.out_of_step = true)?;
+            if received.is_none() {
+                // It may wait behind telemetry that has come while this program did not run.
+                received = self.link.receive(Duration::ZERO)?;
+            }
             let Some(received) = received else {
                 self.out_of_step = true;
                 let line = line.into();

@@ -140,9 +140,17 @@ pub const fn thermistor_word(thermistor: ThermistorId) -> &'static str {
 }
 
 impl PlainCommand {
-    /// Telemetry at this interval, ms, with all fields; 0 ends it.
+    /// Telemetry at this interval, ms, with the default fields; 0 ends it.
     pub const fn stream(interval_ms: u32) -> Self {
         Self::Stream(interval_ms, TelemetryFields::DEFAULT)
+    }
+
+    /// The same of a finger with a heat-flux sensor, with the sensor's fields. A line to the device has no room for all names, so
+    /// the count of evaluations is left out, which says nothing of the finger.
+    pub fn stream_with_flux(interval_ms: u32) -> Self {
+        let names: Vec<_> =
+            TelemetryFields::NAMES.into_iter().filter(|name| *name != "evaluations").collect();
+        Self::stream_fields(interval_ms, &names)
     }
 
     /// Telemetry at this interval, ms, with the fields of these names ([`TelemetryFields::NAMES`]).

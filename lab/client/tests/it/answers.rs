@@ -1,5 +1,6 @@
 //! What the client makes of answers, and of what comes in their place.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -9,7 +10,7 @@ use thermal_client::client::{
     QueryBoard, QueryCause, QueryDisplaySurface, QueryFlux, QueryIdentity, QueryPerson,
     QueryPersons, QueryRaw, QuerySelfTest, QueryState, Telemetry, person_data, upload_course,
 };
-use thermal_client::link::{Interruptible, LineSplitter, LinkError};
+use thermal_client::link::{Interruptible, LineSplitter, Link, LinkError, ReceivedLine};
 use thermal_device::events::DeviceEventKind;
 use thermal_device::learning::{FingerKnowledge, FluxSensorTest};
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
@@ -563,4 +564,34 @@ fn fields_of_the_flux_sensor_are_read() {
     assert_eq!(next().map(values), Some((Some(0.512), Some(-1234.5), Some(24.0125), Some(known))));
     assert_eq!(next().map(values), Some((Some(0.512), None, None, None)));
     assert_eq!(next(), None);
+}
+
+/// A line on which telemetry and the answer have come while the program did not run for 5 s.
+struct AfterFreeze {
+    lines: VecDeque<&'static str>,
+    now: Duration,
+}
+
+impl Link for AfterFreeze {
+    fn send(&mut self, _bytes: &[u8]) -> Result<(), LinkError> {
+        Ok(())
+    }
+
+    fn receive(&mut self, _timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
+        self.now = Duration::from_secs(5);
+        let line = self.lines.pop_front();
+        Ok(line.map(|line| ReceivedLine { text: line.into(), at: self.now }))
+    }
+
+    fn now(&self) -> Duration {
+        self.now
+    }
+}
+
+#[test]
+fn an_answer_that_has_come_behind_telemetry_while_the_program_did_not_run_is_found() {
+    const TELEMETRY: &str = "T 10 armed - - - - - - 0 0 0 -";
+    let lines = [TELEMETRY, TELEMETRY, "ok law=pi"].into();
+    let mut client = Client::new(AfterFreeze { lines, now: Duration::ZERO });
+    assert_eq!(client.query("law").unwrap(), "ok law=pi");
 }

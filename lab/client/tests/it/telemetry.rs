@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{Client, PlainCommand, Telemetry};
+use thermal_client::client::{Client, PlainCommand, Telemetry, TelemetryColumn};
 use thermal_device::safety::Fault;
 use thermal_device::{StateName, TelemetryFields};
 
@@ -193,4 +193,39 @@ fn a_line_that_waited_while_its_fields_were_changed_is_dropped() {
     assert_eq!(taken, [(230, None, Some(32.9)), (235, None, Some(32.9))]);
     let counts = client.counts();
     assert_eq!((counts.dropped, counts.damaged, counts.lost), (2, 0, 0));
+}
+
+/// The longest interval, of a finger that is addressed, with a checksum (docs/protocol.md).
+#[test]
+fn a_stream_with_the_fields_of_a_heat_flux_sensor_fits_into_a_line_and_is_read_into_its_columns() {
+    let stream = PlainCommand::stream_with_flux(60_000).to_string();
+    assert!(format!("@4 {stream}*00").len() <= 96, "{stream}");
+    let mut client = FakeDevice::client(|line| match line {
+        "" => Vec::new(),
+        _ => answers("ok"),
+    });
+    client.ask(&PlainCommand::stream_with_flux(10)).unwrap();
+    let line = "T 100 contact 30.5 30.4 24.1 33.2 24 1.5 2.25 2.2 2103.5 30.125 trusted -";
+    client.link().sends(100, line);
+    let line = client.next_telemetry(Duration::from_millis(200)).unwrap().unwrap().telemetry;
+    let cells = TelemetryColumn::ALL.iter().map(|column| (column.name, column.text(&line)));
+    let cells: Vec<_> = cells.map(|(name, text)| (name, text.unwrap_or_default())).collect();
+    let expected = [
+        ("setpoint_c", "30.5"),
+        ("display_c", "30.4"),
+        ("sink_c", "24.1"),
+        ("skin_c", "33.2"),
+        ("room_c", "24"),
+        ("force_n", "1.5"),
+        ("demand_a", "2.25"),
+        ("current_a", "2.2"),
+        ("evaluations", ""),
+        ("flux_w_m2", "2103.5"),
+        ("surface_c", "30.125"),
+        ("known", "trusted"),
+    ];
+    assert_eq!(cells, expected.map(|(name, text)| (name, text.to_owned())));
+    let numbers: Vec<_> =
+        TelemetryColumn::of_flux(true).iter().map(|column| column.number(&line)).collect();
+    assert_eq!(numbers, [Some(2103.5), Some(30.125), Some(1.0)]);
 }

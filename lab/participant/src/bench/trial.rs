@@ -151,6 +151,7 @@ impl RunningTrial {
         let decision_s = times.log_normal(observer.decision_median_s, observer.decision_sigma_ln);
         let rests_on_display = matches!(session.trial.procedure, Procedure::Intervals { .. })
             || session.rest.is_some_and(|rest| rest.place == RestPlace::Display);
+        let lies_on_display = happenings.contains(&Happening::LiesOnDisplay);
         Ok(Self {
             number: trial.number,
             attempt,
@@ -162,7 +163,7 @@ impl RunningTrial {
             reach_ms: milliseconds(reach_s),
             decision_s: if max_s > 0.0 { decision_s.min(max_s) } else { decision_s },
             rests_on_display,
-            rest_ms: None,
+            rest_ms: lies_on_display.then_some((ms, u64::MAX)),
             land_ms: None,
             lift_ms: None,
             interval: None,
@@ -195,7 +196,9 @@ impl RunningTrial {
         match update {
             Update::Phase(Phase::Rest) => self.rest(ms),
             Update::Phase(Phase::Prepare | Phase::Reach) if stays => self.rest(ms),
-            Update::Phase(Phase::Prepare) => self.end_rest(ms + reaction_ms),
+            Update::Phase(Phase::Prepare) if !self.happens(&Happening::LiesOnDisplay) => {
+                self.end_rest(ms + reaction_ms);
+            }
             Update::Cue(Cue::Touch) if !self.happens(&Happening::DoesNotTouch) => {
                 self.end_rest(ms);
                 self.land_ms = self.land_ms.or(Some(ms + self.reach_ms));

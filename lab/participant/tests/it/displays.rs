@@ -1,5 +1,6 @@
 //! Sessions with the simulated device.
 
+use std::fs;
 use std::path::Path;
 
 use thermal_participant::{
@@ -88,6 +89,20 @@ fn a_device_that_trips_stays_tripped_until_the_operator_clears_it_and_the_sessio
     assert_eq!(voids.len(), 1, "{voids:?}");
     assert!(voids[0].0 == 2 && voids[0].1.contains("tripped"), "{voids:?}");
     assert_eq!(ran.records.len(), 21);
+}
+
+/// Without the wait it would lie there at the tone to touch, in each attempt.
+#[test]
+fn a_finger_that_lies_on_the_display_when_a_trial_begins_is_named_and_its_lift_is_waited_for() {
+    let events = vec![SimulatedEvent { trial: 2, attempt: None, what: Happening::LiesOnDisplay }];
+    let session = session("p5-real-and-simulated.toml", &[]);
+    let ran = run("p5-lies", &session, kept_device(events), 3);
+    let trials: Vec<_> = ran.records.iter().map(|record| (record.trial, &record.void)).collect();
+    assert_eq!(trials, [(1, &None), (2, &None), (3, &None)]);
+    let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("p5-lies");
+    let log = fs::read_to_string(root.join("sourcedata/sub-01/task-p5/log.jsonl")).expect("a log");
+    let notices: Vec<_> = log.lines().filter(|line| line.contains("\"notice\"")).collect();
+    assert!(notices.len() == 1 && notices[0].contains("a finger lies on display 0"), "{notices:?}");
 }
 
 #[test]

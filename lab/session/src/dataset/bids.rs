@@ -74,10 +74,10 @@ pub(super) fn write(
         for finger in fingers {
             let name =
                 |end: &str| folder.behaviour(&format!("recording-finger{finger}_physio.{end}"));
-            let rows = physio::compressed(&folder.source(TELEMETRY), finger, device.stream_ms)?;
+            let telemetry = folder.source(TELEMETRY);
+            let rows = physio::compressed(&telemetry, &session.title, finger, device.stream_ms)?;
             write_whole(&name("tsv.gz"), &rows.gzip)?;
-            let sidecar = physio::sidecar(&session.title, device.stream_ms, rows.off_max_s);
-            write_whole(&name("json"), &pretty(&sidecar))?;
+            write_whole(&name("json"), &pretty(&rows.sidecar))?;
         }
     }
     add_participant(folder)

@@ -74,6 +74,8 @@ pub struct DeviceReport {
     pub is_simulated: Option<bool>,
     /// Lines of the settings of each finger.
     pub settings: Vec<Vec<String>>,
+    /// Whether each finger has a heat-flux sensor.
+    pub has_flux_sensor: Vec<bool>,
 }
 
 /// What only clock and computer say: the one file that differs between two runs of the same simulated session.
@@ -97,6 +99,8 @@ pub struct Recorder {
     clock: ClockReport,
     log: AppendFile,
     telemetry: AppendFile,
+    /// Whether the telemetry has the columns of a heat-flux sensor: that of the device of the first trial decides.
+    has_flux_columns: bool,
     /// Lines since the last trial ended.
     pending: Vec<LogLine>,
     records: Vec<TrialRecord>,
@@ -161,8 +165,7 @@ impl Recorder {
         write_whole(&folder.source(PLAN), plan_csv.as_bytes())?;
         write_whole(&folder.source(INFO), &pretty(&info))?;
         bids::describe(&folder, shared)?;
-        let mut rows = AppendFile::open(&folder.source(TELEMETRY), 0, false)?;
-        rows.append(telemetry::header().as_bytes())?;
+        let rows = AppendFile::open(&folder.source(TELEMETRY), 0, false)?;
         Self {
             folder,
             session: session.clone(),
@@ -171,6 +174,7 @@ impl Recorder {
             clock: ClockReport::default(),
             log,
             telemetry: rows,
+            has_flux_columns: false,
             pending: Vec::new(),
             records: Vec::new(),
         }
@@ -228,6 +232,7 @@ impl Recorder {
             }
         }
         check_line_ends(&folder.source(TELEMETRY), telemetry_bytes)?;
+        let has_flux_columns = telemetry::has_flux_columns(&folder.source(TELEMETRY))?;
         let log = AppendFile::open(&log_path, recorded.bytes, true)?;
         let rows = AppendFile::open(&folder.source(TELEMETRY), telemetry_bytes, false)?;
         // A clock that cannot be read has nothing that the data need.
@@ -240,6 +245,7 @@ impl Recorder {
             clock: serde_json::from_str(&clock).unwrap_or_default(),
             log,
             telemetry: rows,
+            has_flux_columns,
             pending: Vec::new(),
             records,
         }
@@ -275,6 +281,9 @@ impl Recorder {
     /// # Errors
     /// The file cannot be written.
     pub fn device(&mut self, report: &DeviceReport) -> Result<(), RecordingError> {
+        if self.telemetry.bytes() == 0 {
+            self.has_flux_columns = report.has_flux_sensor.contains(&true);
+        }
         let report = serde_json::to_value(report).unwrap_or_default();
         if self.info.devices.last() != Some(&report) {
             self.info.devices.push(report);
@@ -298,7 +307,10 @@ impl Recorder {
         record: &TrialRecord,
         lines: impl Iterator<Item = (f64, u8, &'t Telemetry)>,
     ) -> Result<(), RecordingError> {
-        let rows: String = lines.map(telemetry::row).collect();
+        let has_flux = self.has_flux_columns;
+        let header = (self.telemetry.bytes() == 0).then(|| telemetry::header(has_flux));
+        let rows = lines.map(|line| telemetry::row(line, has_flux));
+        let rows: String = header.into_iter().chain(rows).collect();
         self.telemetry.append(rows.as_bytes())?;
         self.pending.push(LogLine {
             t_s: record.end_s,

@@ -4,60 +4,60 @@ use std::io;
 use std::path::Path;
 use std::time::Duration;
 
-use thermal_client::client::{ReceivedTelemetry, Telemetry};
+use thermal_client::client::{ReceivedTelemetry, Telemetry, TelemetryColumn};
+use thermal_device::TelemetryFields;
 
 use super::{RecordingError, unreadable};
 
-/// Columns of the values, in the order of a line on the wire.
-const VALUES: [&str; 9] = [
-    "setpoint_c",
-    "display_c",
-    "sink_c",
-    "skin_c",
-    "room_c",
-    "force_n",
-    "demand_a",
-    "current_a",
-    "evaluations",
-];
+/// Columns before those of the telemetry.
+const BEFORE: [&str; 4] = ["t_s", "finger", "tick", "state"];
+/// Column between those that every device reports and those of a heat-flux sensor.
+const REMARK: &str = "remark";
+/// What the device writes for a value that is not known.
+const UNKNOWN: &str = "-";
 
-/// The first line.
-pub(super) fn header() -> String {
-    format!("t_s,finger,tick,state,{},remark\n", VALUES.join(","))
+/// The first line, of a device with or without a heat-flux sensor.
+pub(super) fn header(has_flux_sensor: bool) -> String {
+    let name = |column: &TelemetryColumn| column.name;
+    let names = (BEFORE.into_iter())
+        .chain(TelemetryColumn::default_ones().iter().map(name))
+        .chain([REMARK])
+        .chain(TelemetryColumn::of_flux(has_flux_sensor).iter().map(name));
+    names.collect::<Vec<_>>().join(",") + "\n"
 }
 
 /// A line at a time of the session, s, of a finger of the device. Values that are not known are empty.
-pub(super) fn row((t_s, finger, line): (f64, u8, &Telemetry)) -> String {
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    let values = [
-        line.setpoint_c,
-        line.display_c,
-        line.sink_c,
-        line.skin_c,
-        line.room_c,
-        line.force_n,
-        line.demand_a,
-        line.current_a,
-    ];
-    let count = line.evaluations.map_or(String::new(), |count| count.to_string());
-    let cells: Vec<_> = values.map(number).into_iter().chain([count]).collect();
-    format!(
-        "{t_s:.4},{finger},{},{},{},{}\n",
-        line.tick,
-        line.state.name(),
-        cells.join(","),
-        line.remark().unwrap_or("-")
-    )
+pub(super) fn row((t_s, finger, line): (f64, u8, &Telemetry), has_flux_sensor: bool) -> String {
+    let cell = |column: &TelemetryColumn| column.text(line).unwrap_or_default();
+    let before =
+        [format!("{t_s:.4}"), finger.to_string(), line.tick.to_string(), line.state.name().into()];
+    let cells = (before.into_iter())
+        .chain(TelemetryColumn::default_ones().iter().map(cell))
+        .chain([line.remark().unwrap_or(UNKNOWN).into()])
+        .chain(TelemetryColumn::of_flux(has_flux_sensor).iter().map(cell));
+    cells.collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// Whether a file has the columns of a heat-flux sensor.
+pub(super) fn has_flux_columns(path: &Path) -> Result<bool, RecordingError> {
+    let mut rows = csv::Reader::from_path(path).map_err(unreadable_csv(path))?;
+    let header = rows.headers().map_err(unreadable_csv(path))?;
+    let mut columns = TelemetryColumn::of_flux(true).iter();
+    Ok(columns.all(|column| header.iter().any(|name| name == column.name)))
 }
 
 /// All lines with their times, s.
 pub(super) fn read(path: &Path) -> Result<Vec<(f64, ReceivedTelemetry)>, RecordingError> {
-    let unreadable = |error: csv::Error| unreadable(path)(io::Error::other(error.to_string()));
-    let mut rows = csv::Reader::from_path(path).map_err(unreadable)?;
+    let mut rows = csv::Reader::from_path(path).map_err(unreadable_csv(path))?;
+    // A line on the wire has the remark last.
+    let words = BEFORE.into_iter().skip(2);
+    let words = words.chain(TelemetryColumn::ALL.iter().map(|column| column.name)).chain([REMARK]);
+    let header = rows.headers().map_err(unreadable_csv(path))?;
+    let places: Vec<_> = words.map(|word| header.iter().position(|name| name == word)).collect();
     let mut lines = Vec::new();
     for (number, row) in (2..).zip(rows.records()) {
-        let row = row.map_err(unreadable)?;
-        let line = line_of(&row).ok_or_else(|| RecordingError::Content {
+        let row = row.map_err(unreadable_csv(path))?;
+        let line = line_of(&row, &places).ok_or_else(|| RecordingError::Content {
             path: path.into(),
             line: number,
             problem: "this is no line of telemetry".into(),
@@ -67,16 +67,22 @@ pub(super) fn read(path: &Path) -> Result<Vec<(f64, ReceivedTelemetry)>, Recordi
     Ok(lines)
 }
 
-/// A row as the line that was received.
-fn line_of(row: &csv::StringRecord) -> Option<(f64, ReceivedTelemetry)> {
-    let t_s: f64 = row.get(0)?.parse().ok()?;
-    let words = row.iter().skip(2).map(|cell| if cell.is_empty() { "-" } else { cell });
-    let words: Vec<_> = ["T"].into_iter().chain(words).collect();
+/// A row as the line that was received; `places` are the cells of its words, in the order of the wire.
+fn line_of(row: &csv::StringRecord, places: &[Option<usize>]) -> Option<(f64, ReceivedTelemetry)> {
+    let cells = places.iter().map(|place| row.get((*place)?).filter(|cell| !cell.is_empty()));
+    let words: Vec<_> =
+        ["T"].into_iter().chain(cells.map(|cell| cell.unwrap_or(UNKNOWN))).collect();
+    let all = (0..TelemetryFields::NAMES.len()).fold(TelemetryFields::NONE, TelemetryFields::with);
+    let t_s = row.get(0)?.parse().ok()?;
     let line = ReceivedTelemetry {
         finger: Some(row.get(1)?.parse().ok()?),
-        telemetry: Telemetry::parse(&words.join(" "))?,
+        telemetry: Telemetry::parse_fields(&words.join(" "), all)?,
         at: Duration::try_from_secs_f64(t_s).ok()?,
         lost_before: 0,
     };
     Some((t_s, line))
+}
+
+fn unreadable_csv(path: &Path) -> impl Fn(csv::Error) -> RecordingError + '_ {
+    move |error| unreadable(path)(io::Error::other(error.to_string()))
 }

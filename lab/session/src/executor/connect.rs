@@ -10,7 +10,7 @@ use thermal_client::link::Link;
 use thermal_device::safety::Fault;
 
 use super::fingers::Fingers;
-use super::{Executor, SessionEnd, TrialEnd};
+use super::{Executor, SessionEnd};
 use crate::dataset::DeviceReport;
 use crate::planned_dose::decay_before_s;
 use crate::{OperatorQuestion, Plan, PlannedTrial, Presented, Update};
@@ -43,19 +43,21 @@ impl<L: Link> Executor<'_, L> {
                 )));
             }
         }
-        self.fingers = Fingers::new(identity.fingers);
-        let mut all_settings = Vec::new();
+        let (mut all_settings, mut has_flux_sensor) = (Vec::new(), Vec::new());
         for finger in 0..identity.fingers {
-            let address = self.fingers.address(finger);
+            let address = (identity.fingers > 1).then_some(finger);
             all_settings.push(settings(&mut self.client, address).map_err(ends)?);
+            has_flux_sensor.push(self.client.flux_report(address).map_err(ends)?.is_some());
         }
+        self.fingers = Fingers::new(has_flux_sensor.clone());
         let is_simulated = if identity.can("board") {
             Some(self.client.ask(&QueryBoard).map_err(ends)?.is_simulated())
         } else {
             None
         };
         let settings = all_settings;
-        self.recorder.device(&DeviceReport { identity, is_simulated, settings })?;
+        let report = DeviceReport { identity, is_simulated, settings, has_flux_sensor };
+        self.recorder.device(&report)?;
         for finger in displays {
             self.require_tuned(finger)?;
         }
@@ -129,14 +131,8 @@ impl<L: Link> Executor<'_, L> {
             trial.number
         )));
         let until_s = self.now_s() + off_s;
-        loop {
-            match self.wait_until(until_s) {
-                Ok(()) => return Ok(()),
-                Err(TrialEnd::Session(end)) => return Err(end),
-                // The device says again and again that it is tripped, and nothing is presented.
-                Err(TrialEnd::Void(_) | TrialEnd::Tripped(_)) => {}
-            }
-        }
+        // The device says again and again that it is tripped.
+        self.wait_between_trials(until_s)
     }
 
     /// Refuses a tile that was never tuned, whose set-points move too slowly for what a session presents.

@@ -8,17 +8,24 @@ use thermal_device::StateName;
 pub struct Fingers {
     /// State of each in its last line of telemetry.
     states: Vec<Option<StateName>>,
+    /// Whether each has a heat-flux sensor.
+    has_flux_sensor: Vec<bool>,
 }
 
 impl Fingers {
-    /// A device with this many fingers; 0 for none.
-    pub fn new(count: u8) -> Self {
-        Self { states: vec![None; usize::from(count)] }
+    /// The fingers of a device, of which each has a heat-flux sensor or not.
+    pub fn new(has_flux_sensor: Vec<bool>) -> Self {
+        Self { states: vec![None; has_flux_sensor.len()], has_flux_sensor }
     }
 
     /// Their number.
     pub fn count(&self) -> usize {
         self.states.len()
+    }
+
+    /// Whether a finger has a heat-flux sensor.
+    pub fn has_flux_sensor(&self, finger: u8) -> bool {
+        self.has_flux_sensor.get(usize::from(finger)) == Some(&true)
     }
 
     /// How a line addresses a finger; a device with one has no addresses.

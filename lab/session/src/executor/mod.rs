@@ -179,9 +179,8 @@ impl<'a, L: Link> Executor<'a, L> {
             schedule.ended(&record);
         }
         for number in schedule.given_up() {
-            let attempts = self.session.voids.attempts_max;
             self.inform(Update::Notice(format!(
-                "trial {number} was void {attempts} times and is left out"
+                "trial {number} was void in all its attempts and is left out"
             )));
         }
         Ok(())
@@ -194,6 +193,8 @@ impl<'a, L: Link> Executor<'a, L> {
         self.inform(Update::Trial { trial: next.trial.clone(), attempt: next.attempt, of });
         self.ask_about_voids()?;
         self.meet_device(next.trial)?;
+        // After a time in which this program did not run they are of before the device was met, and may say that it is tripped.
+        self.drop_late_lines()?;
         let void = match self.conduct(next) {
             Ok(()) => self.trial.void.take(),
             Err(TrialEnd::Void(why)) => Some(why),
@@ -252,11 +253,8 @@ impl<'a, L: Link> Executor<'a, L> {
         let end_s = seconds(self.recorder.end_ns()) + self.session.break_s;
         self.switch_off()?;
         self.phase(Phase::Break);
-        match self.wait_until(end_s) {
-            Err(TrialEnd::Session(end)) => return Err(end),
-            // The next trial finds a device that has tripped or restarted.
-            Ok(()) | Err(TrialEnd::Void(_) | TrialEnd::Tripped(_)) => {}
-        }
+        // The next trial finds a device that has tripped or restarted.
+        self.wait_between_trials(end_s)?;
         self.operator(OperatorQuestion::BreakOver)?;
         Ok(())
     }

@@ -43,7 +43,12 @@ impl<L: Link> Executor<'_, L> {
                 self.choose_rendering(device)?;
             }
             for finger in &reporting {
-                self.command(Some(*finger), &PlainCommand::stream(device.stream_ms))?;
+                let stream = if self.fingers.has_flux_sensor(*finger) {
+                    PlainCommand::stream_with_flux(device.stream_ms)
+                } else {
+                    PlainCommand::stream(device.stream_ms)
+                };
+                self.command(Some(*finger), &stream)?;
             }
             let now_s = self.now_s();
             self.streaming_since_s = Some(now_s);
@@ -54,6 +59,7 @@ impl<L: Link> Executor<'_, L> {
         // A finger that stays on the display from trial to trial is not disturbed.
         if !self.finger_stays_on_display(&displays)? {
             self.arm(&displays)?;
+            self.wait_for_free_displays(&displays)?;
             self.hold_rest_temperature(&displays)?;
             self.phase(Phase::Rest);
             self.place_samples(trial)?;

@@ -4,7 +4,10 @@ use thermal_client::link::Link;
 
 use super::set_up::device_fingers;
 use super::{Executor, TrialEnd};
-use crate::{ContactRule, Cue, Phase, PlannedTrial, Question, Update};
+use crate::{
+    ContactRule, Cue, Decision, OperatorQuestion, Phase, PlannedTrial, Procedure, Question,
+    RestPlace, Update,
+};
 
 /// Longest time for the finger to lift after the tone, s.
 const LIFT_S: f64 = 10.0;
@@ -30,7 +33,7 @@ impl<L: Link> Executor<'_, L> {
             self.wait_until(now_s + reach_s)?;
         }
         self.phase(Phase::Contact);
-        if displays.iter().any(|finger| self.trial.is_touching(*finger)) {
+        if displays.iter().any(|finger| self.lies_on(*finger)) {
             let why = "a finger was on the display before the tone to touch";
             return Err(TrialEnd::Void(why.into()));
         }
@@ -114,20 +117,56 @@ impl<L: Link> Executor<'_, L> {
     /// Waits until no finger presses any more.
     fn wait_for_lift(&mut self, displays: &[u8]) -> Result<(), TrialEnd> {
         self.phase(Phase::Return);
-        let is_lifted = |executor: &mut Self| {
-            displays.iter().all(|finger| {
-                let lines = executor.trial.last_lines(*finger, LIFTED_MS);
-                let presses = |force_n: f64| force_n >= LIFTED_N;
-                !executor.trial.is_touching(*finger)
-                    && !lines.iter().any(|line| line.force_n.is_none_or(presses))
-            })
-        };
         let until_s = self.now_s() + LIFT_S;
-        if self.wait_for(until_s, is_lifted)? {
+        if self.wait_for(until_s, |executor| executor.are_free(displays))? {
             Ok(())
         } else {
             Err(TrialEnd::Void(format!("the finger has not lifted after {LIFT_S} s")))
         }
+    }
+
+    /// Waits for the lift of fingers that lie on displays from before the trial, and names them: the contact must begin after the
+    /// tone. Where fingers rest or stay on the display they may lie there.
+    pub(super) fn wait_for_free_displays(&mut self, displays: &[u8]) -> Result<(), TrialEnd> {
+        let rests_on_display =
+            self.session.rest.is_some_and(|rest| rest.place == RestPlace::Display);
+        let stays = matches!(self.session.trial.procedure, Procedure::Intervals { .. });
+        if rests_on_display || stays {
+            return Ok(());
+        }
+        while let Some(finger) = displays.iter().find(|finger| self.lies_on(**finger)) {
+            let why = format!("a finger lies on display {finger}; the trial waits until it lifts");
+            self.inform(Update::Notice(why.clone()));
+            self.inform(Update::Instruction("Lift your finger from the display.".into()));
+            self.inform(Update::Cue(Cue::Lift));
+            let until_s = self.now_s() + LIFT_S;
+            if self.wait_for(until_s, |executor| executor.are_free(displays))? {
+                break;
+            }
+            if self.operator(OperatorQuestion::Ready(why.clone()))? == Decision::Void {
+                return Err(TrialEnd::Void(why));
+            }
+        }
+        self.trial.forget_contacts();
+        Ok(())
+    }
+
+    /// Whether a finger presses a display, also one that has landed before the trial.
+    fn lies_on(&self, finger: u8) -> bool {
+        let lines = self.trial.last_lines(finger, LIFTED_MS);
+        let presses = |force_n: f64| force_n >= LIFTED_N;
+        self.trial.is_touching(finger)
+            || !lines.is_empty() && lines.iter().all(|line| line.force_n.is_some_and(presses))
+    }
+
+    /// Whether no finger has pressed these displays for some time.
+    fn are_free(&self, displays: &[u8]) -> bool {
+        displays.iter().all(|finger| {
+            let lines = self.trial.last_lines(*finger, LIFTED_MS);
+            let presses = |force_n: f64| force_n >= LIFTED_N;
+            !self.trial.is_touching(*finger)
+                && !lines.iter().any(|line| line.force_n.is_none_or(presses))
+        })
     }
 
     /// A trial with too much force does not count; the participant goes on undisturbed.

@@ -12,11 +12,24 @@ use crate::{Decision, OperatorQuestion, Update};
 
 /// Longest time between two looks at the keys.
 const KEY_POLL_INTERVAL: Duration = Duration::from_millis(10);
+/// Time by which a wait is longer than it should be if this program did not run, s: a device that is driven has tripped by then.
+const STOOD_STILL_S: f64 = 2.0;
 
 impl<L: Link> Executor<'_, L> {
     /// Lets time pass until a time of the session, s.
     pub(super) fn wait_until(&mut self, until_s: f64) -> Result<(), TrialEnd> {
         self.wait_for(until_s, |_| false).map(|_| ())
+    }
+
+    /// Lets time pass until a time of the session, s, whatever the device does meanwhile: nothing is presented.
+    pub(super) fn wait_between_trials(&mut self, until_s: f64) -> Result<(), SessionEnd> {
+        loop {
+            match self.wait_until(until_s) {
+                Ok(()) => return Ok(()),
+                Err(TrialEnd::Session(end)) => return Err(end),
+                Err(TrialEnd::Void(_) | TrialEnd::Tripped(_)) => {}
+            }
+        }
     }
 
     /// Lets time pass until a condition holds, at most until a time of the session, s. Returns whether it holds.
@@ -58,8 +71,18 @@ impl<L: Link> Executor<'_, L> {
             self.trial.is_asked = false;
             self.inform(Update::Answered(Some(response)));
         }
+        let begin_s = self.now_s();
         let line = (self.client.next_telemetry(longest)).map_err(SessionEnd::from)?;
         self.take_events();
+        let stood_still_s = self.now_s() - begin_s - longest.as_secs_f64();
+        if stood_still_s > STOOD_STILL_S {
+            if let Some(line) = line {
+                self.received(&line);
+            }
+            return Err(TrialEnd::Void(format!(
+                "the computer stood still for {stood_still_s:.1} s"
+            )));
+        }
         let Some(line) = line else {
             return self.check_silence();
         };

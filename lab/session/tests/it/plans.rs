@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use thermal_session::{Plan, PlanError, PlannedTrial, Session};
+use thermal_session::record::TrialRecord;
+use thermal_session::{Plan, PlanError, PlannedTrial, Schedule, Session};
 
 use crate::{changed, plan, ready};
 
@@ -213,4 +214,33 @@ fn the_colder_of_two_materials_is_the_one_at_which_the_skin_is_colder() {
             assert_eq!(trial.correct.as_deref(), expected, "{object_c}: {:?}", trial.levels);
         }
     }
+}
+
+/// With three attempts at a trial, as docs/sessions.md says.
+#[test]
+fn attempts_in_which_nothing_was_presented_do_not_count_but_the_tenth_ends_the_trial() {
+    let session = ready("p1-discrimination");
+    let mut plan = plan(&session, "01", 1);
+    plan.trials.truncate(1);
+    let attempts = |is_presented: fn(u32) -> bool| {
+        let mut schedule = Schedule::new(&session, &plan);
+        let mut count = 0;
+        while let Some(next) = schedule.next_trial() {
+            count += 1;
+            assert_eq!(next.attempt, count);
+            schedule.ended(&TrialRecord {
+                trial: next.trial.number,
+                attempt: next.attempt,
+                void: Some("the computer stood still for 5.0 s".into()),
+                touch_cue_s: is_presented(next.attempt).then_some(1.0),
+                ..TrialRecord::default()
+            });
+        }
+        assert_eq!(schedule.given_up(), [1]);
+        count
+    };
+    assert_eq!(attempts(|_| true), 3);
+    assert_eq!(attempts(|attempt| attempt > 5), 5 + 3);
+    assert_eq!(attempts(|attempt| attempt == 2), 10 + 1);
+    assert_eq!(attempts(|_| false), 10);
 }
