@@ -85,7 +85,7 @@ pub enum Simulated {
 
 /// The tasks of a data set, by name. Where session files of a task differ, each makes a task of its own; comments do not count.
 pub fn tasks(sessions: &[&RecordedSession], simulated: Simulated) -> Vec<Task> {
-    let mut tasks: Vec<(Session, Task)> = Vec::new();
+    let mut tasks: Vec<(&Session, Task)> = Vec::new();
     let is_mixed = |task: &str| {
         let own = || sessions.iter().filter(|one| one.session.task == task);
         own().any(|one| one.info.has_simulated_part())
@@ -96,11 +96,10 @@ pub fn tasks(sessions: &[&RecordedSession], simulated: Simulated) -> Vec<Task> {
         if is_left_out && is_mixed(&recorded.session.task) {
             continue;
         }
-        let read = Session { text: String::new(), ..recorded.session.clone() };
-        let known = tasks.iter().position(|(session, _)| *session == read);
+        let session = &recorded.session;
+        let known = tasks.iter().position(|(known, _)| known.says_the_same_as(session));
         let at = known.unwrap_or_else(|| {
-            let new = task(&read);
-            tasks.push((read, new));
+            tasks.push((session, task(session)));
             tasks.len() - 1
         });
         if let Some((_, task)) = tasks.get_mut(at) {

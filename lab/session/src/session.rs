@@ -68,6 +68,12 @@ impl Session {
         file::parse(text, path)
     }
 
+    /// Whether the file of another session says the same: only comments, spaces and line ends may differ.
+    pub fn says_the_same_as(&self, other: &Self) -> bool {
+        let read = Self { text: other.text.clone(), ..self.clone() };
+        read == *other
+    }
+
     /// The material of a name: one that the session describes, or one of [`material::MATERIALS`].
     pub fn material(&self, name: &str) -> Option<Material> {
         let described = self.materials.iter().find(|(known, _)| known == name);

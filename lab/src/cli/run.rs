@@ -122,6 +122,7 @@ pub(super) fn refused(error: RecordingError) -> Failure {
         RecordingError::Exists(_)
         | RecordingError::AlikeCode { .. }
         | RecordingError::Missing(_)
+        | RecordingError::OtherFile { .. }
         | RecordingError::OtherSession { .. } => Failure::input(error),
         RecordingError::File { .. }
         | RecordingError::Unreadable { .. }
@@ -187,6 +188,13 @@ impl Run<'_> {
             Recorder::create(&arguments.out, session, plan, who, is_simulated)
         };
         let recorder = &mut recorder.map_err(refused)?;
+        if let Some(recorded) = recorder.differs_from(session) {
+            eprintln!(
+                "thermal-lab: {} differs from the recorded {} in comments or spaces only; the recorded file is used",
+                arguments.session.display(),
+                recorded.display()
+            );
+        }
         let records = recorder.records().to_vec();
         let schedule =
             Schedule::after(self.session, self.plan, &records).map_err(Failure::input)?;

@@ -133,6 +133,41 @@ fn a_session_whose_files_were_changed_is_refused_before_anything_is_written() {
     assert!(said.contains("participant P01: there are data of p01"), "{said}");
 }
 
+/// A full disk has interrupted it.
+#[test]
+fn a_session_is_resumed_with_a_file_in_which_only_a_comment_was_corrected_and_says_so() {
+    let (folder, session) = with_session("comment");
+    let [whole, data] = ["whole", "data"].map(|name| folder.join(name));
+    assert!(run(&line(&session, &whole)).status.success());
+    let program = env!("CARGO_BIN_EXE_thermal-lab");
+    let script = format!("trap '' XFSZ; ulimit -f 600; exec {program} {}", line(&session, &data));
+    let stopped = Command::new("sh").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
+    assert_eq!(stopped.status.code(), Some(1));
+    let resume = line(&session, &data) + " --resume";
+    let text = fs::read_to_string(&session).unwrap();
+    let recorded = Folder::new(&data, "01", "p5").source("session.toml");
+    let recorded = recorded.to_str().unwrap();
+    // Another rule for void trials is the same plan, and another session.
+    for (from, to) in
+        [("off_preset_k = 0.3", "off_preset_k = 0.4"), ("Rest both hands", "Put both hands")]
+    {
+        assert!(text.contains(from), "{from}");
+        fs::write(&session, text.replace(from, to)).unwrap();
+        let before = contents(&data);
+        let refused = run(&resume);
+        let said = String::from_utf8_lossy(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2), "{said}");
+        assert!(said.contains(recorded) && said.contains("something else"), "{said}");
+        assert!(contents(&data) == before);
+    }
+    fs::write(&session, format!("# Room 12\r\n{}", text.replace('\n', "\r\n"))).unwrap();
+    let resumed = run(&resume);
+    let said = String::from_utf8_lossy(&resumed.stderr);
+    assert!(resumed.status.success(), "{said}");
+    assert!(said.contains(recorded) && said.contains("the recorded file is used"), "{said}");
+    assert_equal(&whole, &data);
+}
+
 /// Each adds its participant to the list that all share.
 #[test]
 fn several_programs_record_into_one_data_set_at_once() {

@@ -80,7 +80,7 @@ pub enum RecordingError {
         /// The one that is there.
         known: String,
     },
-    /// What was recorded belongs to another session file or seed.
+    /// What was recorded belongs to another seed, plan or kind of participant.
     #[error("{}: recorded with {what} {recorded}; given is {given}", path.display())]
     OtherSession {
         /// The file that says so.
@@ -91,6 +91,22 @@ pub enum RecordingError {
         recorded: String,
         /// Its value now.
         given: String,
+    },
+    /// The session file that is given says something else than the recorded one.
+    #[error(
+        "{}: {}; a session goes on with what it began with: give the file that was recorded",
+        path.display(),
+        if *is_as_recorded {
+            "the session file that is given says something else than this one, which was recorded, not in comments only"
+        } else {
+            "this is not the session file that was recorded, and neither is the one that is given"
+        }
+    )]
+    OtherFile {
+        /// The session file in the data set.
+        path: PathBuf,
+        /// Whether it is still the one that was recorded.
+        is_as_recorded: bool,
     },
     /// There is nothing to go on with.
     #[error("{}: there is no session to resume", .0.display())]

@@ -1,7 +1,7 @@
 //! Records a session while it runs.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
@@ -205,16 +205,10 @@ impl Recorder {
             let renamed = folder.renamings()?;
             return Self::begin(folder, session, plan, (seed, is_simulated), renamed, &shared);
         };
-        let info_path = folder.source(INFO);
         let info = read_info(&folder)?;
-        let given = [
-            sha256(session.text.as_bytes()),
-            seed.to_string(),
-            sha256(plan.csv().as_bytes()),
-            kind(is_simulated).into(),
-        ];
+        let session = recorded_session(&folder, &info, session)?;
+        let given = [seed.to_string(), sha256(plan.csv().as_bytes()), kind(is_simulated).into()];
         for ((what, recorded), given) in [
-            ("the session file of SHA-256", &info.session_sha256),
             ("the seed", &info.seed.to_string()),
             ("the plan of SHA-256", &info.plan_sha256),
             ("a participant who is", &kind(info.is_simulated).into()),
@@ -224,7 +218,7 @@ impl Recorder {
         {
             if recorded != given {
                 return Err(RecordingError::OtherSession {
-                    path: info_path,
+                    path: folder.source(INFO),
                     what,
                     recorded: recorded.clone(),
                     given: given.clone(),
@@ -239,7 +233,7 @@ impl Recorder {
         let clock = text::read(&folder.source(CLOCK)).unwrap_or_default();
         Self {
             folder,
-            session: session.clone(),
+            session,
             plan: plan.clone(),
             info,
             clock: serde_json::from_str(&clock).unwrap_or_default(),
@@ -345,6 +339,11 @@ impl Recorder {
         bids::write(&self.folder, &self.session, &self.plan, &self.records)
     }
 
+    /// The recorded session file, if its text is not that of the session that is given: comments were changed since.
+    pub fn differs_from(&self, given: &Session) -> Option<PathBuf> {
+        (self.session.text != given.text).then(|| self.folder.source(SESSION))
+    }
+
     /// The folder of the session.
     pub const fn folder(&self) -> &Folder {
         &self.folder
@@ -361,6 +360,24 @@ pub(super) fn pretty<T: Serialize>(value: &T) -> Vec<u8> {
 /// Whether participant and device are simulated, in words.
 const fn kind(is_simulated: bool) -> &'static str {
     if is_simulated { "simulated" } else { "real" }
+}
+
+/// The session that was recorded, if the one that is given says the same; comments and line ends may have been corrected since.
+fn recorded_session(
+    folder: &Folder,
+    info: &SessionInfo,
+    given: &Session,
+) -> Result<Session, RecordingError> {
+    if sha256(given.text.as_bytes()) == info.session_sha256 {
+        return Ok(given.clone());
+    }
+    let path = folder.source(SESSION);
+    let text = fs::read_to_string(&path).map_err(unreadable(&path))?;
+    let is_as_recorded = sha256(text.as_bytes()) == info.session_sha256;
+    let recorded = Session::parse(&text, &path).ok().filter(|_| is_as_recorded);
+    recorded
+        .filter(|recorded| recorded.says_the_same_as(given))
+        .ok_or(RecordingError::OtherFile { path, is_as_recorded })
 }
 
 /// Refuses a file whose first `recorded` bytes are not those that were recorded, because a text tool has changed its line ends:

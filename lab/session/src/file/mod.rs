@@ -61,7 +61,9 @@ pub(crate) fn read(path: &Path) -> Result<Session, SessionError> {
     parse(&text::read(path).map_err(unreadable)?, path)
 }
 
-pub(crate) fn parse(text: &str, path: &Path) -> Result<Session, SessionError> {
+pub(crate) fn parse(file_text: &str, path: &Path) -> Result<Session, SessionError> {
+    // Texts of several lines are the same whatever ends the lines of the file.
+    let text = &file_text.replace("\r\n", "\n");
     let source = Source { file: path, text };
     nesting::check(&source)?;
     let document = DeTable::parse(text).map_err(|error| {
@@ -117,7 +119,7 @@ pub(crate) fn parse(text: &str, path: &Path) -> Result<Session, SessionError> {
         break_s,
         voids,
         score,
-        text: text.into(),
+        text: file_text.into(),
     })
 }
 
