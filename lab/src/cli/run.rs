@@ -167,6 +167,8 @@ impl Run<'_> {
             Recorder::create(&arguments.out, session, plan, who, is_simulated)
         };
         let recorder = &mut recorder.map_err(refused)?;
+        let commit = Some(env!("THERMAL_LAB_COMMIT")).filter(|commit| !commit.is_empty());
+        recorder.program_of(commit).map_err(refused)?;
         if let Some(recorded) = recorder.differs_from(session) {
             eprintln!(
                 "thermal-lab: {} differs from the recorded {} in comments or spaces only; the recorded file is used",

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
+use thermal_session::dataset::Folder;
 
 use crate::folder::{assert_equal, contents, with_session};
 
@@ -95,6 +96,29 @@ fn the_data_set_has_the_structure_of_bids() {
     let end_s = onset(&rows[7]) + rows[7][1].parse::<f64>().unwrap();
     let length_s = unpacked.lines().count() as f64 / 100.0;
     assert!((length_s - end_s).abs() < 0.1, "{length_s} s of telemetry, {end_s} s of session");
+}
+
+/// Against what git and the device say.
+#[test]
+fn session_json_has_the_versions_of_program_and_firmware_and_the_commit() {
+    let (folder, session) = with_session("versions");
+    let out = folder.join("data");
+    assert!(run(&line(&session, &out)).status.success());
+    let file = Folder::new(&out, "01", "p5").source("session.json");
+    let info: Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
+    assert_eq!(info["program_version"], env!("CARGO_PKG_VERSION"));
+    let head = Command::new("git").args(["rev-parse", "HEAD"]).output();
+    match head.ok().filter(|head| head.status.success()) {
+        Some(head) => {
+            let commit = info["program_commit"].as_str().unwrap();
+            let clean = commit.strip_suffix("-dirty").unwrap_or(commit);
+            assert_eq!(clean, String::from_utf8(head.stdout).unwrap().trim());
+        }
+        None => assert!(info["program_commit"].is_null()),
+    }
+    let identity = run("info --simulated --json");
+    let identity: Value = serde_json::from_slice(&identity.stdout).unwrap();
+    assert_eq!(info["devices"][0]["identity"], identity["device"]);
 }
 
 #[test]

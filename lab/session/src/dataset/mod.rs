@@ -33,7 +33,7 @@ pub use data_set::{DataSet, DataSetError, recorded_sessions};
 pub use folder::Folder;
 pub use log::{Entry, LogLine};
 pub use read::RecordedSession;
-pub use recorder::{DeviceReport, Recorder, SessionInfo};
+pub use recorder::{DeviceReport, ProgramVersion, Recorder, SessionInfo};
 
 /// Why data cannot be written or read.
 #[derive(Debug, thiserror::Error)]
