@@ -13,7 +13,9 @@ use thermal_lab::terminal_people::TerminalPeople;
 use thermal_lab::watched::{Progress, Watched};
 use thermal_participant::{Bench, BenchOptions};
 use thermal_session::dataset::{Recorder, RecordingError};
-use thermal_session::{DoseReached, Executor, People, Plan, Schedule, Session, SessionEnd};
+use thermal_session::{
+    DoseReached, Executor, People, Plan, Schedule, Session, SessionEnd, check_device,
+};
 use thermal_window::{SessionView, StopFlag, Tones};
 
 use super::target::stop_on_signals;
@@ -112,6 +114,17 @@ fn refused(error: RecordingError) -> Failure {
     }
 }
 
+/// A device that cannot run the session is a wrong argument.
+fn ended_early(end: SessionEnd) -> Failure {
+    match end {
+        SessionEnd::Unsuitable(_) => Failure::input(anyhow!(end)),
+        SessionEnd::NotOff(_)
+        | SessionEnd::Stopped
+        | SessionEnd::Gone(_)
+        | SessionEnd::Recording(_) => Failure::run(anyhow!(end)),
+    }
+}
+
 /// What is run.
 struct Run<'a> {
     arguments: &'a Arguments,
@@ -152,15 +165,18 @@ impl Run<'_> {
         self.execute(client, people, false)
     }
 
-    /// Runs the session at a device that is there. Nothing is written before.
+    /// Runs the session at a device that is there and can run it. Nothing is written before.
     fn execute<L: Link>(
         &self,
-        client: Client<L>,
+        mut client: Client<L>,
         people: &mut dyn People,
         is_simulated: bool,
     ) -> Result<(), Failure> {
         let Self { arguments, session, plan } = *self;
         let who = (arguments.participant.as_str(), arguments.seed);
+        if session.needs_device() {
+            check_device(&mut client, session, plan).map_err(ended_early)?;
+        }
         let recorder = if arguments.resume {
             Recorder::resume(&arguments.out, session, plan, who, is_simulated)
         } else {
@@ -183,12 +199,6 @@ impl Run<'_> {
         let executor = Executor::new(self.session, client, people, recorder);
         let ended = executor.run(self.plan, schedule);
         eprintln!("thermal-lab: data set: {}", folder.root().display());
-        ended.map_err(|end| match end {
-            SessionEnd::Unsuitable(_) => Failure::input(anyhow!(end)),
-            SessionEnd::NotOff(_)
-            | SessionEnd::Stopped
-            | SessionEnd::Gone(_)
-            | SessionEnd::Recording(_) => Failure::run(anyhow!(end)),
-        })
+        ended.map_err(ended_early)
     }
 }

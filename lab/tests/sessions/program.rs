@@ -1,5 +1,6 @@
 //! `thermal-lab run`, `analyse` and `replay` as a user starts them.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -96,6 +97,67 @@ fn the_data_set_has_the_structure_of_bids() {
     let end_s = onset(&rows[7]) + rows[7][1].parse::<f64>().unwrap();
     let length_s = unpacked.lines().count() as f64 / 100.0;
     assert!((length_s - end_s).abs() < 0.1, "{length_s} s of telemetry, {end_s} s of session");
+}
+
+/// The rows are counted anew from the telemetry. At 250 ms the ticks of the device are up to half an interval from those of the session.
+#[test]
+fn the_sidecar_of_a_recording_says_how_far_its_rows_are_from_the_telemetry() {
+    let (folder, session) = with_session("time-error");
+    let text = fs::read_to_string(&session).unwrap();
+    for stream_ms in [10, 30, 250] {
+        fs::write(&session, text.replace("stream_ms = 10", &format!("stream_ms = {stream_ms}")))
+            .unwrap();
+        let out = folder.join(format!("{stream_ms}"));
+        assert!(run(&line(&session, &out)).status.success());
+        let about = out.join("sub-01/beh/sub-01_task-p5_recording-finger0_physio.json");
+        let about: Value = serde_json::from_slice(&fs::read(about).unwrap()).unwrap();
+        let interval_s = 1e-3 * f64::from(stream_ms);
+        assert_eq!(about["SamplingFrequency"], 1.0 / interval_s);
+        assert_eq!(about["StartTime"], 0.0);
+        assert!(about["TimeErrorDescription"].is_string());
+        let said_s = about["TimeErrorMax"].as_f64().unwrap();
+        let telemetry = Folder::new(&out, "01", "p5").source("telemetry.csv");
+        let mut nearest = BTreeMap::new();
+        for row in fs::read_to_string(telemetry).unwrap().lines().skip(1) {
+            let t_s: f64 = row.split(',').next().unwrap().parse().unwrap();
+            let number = (t_s / interval_s).round();
+            nearest.entry(number as u64).or_insert((t_s - number * interval_s).abs());
+        }
+        let largest_s = nearest.into_values().fold(0.0, f64::max);
+        assert!((said_s - largest_s).abs() < 1e-4, "{stream_ms}: {said_s} s, {largest_s} s");
+        assert!(said_s <= interval_s / 2.0 + 1e-4, "{stream_ms}: {said_s} s");
+        // The stream of each trial has its own phase.
+        assert!(stream_ms < 250 || said_s > 0.01, "{stream_ms}: {said_s} s");
+    }
+}
+
+/// A device on a line that is not there, a person who is refused, answers that nobody understands, nothing to go on with.
+#[test]
+fn a_session_that_is_refused_makes_no_folder() {
+    let (folder, session) = with_session("no-folder");
+    let out = folder.join("data");
+    let simulated = line(&session, &out);
+    let at = |target: &str| simulated.replace("--simulated", target);
+    let unknown = folder.join("unknown.toml");
+    let text = fs::read_to_string(&session).unwrap();
+    let ask = "the colder material?";
+    assert!(text.contains(ask));
+    fs::write(&unknown, text.replace(ask, "the colder or warmer material?")).unwrap();
+    let missing = folder.join("missing.toml");
+    for (line, words) in [
+        (at("--port /dev/no-such-port"), "/dev/no-such-port"),
+        (at("--tcp 127.0.0.1:1"), "127.0.0.1:1"),
+        (simulated.replace(" --simulated", ""), "which device?"),
+        (simulated.replace("--participant 01", "--participant Anna"), "Anna"),
+        (format!("{simulated} --resume"), "there is no session to resume"),
+        (line(&unknown, &out), "the colder or warmer material?"),
+        (line(&missing, &out), "missing.toml"),
+    ] {
+        let refused = run(&line);
+        assert_eq!(refused.status.code(), Some(2), "{line}: {}", stderr(&refused));
+        assert!(stderr(&refused).contains(words), "{line}: {}", stderr(&refused));
+        assert!(!out.exists(), "{line}");
+    }
 }
 
 /// Against what git and the device say.
