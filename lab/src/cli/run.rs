@@ -64,6 +64,9 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let plan = Plan::new(&session, who.0, who.1)
         .with_context(|| arguments.session.display().to_string())
         .map_err(Failure::input)?;
+    if let Some(why) = session.contradiction_of_finger_and_rest() {
+        eprintln!("thermal-lab: warning: {}: {why}", arguments.session.display());
+    }
     if let Some(DoseReached { trial, device_finger, plan_min }) =
         DoseReached::in_plan(&session, &plan)
     {

@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 use thermal_session::dataset::Folder;
 
-use crate::folder::{assert_equal, contents, with_session};
+use crate::folder::{assert_equal, contents, with_ready, with_session};
 
 pub fn thermal_lab(line: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_thermal-lab"));
@@ -192,6 +192,18 @@ fn a_plan_is_printed_without_a_device() {
     let header = text.lines().next().unwrap();
     assert!(header.contains(",real,simulated,side,"), "{header}");
     assert_eq!(text.lines().count(), 1 + 8);
+}
+
+#[test]
+fn a_finger_that_is_assumed_elsewhere_than_it_rests_is_warned_about_before_the_session() {
+    let mean = [("assumed_finger = \"mean-on-pad\"", "assumed_finger = \"mean\"")];
+    for (name, replaced, is_warned) in [("pad-mean", &mean[..], true), ("pad-on-pad", &[], false)] {
+        let (_, session) = with_ready(name, "p5-real-and-simulated-contact-model", replaced);
+        let plan = run(&format!("run {} --participant 01 --plan", session.display()));
+        assert!(plan.status.success());
+        let says = "short.toml: rest.place = \"pad\" contradicts device.assumed_finger = \"mean\"";
+        assert_eq!(stderr(&plan).contains(says), is_warned, "{}", stderr(&plan));
+    }
 }
 
 #[test]
