@@ -1,11 +1,11 @@
 //! What the analyses see of recorded sessions: the trials that count, with their factors and materials.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use contact_model::material::{self, Material};
 use experiment_statistics::staircase::Staircase;
-use thermal_session::dataset::RecordedSession;
+use thermal_session::dataset::{RecordedSession, SessionInfo};
 use thermal_session::record::{StationRecord, TrialRecord};
 use thermal_session::{AnswerKind, Departure, Presented, Session};
 
@@ -19,6 +19,8 @@ pub struct Task {
     pub differs: Option<String>,
     /// That simulated participants were left out, or are pooled with real ones.
     pub mixed: Option<String>,
+    /// That the data set was recorded with different versions of program or firmware, and who with which.
+    pub versions: Vec<String>,
     pub title: String,
     pub cite: String,
     pub question: Option<String>,
@@ -116,7 +118,43 @@ pub fn tasks(sessions: &[&RecordedSession], simulated: Simulated) -> Vec<Task> {
             task.mixed.clone_from(&mixed);
         }
     }
+    let versions = versions(sessions);
+    for task in &mut tasks {
+        task.versions.clone_from(&versions);
+    }
     tasks
+}
+
+/// A sentence for program and for firmware, if sessions of a data set differ in it.
+fn versions(sessions: &[&RecordedSession]) -> Vec<String> {
+    let programs = mixed_versions("thermal-lab", sessions, |info| info.programs().collect());
+    let firmware = mixed_versions("firmware", sessions, |info| info.firmware().collect());
+    programs.into_iter().chain(firmware).collect()
+}
+
+fn mixed_versions(
+    what: &str,
+    sessions: &[&RecordedSession],
+    versions: impl Fn(&SessionInfo) -> Vec<String>,
+) -> Option<String> {
+    let mut who: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for info in sessions.iter().map(|session| &session.info) {
+        for version in versions(info) {
+            who.entry(version).or_default().insert(format!("{} ({})", info.participant, info.task));
+        }
+    }
+    let of_each = who.iter().map(|(version, sessions)| {
+        let sessions: Vec<_> = sessions.iter().map(String::as_str).collect();
+        format!("{version}: {}", sessions.join(", "))
+    });
+    let of_each: Vec<_> = of_each.collect();
+    (who.len() > 1).then(|| {
+        format!(
+            "The data set was recorded with {} versions of {what}. {}.",
+            who.len(),
+            of_each.join("; ")
+        )
+    })
 }
 
 /// What was done with the simulated participants of a task that has real ones, too.
@@ -169,6 +207,7 @@ fn task(session: &Session) -> Task {
         label: session.task.clone(),
         differs: None,
         mixed: None,
+        versions: Vec::new(),
         title: session.title.clone(),
         cite: session.cite.clone(),
         question: session.answer.as_ref().map(|answer| answer.ask.clone()),

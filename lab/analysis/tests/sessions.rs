@@ -3,8 +3,11 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use serde_json::json;
 use session_analysis::{Analysis, Simulated, TaskAnalysis};
-use thermal_session::dataset::{DataSet, DataSetError, Folder, RecordedSession, SessionInfo};
+use thermal_session::dataset::{
+    DataSet, DataSetError, Folder, ProgramVersion, RecordedSession, SessionInfo,
+};
 use thermal_session::record::{StationRecord, TrialRecord};
 use thermal_session::{ANALYSES, AnswerKind, Plan, PlannedTrial, Presented, Session};
 
@@ -80,7 +83,8 @@ fn recorded(session: &Session, person: u32) -> RecordedSession {
             participant,
             seed: 1,
             is_simulated: true,
-            program_version: String::new(),
+            program: ProgramVersion::default(),
+            resumed_by: Vec::new(),
             session_sha256: String::new(),
             plan_sha256: String::new(),
             devices: Vec::new(),
@@ -256,4 +260,41 @@ fn a_level_of_the_plan_without_a_counted_trial_is_named() {
     );
     let void = "Left out: trials of P1 of which each attempt was void (";
     assert!(warnings.iter().any(|warning| warning.starts_with(void)), "{warnings:?}");
+}
+
+/// As they stand in session.json.
+#[test]
+fn versions_of_program_and_firmware_that_differ_in_a_data_set_are_said_with_who_has_which() {
+    let session = Session::read(&files()[0]).expect("a session");
+    let mut sessions = [1, 2, 3].map(|person| recorded(&session, person));
+    let device =
+        |version: &str| json!({ "identity": { "name": "thermal-display", "version": version } });
+    for session in &mut sessions {
+        session.info.program = ProgramVersion { version: "0.2.0".into(), commit: None };
+        session.info.devices = vec![device("0.2.0")];
+    }
+    let said = |sessions: &[RecordedSession]| -> Vec<String> {
+        let analysis = of_one(sessions);
+        let participants = analysis.sections.iter().find(|section| section.name == "participants");
+        let warnings = participants.expect("a section").warnings.iter();
+        warnings.filter(|one| one.contains("versions of")).cloned().collect()
+    };
+    assert_eq!(said(&sessions), [""; 0]);
+    sessions[1].info.resumed_by =
+        vec![ProgramVersion { version: "0.2.0".into(), commit: Some("1a2b3c".into()) }];
+    sessions[2].info.devices = vec![device("0.1.0")];
+    let task = &session.task;
+    assert_eq!(
+        said(&sessions),
+        [
+            format!(
+                "The data set was recorded with 2 versions of thermal-lab. 0.2.0: P1 ({task}), P2 ({task}), P3 ({task}); 0.2.0 of \
+                 commit 1a2b3c: P2 ({task})."
+            ),
+            format!(
+                "The data set was recorded with 2 versions of firmware. thermal-display 0.1.0: P3 ({task}); thermal-display 0.2.0: \
+                 P1 ({task}), P2 ({task})."
+            ),
+        ]
+    );
 }

@@ -18,7 +18,7 @@ mod session;
 pub use design::{
     Blocks, Design, Factor, MaterialOf, Pairs, Part, Present, PresentCase, Pulses, Stimulus,
 };
-pub use executor::{Executor, SessionEnd};
+pub use executor::{Executor, SessionEnd, check_device};
 pub use file::SessionError;
 pub use people::{Cue, Decision, OperatorQuestion, People, Phase, Question, Response, Update};
 pub use plan::{Departure, Plan, PlanError, PlannedTrial, Presented, check_participant};

@@ -109,6 +109,27 @@ impl Session {
         ascending(displays.chain(self.skin_sensors(trial)))
     }
 
+    /// Why the finger that the displays assume contradicts the place where fingers rest, in words; `None` if it does not, or no display
+    /// renders an object with contact resistance. A finger loses heat to the air and not to a pad, which no sensor shows.
+    pub fn contradiction_of_finger_and_rest(&self) -> Option<String> {
+        let (device, rest) = (self.device.as_ref()?, self.rest?);
+        let mut stimuli = self.present.cases.iter().flat_map(|case| &case.stations);
+        let renders = device.mode == ContactModel::ContactResistance
+            && stimuli.any(|stimulus| matches!(stimulus, Stimulus::Display { .. }));
+        let (place, fitting) = match (rest.place, device.assumed_finger) {
+            (RestPlace::Pad, AssumedFinger::Mean) => ("pad", AssumedFinger::MeanOnPad),
+            (RestPlace::Air, AssumedFinger::MeanOnPad) => ("air", AssumedFinger::Mean),
+            _ => return None,
+        };
+        renders.then(|| {
+            format!(
+                "rest.place = {place:?} contradicts device.assumed_finger = {:?}; without {:?} the skin is off by about 0.1 K",
+                device.assumed_finger.name(),
+                fitting.name()
+            )
+        })
+    }
+
     /// Whether a display presents something, or a skin thermistor measures at a station that presents something. Otherwise the
     /// session needs no device, even if its file describes one.
     pub fn needs_device(&self) -> bool {

@@ -14,7 +14,8 @@ use thermal_lab::watched::{Progress, Watched};
 use thermal_participant::{Bench, BenchOptions};
 use thermal_session::dataset::{Folder, Recorder, RecordingError};
 use thermal_session::{
-    DoseReached, Executor, People, Plan, Schedule, Session, SessionEnd, check_participant,
+    DoseReached, Executor, People, Plan, Schedule, Session, SessionEnd, check_device,
+    check_participant,
 };
 use thermal_window::{SessionView, StopFlag, Tones};
 
@@ -78,6 +79,9 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let plan = Plan::new(&session, &code, arguments.seed)
         .with_context(|| arguments.session.display().to_string())
         .map_err(Failure::input)?;
+    if let Some(why) = session.contradiction_of_finger_and_rest() {
+        eprintln!("thermal-lab: warning: {}: {why}", arguments.session.display());
+    }
     if let Some(DoseReached { trial, device_finger, plan_min }) =
         DoseReached::in_plan(&session, &plan)
     {
@@ -131,6 +135,17 @@ pub(super) fn refused(error: RecordingError) -> Failure {
     }
 }
 
+/// A device that cannot run the session is a wrong argument.
+fn ended_early(end: SessionEnd) -> Failure {
+    match end {
+        SessionEnd::Unsuitable(_) => Failure::input(anyhow!(end)),
+        SessionEnd::NotOff(_)
+        | SessionEnd::Stopped
+        | SessionEnd::Gone(_)
+        | SessionEnd::Recording(_) => Failure::run(anyhow!(end)),
+    }
+}
+
 /// What is run.
 struct Run<'a> {
     arguments: &'a Arguments,
@@ -173,21 +188,26 @@ impl Run<'_> {
         self.execute(client, people, false)
     }
 
-    /// Runs the session at a device that is there. Nothing is written before.
+    /// Runs the session at a device that is there and can run it. Nothing is written before.
     fn execute<L: Link>(
         &self,
-        client: Client<L>,
+        mut client: Client<L>,
         people: &mut dyn People,
         is_simulated: bool,
     ) -> Result<(), Failure> {
         let Self { arguments, session, plan, .. } = *self;
         let who = (arguments.participant.as_str(), arguments.seed);
+        if session.needs_device() {
+            check_device(&mut client, session, plan).map_err(ended_early)?;
+        }
         let recorder = if arguments.resume {
             Recorder::resume(&arguments.out, session, plan, who, is_simulated)
         } else {
             Recorder::create(&arguments.out, session, plan, who, is_simulated)
         };
         let recorder = &mut recorder.map_err(refused)?;
+        let commit = Some(env!("THERMAL_LAB_COMMIT")).filter(|commit| !commit.is_empty());
+        recorder.program_of(commit).map_err(refused)?;
         if let Some(recorded) = recorder.differs_from(session) {
             eprintln!(
                 "thermal-lab: {} differs from the recorded {} in comments or spaces only; the recorded file is used",
@@ -202,12 +222,6 @@ impl Run<'_> {
         let executor = Executor::new(self.session, client, people, recorder);
         let ended = executor.run(self.plan, schedule);
         eprintln!("thermal-lab: data set: {}", folder.root().display());
-        ended.map_err(|end| match end {
-            SessionEnd::Unsuitable(_) => Failure::input(anyhow!(end)),
-            SessionEnd::NotOff(_)
-            | SessionEnd::Stopped
-            | SessionEnd::Gone(_)
-            | SessionEnd::Recording(_) => Failure::run(anyhow!(end)),
-        })
+        ended.map_err(ended_early)
     }
 }

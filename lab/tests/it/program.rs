@@ -361,3 +361,24 @@ fn a_file_of_an_earlier_measurement_is_kept() {
     assert!(replaced.status.success());
     assert!(std::fs::read_to_string(&log).unwrap().starts_with("received_s,"));
 }
+
+/// Firmware of version 0.1, which knows no courses.
+#[test]
+fn a_device_that_cannot_run_a_session_is_refused_before_a_folder_is_made() {
+    let (address, server) = device(|line| match line {
+        "id" => "ok thermal-display 0.1.0 fingers=1 tick_hz=1000 scan_hz=1000".into(),
+        _ => "ok".into(),
+    });
+    let out = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("unsuitable");
+    let _ignored = std::fs::remove_dir_all(&out);
+    let session = concat!(env!("CARGO_MANIFEST_DIR"), "/sessions/p5-real-and-simulated.toml");
+    let refused = run(&format!(
+        "run {session} --participant 01 --headless --tcp {address} --out {}",
+        out.display()
+    ));
+    let said = text(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{said}");
+    assert!(said.contains("its firmware 0.1.0 has no 'course'"), "{said}");
+    assert_eq!(server.join().unwrap(), ["id"]);
+    assert!(!out.exists());
+}

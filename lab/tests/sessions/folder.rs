@@ -22,7 +22,7 @@ pub fn with_skin_sensors(name: &str) -> (PathBuf, PathBuf) {
 }
 
 /// A new folder with this name, and in it a ready session with texts replaced.
-fn with_ready(name: &str, ready: &str, replaced: &[(&str, &str)]) -> (PathBuf, PathBuf) {
+pub fn with_ready(name: &str, ready: &str, replaced: &[(&str, &str)]) -> (PathBuf, PathBuf) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ignored = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();

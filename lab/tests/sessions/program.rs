@@ -1,12 +1,14 @@
 //! `thermal-lab run`, `analyse` and `replay` as a user starts them.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
+use thermal_session::dataset::Folder;
 
-use crate::folder::{assert_equal, contents, with_session};
+use crate::folder::{assert_equal, contents, with_ready, with_session};
 
 pub fn thermal_lab(line: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_thermal-lab"));
@@ -98,6 +100,90 @@ fn the_data_set_has_the_structure_of_bids() {
     assert!((length_s - end_s).abs() < 0.1, "{length_s} s of telemetry, {end_s} s of session");
 }
 
+/// The rows are counted anew from the telemetry. At 250 ms the ticks of the device are up to half an interval from those of the session.
+#[test]
+fn the_sidecar_of_a_recording_says_how_far_its_rows_are_from_the_telemetry() {
+    let (folder, session) = with_session("time-error");
+    let text = fs::read_to_string(&session).unwrap();
+    for stream_ms in [10, 30, 250] {
+        fs::write(&session, text.replace("stream_ms = 10", &format!("stream_ms = {stream_ms}")))
+            .unwrap();
+        let out = folder.join(format!("{stream_ms}"));
+        assert!(run(&line(&session, &out)).status.success());
+        let about = out.join("sub-01/beh/sub-01_task-p5_recording-finger0_physio.json");
+        let about: Value = serde_json::from_slice(&fs::read(about).unwrap()).unwrap();
+        let interval_s = 1e-3 * f64::from(stream_ms);
+        assert_eq!(about["SamplingFrequency"], 1.0 / interval_s);
+        assert_eq!(about["StartTime"], 0.0);
+        assert!(about["TimeErrorDescription"].is_string());
+        let said_s = about["TimeErrorMax"].as_f64().unwrap();
+        let telemetry = Folder::new(&out, "01", "p5").source("telemetry.csv");
+        let mut nearest = BTreeMap::new();
+        for row in fs::read_to_string(telemetry).unwrap().lines().skip(1) {
+            let t_s: f64 = row.split(',').next().unwrap().parse().unwrap();
+            let number = (t_s / interval_s).round();
+            nearest.entry(number as u64).or_insert((t_s - number * interval_s).abs());
+        }
+        let largest_s = nearest.into_values().fold(0.0, f64::max);
+        assert!((said_s - largest_s).abs() < 1e-4, "{stream_ms}: {said_s} s, {largest_s} s");
+        assert!(said_s <= interval_s / 2.0 + 1e-4, "{stream_ms}: {said_s} s");
+        // The stream of each trial has its own phase.
+        assert!(stream_ms < 250 || said_s > 0.01, "{stream_ms}: {said_s} s");
+    }
+}
+
+/// A device on a line that is not there, a person who is refused, answers that nobody understands, nothing to go on with.
+#[test]
+fn a_session_that_is_refused_makes_no_folder() {
+    let (folder, session) = with_session("no-folder");
+    let out = folder.join("data");
+    let simulated = line(&session, &out);
+    let at = |target: &str| simulated.replace("--simulated", target);
+    let unknown = folder.join("unknown.toml");
+    let text = fs::read_to_string(&session).unwrap();
+    let ask = "the colder material?";
+    assert!(text.contains(ask));
+    fs::write(&unknown, text.replace(ask, "the colder or warmer material?")).unwrap();
+    let missing = folder.join("missing.toml");
+    for (line, words) in [
+        (at("--port /dev/no-such-port"), "/dev/no-such-port"),
+        (at("--tcp 127.0.0.1:1"), "127.0.0.1:1"),
+        (simulated.replace(" --simulated", ""), "which device?"),
+        (simulated.replace("--participant 01", "--participant Anna"), "Anna"),
+        (format!("{simulated} --resume"), "there is no session to resume"),
+        (line(&unknown, &out), "the colder or warmer material?"),
+        (line(&missing, &out), "missing.toml"),
+    ] {
+        let refused = run(&line);
+        assert_eq!(refused.status.code(), Some(2), "{line}: {}", stderr(&refused));
+        assert!(stderr(&refused).contains(words), "{line}: {}", stderr(&refused));
+        assert!(!out.exists(), "{line}");
+    }
+}
+
+/// Against what git and the device say.
+#[test]
+fn session_json_has_the_versions_of_program_and_firmware_and_the_commit() {
+    let (folder, session) = with_session("versions");
+    let out = folder.join("data");
+    assert!(run(&line(&session, &out)).status.success());
+    let file = Folder::new(&out, "01", "p5").source("session.json");
+    let info: Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
+    assert_eq!(info["program_version"], env!("CARGO_PKG_VERSION"));
+    let head = Command::new("git").args(["rev-parse", "HEAD"]).output();
+    match head.ok().filter(|head| head.status.success()) {
+        Some(head) => {
+            let commit = info["program_commit"].as_str().unwrap();
+            let clean = commit.strip_suffix("-dirty").unwrap_or(commit);
+            assert_eq!(clean, String::from_utf8(head.stdout).unwrap().trim());
+        }
+        None => assert!(info["program_commit"].is_null()),
+    }
+    let identity = run("info --simulated --json");
+    let identity: Value = serde_json::from_slice(&identity.stdout).unwrap();
+    assert_eq!(info["devices"][0]["identity"], identity["device"]);
+}
+
 #[test]
 fn a_plan_is_printed_without_a_device() {
     let (_, session) = with_session("plan");
@@ -107,6 +193,18 @@ fn a_plan_is_printed_without_a_device() {
     let header = text.lines().next().unwrap();
     assert!(header.contains(",real,simulated,side,"), "{header}");
     assert_eq!(text.lines().count(), 1 + 8);
+}
+
+#[test]
+fn a_finger_that_is_assumed_elsewhere_than_it_rests_is_warned_about_before_the_session() {
+    let mean = [("assumed_finger = \"mean-on-pad\"", "assumed_finger = \"mean\"")];
+    for (name, replaced, is_warned) in [("pad-mean", &mean[..], true), ("pad-on-pad", &[], false)] {
+        let (_, session) = with_ready(name, "p5-real-and-simulated-contact-model", replaced);
+        let plan = run(&format!("run {} --participant 01 --plan", session.display()));
+        assert!(plan.status.success());
+        let says = "short.toml: rest.place = \"pad\" contradicts device.assumed_finger = \"mean\"";
+        assert_eq!(stderr(&plan).contains(says), is_warned, "{}", stderr(&plan));
+    }
 }
 
 #[test]

@@ -15,6 +15,7 @@ pub fn participants(task: &Task) -> Section {
     );
     section.notes.extend(task.differs.clone());
     section.warn(task.mixed.clone());
+    section.warn(task.versions.clone());
     let mut table = Table::new(
         "participants",
         "Trials by participant",

@@ -22,6 +22,7 @@ pub fn task(name: &str, stations: &[&str], answers: &[&str], analyses: &[&str]) 
         label: name.into(),
         differs: None,
         mixed: None,
+        versions: Vec::new(),
         title: format!("Experiment {name}"),
         cite: "a test".into(),
         question: Some("Which one?".into()),

@@ -39,7 +39,7 @@ pub use folder::Folder;
 pub use log::{Entry, LogLine};
 pub use participants::Exclusion;
 pub use read::RecordedSession;
-pub use recorder::{DeviceReport, Recorder, SessionInfo};
+pub use recorder::{DeviceReport, ProgramVersion, Recorder, SessionInfo};
 
 /// Why data cannot be written or read.
 #[derive(Debug, thiserror::Error)]

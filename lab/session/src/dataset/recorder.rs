@@ -1,5 +1,6 @@
 //! Records a session while it runs.
 
+use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -34,8 +35,12 @@ pub struct SessionInfo {
     pub seed: u64,
     /// Whether participant and device were simulated.
     pub is_simulated: bool,
-    /// Version of this program.
-    pub program_version: String,
+    /// The program with which it began.
+    #[serde(flatten)]
+    pub program: ProgramVersion,
+    /// Others with which it was resumed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub resumed_by: Vec<ProgramVersion>,
     /// SHA-256 of `session.toml`.
     pub session_sha256: String,
     /// SHA-256 of `plan.csv`.
@@ -47,6 +52,34 @@ pub struct SessionInfo {
     pub renamed: Vec<Renaming>,
 }
 
+/// A version of this program.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ProgramVersion {
+    /// Version of the package.
+    #[serde(rename = "program_version")]
+    pub version: String,
+    /// Commit of git from which it was built, which ends with `-dirty` if files were changed since; `None` if it is not known.
+    #[serde(rename = "program_commit", default)]
+    pub commit: Option<String>,
+}
+
+impl ProgramVersion {
+    /// This version, built from this commit.
+    fn of_commit(commit: Option<&str>) -> Self {
+        Self { version: env!("CARGO_PKG_VERSION").into(), commit: commit.map(Into::into) }
+    }
+}
+
+impl fmt::Display for ProgramVersion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.version)?;
+        match &self.commit {
+            Some(commit) => write!(f, " of commit {commit}"),
+            None => Ok(()),
+        }
+    }
+}
+
 impl SessionInfo {
     /// The code with which the plan was drawn: that which the participant had when the session was begun.
     pub fn plan_code(&self) -> &str {
@@ -56,6 +89,19 @@ impl SessionInfo {
     /// Whether the last change of the code was this one.
     pub(super) fn was_renamed(&self, old: &str, new: &str) -> bool {
         self.renamed.last().is_some_and(|last| last.from == old && last.to == new)
+    }
+
+    /// The programs with which it was recorded.
+    pub fn programs(&self) -> impl Iterator<Item = String> {
+        [&self.program].into_iter().chain(&self.resumed_by).map(ToString::to_string)
+    }
+
+    /// Names and versions of the firmware of its devices.
+    pub fn firmware(&self) -> impl Iterator<Item = String> {
+        let word = |device: &Value, key: &str| device["identity"][key].as_str().map(str::to_owned);
+        self.devices.iter().filter_map(move |device| {
+            Some(format!("{} {}", word(device, "name")?, word(device, "version")?))
+        })
     }
 
     /// Whether participant and device were simulated, or the device was simulated by another program.
@@ -154,7 +200,8 @@ impl Recorder {
             participant: folder.participant().into(),
             seed,
             is_simulated,
-            program_version: env!("CARGO_PKG_VERSION").into(),
+            program: ProgramVersion::of_commit(None),
+            resumed_by: Vec::new(),
             session_sha256: sha256(session.text.as_bytes()),
             plan_sha256: sha256(plan_csv.as_bytes()),
             devices: Vec::new(),
@@ -268,6 +315,20 @@ impl Recorder {
         let end_s = self.records.last().map_or(0.0, |record| record.end_s);
         // Times are recorded in steps of 0.1 ms.
         (end_s * 1e4).round() as i64 * 100_000
+    }
+
+    /// Takes note of the commit from which the program was built that begins or resumes the session.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn program_of(&mut self, commit: Option<&str>) -> Result<(), RecordingError> {
+        let program = ProgramVersion::of_commit(commit);
+        if self.records.is_empty() {
+            self.info.program = program;
+        } else if *self.info.resumed_by.last().unwrap_or(&self.info.program) != program {
+            self.info.resumed_by.push(program);
+        }
+        write_whole(&self.folder.source(INFO), &pretty(&self.info))
     }
 
     /// Takes note of what the device says of itself.

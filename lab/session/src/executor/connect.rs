@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use thermal_client::client::{
-    ClientError, PlainCommand, QueryBoard, QueryCause, QueryIdentity, QueryState,
+    Client, ClientError, Identity, PlainCommand, QueryBoard, QueryCause, QueryIdentity, QueryState,
 };
 use thermal_client::commissioning::settings;
 use thermal_client::link::Link;
@@ -13,7 +13,7 @@ use super::fingers::Fingers;
 use super::{Executor, SessionEnd};
 use crate::dataset::DeviceReport;
 use crate::planned_dose::decay_before_s;
-use crate::{OperatorQuestion, Plan, PlannedTrial, Presented, Update};
+use crate::{OperatorQuestion, Plan, PlannedTrial, Presented, Session, Update};
 
 /// What the firmware must be able to do.
 const NEEDED: [&str; 2] = ["course", "checksum"];
@@ -21,28 +21,7 @@ const NEEDED: [&str; 2] = ["course", "checksum"];
 impl<L: Link> Executor<'_, L> {
     /// Asks the device who it is, stores that with its settings, and lets the operator clear a fault.
     pub(super) fn connect(&mut self, plan: &Plan) -> Result<(), SessionEnd> {
-        let identity = self.client.ask(&QueryIdentity).map_err(ends)?;
-        if let Some(missing) = NEEDED.iter().find(|word| !identity.can(word)) {
-            return Err(SessionEnd::Unsuitable(format!(
-                "its firmware {} has no '{missing}'; flash a current one",
-                identity.version
-            )));
-        }
-        let stations = plan.trials.iter().flat_map(|trial| &trial.presented);
-        let displays: BTreeSet<u8> = stations.filter_map(Presented::device_finger).collect();
-        let sensors = plan.trials.iter().map(|trial| self.session.skin_sensors(trial));
-        let needed = [
-            ("it presents something on", displays.last().copied()),
-            ("it measures the skin by", sensors.flatten().max()),
-        ];
-        for (what, last) in needed {
-            if let Some(last) = last.filter(|last| *last >= identity.fingers) {
-                return Err(SessionEnd::Unsuitable(format!(
-                    "{what} finger {last} of the device, which has {}, counted from 0",
-                    identity.fingers
-                )));
-            }
-        }
+        let identity = check_device(&mut self.client, self.session, plan)?;
         let (mut all_settings, mut has_flux_sensor) = (Vec::new(), Vec::new());
         for finger in 0..identity.fingers {
             let address = (identity.fingers > 1).then_some(finger);
@@ -58,9 +37,6 @@ impl<L: Link> Executor<'_, L> {
         let settings = all_settings;
         let report = DeviceReport { identity, is_simulated, settings, has_flux_sensor };
         self.recorder.device(&report)?;
-        for finger in displays {
-            self.require_tuned(finger)?;
-        }
         // Another program may have left it driven.
         self.switch_off()?;
         self.clear_trips(None)?;
@@ -135,18 +111,6 @@ impl<L: Link> Executor<'_, L> {
         self.wait_between_trials(until_s)
     }
 
-    /// Refuses a tile that was never tuned, whose set-points move too slowly for what a session presents.
-    fn require_tuned(&mut self, finger: u8) -> Result<(), SessionEnd> {
-        let address = self.fingers.address(finger);
-        let status = self.client.ask_finger(address, &QueryState).map_err(ends)?;
-        match status.is_tuned {
-            Some(false) => Err(SessionEnd::Unsuitable(format!(
-                "the tile of its finger {finger} was never tuned, so that it moves by 1 K/s only; commission it first (thermal-lab commission)"
-            ))),
-            Some(true) | None => Ok(()),
-        }
-    }
-
     /// The fault by which a finger of the device has tripped.
     fn fault_of(&mut self, finger: u8) -> Result<Option<Fault>, SessionEnd> {
         let address = self.fingers.address(finger);
@@ -169,6 +133,49 @@ impl<L: Link> Executor<'_, L> {
             )
         }))
     }
+}
+
+/// Refuses a device that cannot run a session, before anything is recorded.
+///
+/// # Errors
+/// Its firmware lacks something, it has too few fingers, a tile that is used was never tuned, or it does not answer.
+pub fn check_device<L: Link>(
+    client: &mut Client<L>,
+    session: &Session,
+    plan: &Plan,
+) -> Result<Identity, SessionEnd> {
+    let identity = client.ask(&QueryIdentity).map_err(ends)?;
+    if let Some(missing) = NEEDED.iter().find(|word| !identity.can(word)) {
+        return Err(SessionEnd::Unsuitable(format!(
+            "its firmware {} has no '{missing}'; flash a current one",
+            identity.version
+        )));
+    }
+    let stations = plan.trials.iter().flat_map(|trial| &trial.presented);
+    let displays: BTreeSet<u8> = stations.filter_map(Presented::device_finger).collect();
+    let sensors = plan.trials.iter().map(|trial| session.skin_sensors(trial));
+    let needed = [
+        ("it presents something on", displays.last().copied()),
+        ("it measures the skin by", sensors.flatten().max()),
+    ];
+    for (what, last) in needed {
+        if let Some(last) = last.filter(|last| *last >= identity.fingers) {
+            return Err(SessionEnd::Unsuitable(format!(
+                "{what} finger {last} of the device, which has {}, counted from 0",
+                identity.fingers
+            )));
+        }
+    }
+    // Set-points of a tile that was never tuned move too slowly for what a session presents.
+    for finger in displays {
+        let address = (identity.fingers > 1).then_some(finger);
+        if client.ask_finger(address, &QueryState).map_err(ends)?.is_tuned == Some(false) {
+            return Err(SessionEnd::Unsuitable(format!(
+                "the tile of its finger {finger} was never tuned, so that it moves by 1 K/s only; commission it first (thermal-lab commission)"
+            )));
+        }
+    }
+    Ok(identity)
 }
 
 /// What a question without an answer means for the session.

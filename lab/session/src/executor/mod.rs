@@ -24,6 +24,7 @@ use crate::record::TrialRecord;
 use crate::schedule::{Next, Schedule};
 use crate::{Decision, OperatorQuestion, People, Phase, Plan, Procedure, Session, Update};
 
+pub use connect::check_device;
 use fingers::Fingers;
 use trial::RunningTrial;
 

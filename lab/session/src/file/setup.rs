@@ -122,7 +122,7 @@ pub(super) fn stations<'a>(file: &Value<'a>) -> Result<Stations<'a>, SessionErro
 }
 
 /// Columns of recorded tables, and keys, which no factor and no station may be named after.
-pub(super) const RESERVED: [&str; 30] = [
+pub(super) const RESERVED: [&str; 31] = [
     "answer",
     "attempt",
     "block",
@@ -148,6 +148,7 @@ pub(super) const RESERVED: [&str; 30] = [
     "staircase",
     "stim_file",
     "target_force",
+    "target_force_n",
     "touch_cue",
     "touches",
     "trial",

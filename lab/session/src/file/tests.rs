@@ -108,12 +108,12 @@ fn a_wrong_file_is_answered_with_line_mistake_and_what_is_allowed() {
             (
                 "[stations.right]",
                 "[stations.trial]",
-                "s.toml:20: stations.trial: allowed as a name is 1 to 40 letters, digits and _, with a small letter first, and none of answer, attempt, block, break_before, by, contact, correct, duration, expected, land, level_k, lift, onset, part, participant, participant_id, reach_cue, reason, response, response_time, room, sample, staircase, stim_file, target_force, touch_cue, touches, trial, trial_type, void",
+                "s.toml:20: stations.trial: allowed as a name is 1 to 40 letters, digits and _, with a small letter first, and none of answer, attempt, block, break_before, by, contact, correct, duration, expected, land, level_k, lift, onset, part, participant, participant_id, reach_cue, reason, response, response_time, room, sample, staircase, stim_file, target_force, target_force_n, touch_cue, touches, trial, trial_type, void",
             ),
             (
                 "[stations.right]",
                 "[stations.real-right]",
-                "s.toml:20: stations.real-right: allowed as a name is 1 to 40 letters, digits and _, with a small letter first, and none of answer, attempt, block, break_before, by, contact, correct, duration, expected, land, level_k, lift, onset, part, participant, participant_id, reach_cue, reason, response, response_time, room, sample, staircase, stim_file, target_force, touch_cue, touches, trial, trial_type, void",
+                "s.toml:20: stations.real-right: allowed as a name is 1 to 40 letters, digits and _, with a small letter first, and none of answer, attempt, block, break_before, by, contact, correct, duration, expected, land, level_k, lift, onset, part, participant, participant_id, reach_cue, reason, response, response_time, room, sample, staircase, stim_file, target_force, target_force_n, touch_cue, touches, trial, trial_type, void",
             ),
             (
                 "finger = \"right index\"",
@@ -223,7 +223,7 @@ fn a_wrong_file_is_answered_with_line_mistake_and_what_is_allowed() {
             (
                 "factors.real = [\"copper\", \"foam\"]",
                 "factors.block = [\"copper\", \"foam\"]",
-                "s.toml:52: design.factors.block: \"block\" is a factor; allowed is as a name 1 to 40 letters, digits and _, with a small letter first, and none of answer, attempt, block, break_before, by, contact, correct, duration, expected, land, level_k, lift, onset, part, participant, participant_id, reach_cue, reason, response, response_time, room, sample, staircase, stim_file, target_force, touch_cue, touches, trial, trial_type, void",
+                "s.toml:52: design.factors.block: \"block\" is a factor; allowed is as a name 1 to 40 letters, digits and _, with a small letter first, and none of answer, attempt, block, break_before, by, contact, correct, duration, expected, land, level_k, lift, onset, part, participant, participant_id, reach_cue, reason, response, response_time, room, sample, staircase, stim_file, target_force, target_force_n, touch_cue, touches, trial, trial_type, void",
             ),
             (
                 "random = { side = ",

@@ -1,5 +1,6 @@
 //! Data sets with files that were copied, renamed, damaged or changed after the recording.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -328,4 +329,39 @@ fn a_line_that_was_not_written_to_its_end_is_no_damage() {
     let found = recorded_sessions(&recorded.root).expect("a data set");
     assert_eq!(found.sessions[0].records.len(), TRIALS);
     assert!(found.sessions[0].remarks.is_empty());
+}
+
+/// Whatever the tables of a data set and their sidecars call something, and HED, which the validator of BIDS takes for its annotation.
+#[test]
+fn no_factor_and_no_station_has_the_name_of_a_column_of_the_tables_or_of_a_key_of_bids() {
+    let recorded = Recorded::new("names", &["01"]);
+    let read = |name: &str| fs::read_to_string(recorded.root.join(name)).expect(name);
+    let events = read("sub-01/beh/sub-01_task-p1_events.tsv");
+    let plan = read("sourcedata/sub-01/task-p1/plan.csv");
+    let sidecar: serde_json::Value =
+        serde_json::from_str(&read("sub-01/beh/sub-01_task-p1_events.json")).expect("JSON");
+    let names: BTreeSet<&str> = (events.lines().next().expect("a header").split('\t'))
+        .chain(plan.lines().next().expect("a header").split(','))
+        .chain(sidecar.as_object().expect("an object").keys().map(String::as_str))
+        .chain(["HED", "TaskName", "Instructions", "left_presented", "right_skin_fall"])
+        .collect();
+    assert!(names.len() > 50, "{names:?}");
+    let text = ready("p5-real-and-simulated").text;
+    let parsed = |from: &str, to: String| {
+        assert!(text.contains(from), "{from}");
+        Session::parse(&text.replace(from, &to), Path::new("s.toml"))
+    };
+    // What the session itself calls a factor of its pairs is refused as a second one of that name.
+    for name in names.into_iter().filter(|name| !["first", "second", "side"].contains(name)) {
+        let random = "random = { side =";
+        let error = parsed(random, format!("random = {{ {name} =")).expect_err(name).to_string();
+        assert!(error.contains(&format!("{name:?} is a factor; allowed is")), "{name}: {error}");
+        let is_of_station = name.starts_with("left") || name.starts_with("right");
+        if !is_of_station {
+            let error = parsed("[stations.left]", format!("[stations.{name}]"));
+            let error = error.expect_err(name).to_string();
+            let says = format!("stations.{name}: allowed as a name is");
+            assert!(error.contains(&says), "{name}: {error}");
+        }
+    }
 }

@@ -367,3 +367,37 @@ fn p14_has_materials_of_its_own() {
         .count();
     assert_eq!(same, 24);
 }
+
+/// By the defaults of docs/sessions.md, `mean` and `pad` contradict each other, too.
+#[test]
+fn a_finger_that_is_assumed_elsewhere_than_it_rests_is_found_and_no_ready_session_has_one() {
+    for entry in std::fs::read_dir(folder()).expect("the ready sessions") {
+        let path = entry.expect("an entry").path();
+        let session = Session::read(&path).expect("a session");
+        assert_eq!(session.contradiction_of_finger_and_rest(), None, "{}", path.display());
+    }
+    let name = "p5-real-and-simulated-contact-model";
+    let found = |finger: &str, place: &str| {
+        let text = ready(name).text;
+        let (old_finger, old_place) = ("assumed_finger = \"mean-on-pad\"", "place = \"pad\"");
+        assert!(text.contains(old_finger) && text.contains(old_place));
+        let text = text.replace(old_finger, finger).replace(old_place, place);
+        let session = Session::parse(&text, Path::new(name)).expect("a session");
+        session.contradiction_of_finger_and_rest().unwrap_or_default()
+    };
+    let mean = "assumed_finger = \"mean\"";
+    let on_pad = "rest.place = \"pad\" contradicts device.assumed_finger = \"mean\"; without \"mean-on-pad\" the skin";
+    assert!(found(mean, "place = \"pad\"").starts_with(on_pad));
+    assert!(found("", "").starts_with(on_pad));
+    let in_air = found("assumed_finger = \"mean-on-pad\"", "place = \"air\"");
+    assert!(
+        in_air.starts_with(
+            "rest.place = \"air\" contradicts device.assumed_finger = \"mean-on-pad\""
+        )
+    );
+    for (finger, place) in
+        [(mean, "air"), (mean, "display"), ("assumed_finger = \"thesis\"", "pad")]
+    {
+        assert_eq!(found(finger, &format!("place = {place:?}")), "", "{finger} {place}");
+    }
+}
