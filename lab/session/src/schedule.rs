@@ -18,15 +18,15 @@ pub struct Schedule<'a> {
     queue: VecDeque<usize>,
     /// Number of attempts at each trial so far.
     attempts: Vec<u32>,
-    /// Number of those in which nothing was presented.
+    /// Number of attempts at each trial in which nothing was presented.
     unpresented: Vec<u32>,
     staircases: Vec<Staircase>,
     /// Numbers of the trials that were void too many times.
     given_up: Vec<u32>,
 }
 
-/// Most attempts at a trial in which nothing was presented; they do not count as attempts, but a trial that can never be presented
-/// must end.
+/// Number of attempts without a presentation after which a trial is left out. They do not count towards `attempts_max`, so without this
+/// limit a trial that can never be presented would be repeated for ever.
 const UNPRESENTED_MAX: u32 = 10;
 
 /// The next trial.

@@ -44,9 +44,9 @@ pub enum ClientError {
     /// The device has accepted `abort`, and a finger's state is still one in which its bridge is driven.
     #[error("'abort' was accepted, but finger {finger} is in state {state}")]
     StillDriven {
-        /// The finger, from 0.
+        /// Finger, counted from 0.
         finger: u8,
-        /// Its state.
+        /// Word of the state that this finger reports.
         state: &'static str,
     },
     /// The device has not confirmed that its bridges are off.
@@ -54,7 +54,7 @@ pub enum ClientError {
         "THE BRIDGE MAY STILL BE ON: 'abort' was not confirmed ({why}). PRESS THE EMERGENCY STOP"
     )]
     NotOff {
-        /// What happened in its place.
+        /// What happened in place of a confirmation.
         why: String,
     },
     /// The line cannot be sent.

@@ -18,7 +18,8 @@ use super::fields::{
     state_word,
 };
 
-/// Most fingers of a device. A damaged number would let a client wait for fingers that are not there, or for none.
+/// Largest number of fingers that a device can have. The answer to `id` may be damaged before checksums are on, and a client loops over
+/// the number in it.
 const FINGERS_MAX: u8 = 5;
 
 /// Answer to `id`.

@@ -8,9 +8,9 @@ use super::telemetry::Telemetry;
 /// A column of recorded telemetry: a field of a line.
 #[derive(Clone, Copy, Debug)]
 pub struct TelemetryColumn {
-    /// What is measured.
+    /// Quantity that the column holds, without a unit, as `display`.
     pub quantity: &'static str,
-    /// The same with its unit, as tables name it.
+    /// Name of the column in tables: the quantity with its unit, as `display_c`.
     pub name: &'static str,
     /// Unit as BIDS writes it; empty for a count or a word.
     pub unit: &'static str,

@@ -45,7 +45,7 @@ pub enum ChangeError {
         root: PathBuf,
         /// The code that was given.
         code: String,
-        /// Those with data.
+        /// Codes of the participants that have data.
         known: Vec<String>,
     },
     /// There is a participant with the new code.

@@ -138,7 +138,8 @@ impl<L: Link> Executor<'_, L> {
 /// Refuses a device that cannot run a session, before anything is recorded.
 ///
 /// # Errors
-/// Its firmware lacks something, it has too few fingers, a tile that is used was never tuned, or it does not answer.
+/// The firmware lacks a capability, the device has too few fingers, a tile that the session uses was never tuned, or the device does
+/// not answer.
 pub fn check_device<L: Link>(
     client: &mut Client<L>,
     session: &Session,

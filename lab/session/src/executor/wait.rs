@@ -21,7 +21,7 @@ impl<L: Link> Executor<'_, L> {
         self.wait_for(until_s, |_| false).map(|_| ())
     }
 
-    /// Lets time pass until a time of the session, s, whatever the device does meanwhile: nothing is presented.
+    /// Waits until a time of the session, s. A trip or missing telemetry voids nothing, because nothing is presented between trials.
     pub(super) fn wait_between_trials(&mut self, until_s: f64) -> Result<(), SessionEnd> {
         loop {
             match self.wait_until(until_s) {
