@@ -242,7 +242,8 @@ impl TestBench {
     }
 
     /// Advances by one tick, and asserts that its set-point is `wanted_c`; under a plain law within its limits: 17 to 41 °C, and
-    /// not faster towards 43 °C than with 7 effective dead times, towards 14 °C than with 14. Returns whether they did not matter.
+    /// not faster towards 43 °C than with 7 effective dead times, towards 14 °C than with 14, unless that is faster than 5 K/s. Returns
+    /// whether they did not matter.
     #[track_caller]
     fn assert_setpoint(&mut self, wanted_c: f64) -> bool {
         let mut limited_c = wanted_c;
@@ -250,8 +251,9 @@ impl TestBench {
             let last_c = self.last_setpoint_c.unwrap_or(self.display_c);
             let Tile { sensor_lag_s, dead_time_s, .. } = Tile::FACTORY_DEFAULT;
             let dead_time_ms = 1e3 * (sensor_lag_s + dead_time_s + 0.05);
-            let lowest_c = last_c + (14.0 - last_c) / (14.0 * dead_time_ms);
-            let highest_c = last_c + (43.0 - last_c) / (7.0 * dead_time_ms);
+            let [cold_ms, warm_ms] = [14.0, 7.0].map(|times| times * dead_time_ms);
+            let lowest_c = (last_c + (14.0 - last_c) / cold_ms).min(14.0 + 5e-3 * cold_ms);
+            let highest_c = (last_c + (43.0 - last_c) / warm_ms).max(43.0 - 5e-3 * warm_ms);
             limited_c = wanted_c.clamp(17.0, 41.0).clamp(lowest_c, highest_c);
         }
         assert_close(self.setpoint_c(), limited_c);

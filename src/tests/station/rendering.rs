@@ -21,7 +21,8 @@ pub(super) fn assert_follows_new_contact(
     bench.force_n = 0.0;
     let preset = bench.contact(material, object_c);
     let preset_c = preset.skin_c - preset.ratio * (preset.skin_c - object_c);
-    bench.steps(2);
+    // The lift is found in the seventh tick.
+    bench.steps(6);
     bench.assert_reaches_setpoint(preset_c);
     bench.force_n = force_n;
     bench.assert_setpoint(preset_c);

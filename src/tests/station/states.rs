@@ -71,6 +71,7 @@ fn every_transition_of_the_state_diagram_is_taken() {
 #[test]
 fn a_start_in_the_wrong_state_is_refused_and_changes_nothing() {
     let mut bench = TestBench::new();
+    bench.plate_responds = true;
     bench.send_ok(&["arm"]);
     assert_eq!(bench.send("start"), "err start needs a material first");
     assert_eq!(bench.state(), StateName::Armed);
