@@ -6,6 +6,7 @@ use anyhow::{Context, Result};
 
 use crate::memory_usage::{Memory, Usage};
 use crate::process::{Invocation, workspace};
+use crate::program_digest;
 use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 
 const PROFILE: &str = "firmware";
@@ -121,7 +122,7 @@ pub fn clippy_of_tests(toolchain: &Toolchain) -> Invocation {
     tests(toolchain, "clippy").args(["--", "-Dwarnings"])
 }
 
-/// Path, flash and RAM use of the built image.
+/// Path, digest, flash and RAM use of the built image.
 pub fn describe(toolchain: &Toolchain, fingers: Fingers) -> Result<String> {
     let path = elf(toolchain, fingers);
     let read =
@@ -129,9 +130,15 @@ pub fn describe(toolchain: &Toolchain, fingers: Fingers) -> Result<String> {
     let script = workspace().join("memory.x");
     let memory = Memory::parse(&String::from_utf8_lossy(&read(&script)?))
         .with_context(|| format!("in {}", script.display()))?;
-    let usage =
-        Usage::of_elf(&read(&path)?, &memory).with_context(|| format!("in {}", path.display()))?;
-    Ok(format!("image  {}\n{}", path.display(), usage.against(&memory)))
+    let image = read(&path)?;
+    let within = || format!("in {}", path.display());
+    let usage = Usage::of_elf(&image, &memory).with_context(within)?;
+    let digest = program_digest::of_elf(&image).with_context(within)?;
+    let usage = usage.against(&memory);
+    Ok(format!(
+        "image  {}\n       program={digest:08x}, as `board` answers\n{usage}",
+        path.display()
+    ))
 }
 
 /// `cargo xtask firmware`

@@ -15,6 +15,7 @@ mod memory_usage;
 mod mutations;
 mod on_target;
 mod process;
+mod program_digest;
 mod proof;
 mod report;
 mod setup;

@@ -1,6 +1,7 @@
 //! The peripherals, their connections inside the chip, and their events in order of time. Independent of the CPU emulation;
 //! register accesses enter through `chip/bus.rs`.
 use super::adc::{self, Adc, Trigger};
+use super::crc::Crc;
 use super::dac::Dac;
 use super::dma::{self, Dma, Route, Served};
 use super::exti::{Exti, lines};
@@ -90,6 +91,7 @@ pub(crate) struct Chip<W> {
     dma: [Dma; 2],
     adcs: [Adc; 2],
     dac: Dac,
+    crc: Crc,
     tims: [Tim; TIMERS],
     usart: Usart,
     /// Rate of the internal low-speed oscillator, which differs from chip to chip.
@@ -147,6 +149,7 @@ impl<W: Wiring> Chip<W> {
             dma: [Dma::new(1), Dma::new(2)],
             adcs: [adc::Unit::Adc1, adc::Unit::Adc2].map(|unit| Adc::new(unit, 1, HSI_HZ)),
             dac: Dac::default(),
+            crc: Crc::default(),
             tims: kinds.map(|kind| Tim::new(kind, 1)),
             usart: Usart::new(1, HSI_HZ, HOST_BAUD),
             lsi_hz: state.lsi_hz,

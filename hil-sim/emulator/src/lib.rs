@@ -7,6 +7,7 @@ mod build;
 mod chip;
 mod cost;
 mod cpu_setup;
+mod crc;
 mod dac;
 mod debugger;
 mod dma;

@@ -282,6 +282,7 @@ fn versions_of_program_and_firmware_that_differ_in_a_data_set_are_said_with_who_
     assert_eq!(said(&sessions), [""; 0]);
     sessions[1].info.resumed_by =
         vec![ProgramVersion { version: "0.2.0".into(), commit: Some("1a2b3c".into()) }];
+    sessions[0].info.devices[0]["program"] = "0123abcd".into();
     sessions[2].info.devices = vec![device("0.1.0")];
     let task = &session.task;
     assert_eq!(
@@ -292,8 +293,8 @@ fn versions_of_program_and_firmware_that_differ_in_a_data_set_are_said_with_who_
                  commit 1a2b3c: P2 ({task})."
             ),
             format!(
-                "The data set was recorded with 2 versions of firmware. thermal-display 0.1.0: P3 ({task}); thermal-display 0.2.0: \
-                 P1 ({task}), P2 ({task})."
+                "The data set was recorded with 3 versions of firmware. thermal-display 0.1.0: P3 ({task}); thermal-display 0.2.0: \
+                 P2 ({task}); thermal-display 0.2.0 (program 0123abcd): P1 ({task})."
             ),
         ]
     );

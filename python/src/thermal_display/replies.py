@@ -371,6 +371,8 @@ class BoardReport:
     """Lines of telemetry that the device dropped because the line was too slow."""
     uid: str | None
     """Unique identifier of the microcontroller."""
+    program: str | None
+    """Digest of the program in its flash, which tells one build from another, in hexadecimal digits; `None` if it has none."""
 
     @property
     def simulated(self) -> bool:
@@ -390,6 +392,7 @@ class BoardReport:
             rx_noise=reply.integer("rx_noise"),
             tx_dropped=reply.integer("tx_dropped"),
             uid=reply.optional("uid"),
+            program=reply.optional("program"),
         )
 
 

@@ -42,6 +42,7 @@ mod late_clock;
 pub mod line_losses;
 #[cfg(not(feature = "five-fingers"))]
 mod one_finger;
+mod program_digest;
 mod pwm_settings;
 mod requested_restart;
 pub(crate) mod reset_cause;
@@ -355,6 +356,7 @@ impl Board {
                 clock_is_external: has_clock,
                 reset: reset.name(),
                 unique_id: unique_id::unique_id(),
+                program_digest: Some(program_digest::program_digest(peripherals.CRC, &mut rcc)),
                 ..BoardStatus::default()
             },
         };

@@ -28,6 +28,8 @@ pub struct BoardStatus {
     pub telemetry_dropped: u32,
     /// Unique identifier of the microcontroller, in words. The default is no chip's.
     pub unique_id: [u32; 3],
+    /// CRC-32 of the program in flash, which tells one build from another; `None` where no flash holds it.
+    pub program_digest: Option<u32>,
 }
 
 impl Default for BoardStatus {
@@ -43,6 +45,7 @@ impl Default for BoardStatus {
             receive_noise: 0,
             telemetry_dropped: 0,
             unique_id: [0; 3],
+            program_digest: None,
         }
     }
 }
@@ -59,6 +62,7 @@ impl fmt::Display for BoardStatus {
             receive_noise,
             telemetry_dropped,
             unique_id,
+            program_digest,
             ..
         } = self;
         let watchdogs = if self.watchdogs_may_freeze { "frozen" } else { "running" };
@@ -68,6 +72,7 @@ impl fmt::Display for BoardStatus {
         write!(f, " rx_overruns={receive_overruns} rx_framing={receive_framing_errors}")?;
         write!(f, " rx_noise={receive_noise} tx_dropped={telemetry_dropped} uid=")?;
         let mut bytes = unique_id.iter().flat_map(|word| word.to_be_bytes());
-        bytes.try_for_each(|byte| TwoHexDigits(byte).fmt(f))
+        bytes.try_for_each(|byte| TwoHexDigits(byte).fmt(f))?;
+        program_digest.map_or(Ok(()), |digest| write!(f, " program={digest:08x}"))
     }
 }

@@ -346,11 +346,12 @@ fn the_longest_status_of_a_board_fits_an_answer() {
         receive_noise: u32::MAX,
         telemetry_dropped: u32::MAX,
         unique_id: [0x0023_0041, 0x5132_5013, 0x2032_364e],
+        program_digest: Some(0x0123_abcd),
         ..BoardStatus::default()
     };
     let answer = Reply::Board(status).to_string();
     assert!(answer.len() <= ANSWER_MAX_BYTES, "{answer}");
-    assert!(answer.ends_with(" uid=00230041513250132032364E"), "{answer}");
+    assert!(answer.ends_with(" uid=00230041513250132032364E program=0123abcd"), "{answer}");
 }
 
 #[test]

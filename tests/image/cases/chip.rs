@@ -1,8 +1,9 @@
 //! What the release image does when the microcontroller or its board is not as it should be: option bytes, clock, debugger,
 //! PWM settings, internal oscillator, serial line.
 
+use crc::{CRC_32_MPEG_2, Crc};
 use image_tests::{Bare, START, image};
-use stm32_emulator::Firmware;
+use stm32_emulator::{FLASH_BASE, Firmware};
 use system_tests::flash::erased;
 use thermal_sim::processor::{ChipState, ResetCause};
 
@@ -41,13 +42,24 @@ fn reset_causes(device: &Bare) -> Vec<ResetCause> {
     device.0.resets().iter().map(|reset| reset.cause).collect()
 }
 
+/// CRC-32/MPEG-2 of the program's words, each from its most significant byte on.
+fn program_digest(firmware: &Firmware) -> u32 {
+    let place = |name| (firmware.symbol(name).expect("in memory.x") - FLASH_BASE) as usize;
+    let (words, _) = firmware.flash()[place("_stext")..place("_program_end")].as_chunks::<4>();
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.iter().rev().copied()).collect();
+    Crc::<u32>::new(&CRC_32_MPEG_2).checksum(&bytes)
+}
+
 #[test]
 fn a_prepared_board_reports_that_it_is() {
     let mut device = started(&ChipState::default());
+    let program = program_digest(&Firmware::from_file(image()).unwrap());
     assert_eq!(
         device.answer("board"),
-        "ok bor=3 watchdogs=running clock=hse pwm_lock=3 reset=power-on rx_overruns=0 rx_framing=0 rx_noise=0 \
-         tx_dropped=0 uid=53494D550046001400460018"
+        format!(
+            "ok bor=3 watchdogs=running clock=hse pwm_lock=3 reset=power-on rx_overruns=0 rx_framing=0 rx_noise=0 \
+         tx_dropped=0 uid=53494D550046001400460018 program={program:08x}"
+        )
     );
 }
 

@@ -4,6 +4,7 @@ use super::{
     WWDG_IRQ, WriteBuffer,
 };
 use crate::adc::Adc;
+use crate::crc::Crc;
 use crate::dac::Dac;
 use crate::dma::Dma;
 use crate::exti::lines;
@@ -20,6 +21,7 @@ use thermal_sim::processor::ResetCause;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Device {
     Gpio(usize),
+    Crc,
     Rcc,
     Flash,
     Pwr,
@@ -45,7 +47,7 @@ const ADC_CCR: u32 = 0x304;
 /// place in the reset register of that bus.
 type Peripheral = (u32, Device, Option<(Enr, u8)>);
 
-const PERIPHERALS: [Peripheral; 30] = [
+const PERIPHERALS: [Peripheral; 31] = [
     (0x4000_0000, Device::Tim(1), Some((Enr::Apb1, 0))),
     (0x4000_0400, Device::Tim(2), Some((Enr::Apb1, 1))),
     (0x4000_0800, Device::Tim(3), Some((Enr::Apb1, 2))),
@@ -72,6 +74,7 @@ const PERIPHERALS: [Peripheral; 30] = [
     (0x4002_1400, Device::Gpio(5), Some((Enr::Ahb1, 5))),
     (0x4002_1800, Device::Gpio(6), Some((Enr::Ahb1, 6))),
     (0x4002_1c00, Device::Gpio(7), Some((Enr::Ahb1, 7))),
+    (0x4002_3000, Device::Crc, Some((Enr::Ahb1, 12))),
     (0x4002_3800, Device::Rcc, None),
     (0x4002_3c00, Device::Flash, None),
     (0x4002_6000, Device::Dma(0), Some((Enr::Ahb1, 21))),
@@ -127,6 +130,7 @@ impl<W: Wiring> Chip<W> {
         }
         self.reset_device(Device::AdcCommon, now);
         self.reset_device(Device::Dac, now);
+        self.reset_device(Device::Crc, now);
         self.usart.set_clock(1, HSI_HZ);
         self.usart.reset();
         self.iwdg = Iwdg::new(self.lsi_hz);
@@ -163,6 +167,7 @@ impl<W: Wiring> Chip<W> {
                     _ => Some(levels >> bit & 1 != 0),
                 })
             }
+            Device::Crc => self.crc.read(offset),
             Device::Rcc => self.rcc.read(offset, now),
             Device::Flash if offset == 0 => Ok(self.rcc.acr()),
             Device::Flash => self.flash.read(offset, now),
@@ -250,6 +255,7 @@ impl<W: Wiring> Chip<W> {
                 self.bridge_changed(now);
                 self.sample_inputs(now);
             }
+            Device::Crc => self.crc.write(offset, value)?,
             Device::Rcc => {
                 let old = self.rcc.clocks();
                 if self.rcc.write(offset, value, now)? {
@@ -391,6 +397,7 @@ impl<W: Wiring> Chip<W> {
             // One bit resets all converters (6.3.10).
             Device::Adc(_) | Device::AdcCommon => self.adcs.iter_mut().for_each(Adc::reset),
             Device::Dac => self.dac = Dac::default(),
+            Device::Crc => self.crc = Crc::default(),
             Device::Usart2 => self.usart.reset(),
             Device::Wwdg => self.wwdg.reset(now),
             Device::Syscfg => self.exti.reset_syscfg(),

@@ -71,7 +71,7 @@ impl Bench {
     pub fn reset(&mut self) {
         self.chip.system_reset(ResetCause::PowerOn, self.now);
         for (register, clocks) in
-            [(0x4002_3830, 0x0060_00ff), (0x4002_3840, 0x3002_083f), (0x4002_3844, 0x0006_4303)]
+            [(0x4002_3830, 0x0060_10ff), (0x4002_3840, 0x3002_083f), (0x4002_3844, 0x0006_4303)]
         {
             let old = self.read(register).expect("an enable register");
             self.write(register, old | clocks).expect("modelled peripherals");

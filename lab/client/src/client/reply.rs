@@ -441,6 +441,9 @@ pub struct BoardReport {
     pub tx_dropped: u32,
     /// Unique identifier of the microcontroller, 24 hexadecimal digits; `None` from firmware that does not report it.
     pub uid: Option<String>,
+    /// Digest of the program in its flash, which tells one build from another, in hexadecimal digits; `None` from firmware that
+    /// does not report it, and from a simulated device without a flash.
+    pub program: Option<String>,
 }
 
 /// First word of the unique identifier of a simulated microcontroller: a real one has its place on the wafer there.
@@ -473,6 +476,7 @@ impl BoardReport {
             rx_noise: reply.number("rx_noise")?,
             tx_dropped: reply.number("tx_dropped")?,
             uid: reply.word("uid").map(Into::into),
+            program: reply.word("program").map(Into::into),
         })
     }
 }

@@ -403,7 +403,7 @@ fn the_answers_for_diagnosis_are_read() {
         ),
         (
             "board",
-            "ok bor=3 watchdogs=running clock=hse pwm_lock=1 reset=power rx_overruns=0 rx_framing=1 rx_noise=2 tx_dropped=3 uid=00230041513250132032364E",
+            "ok bor=3 watchdogs=running clock=hse pwm_lock=1 reset=power rx_overruns=0 rx_framing=1 rx_noise=2 tx_dropped=3 uid=00230041513250132032364E program=0123abcd",
         ),
         (
             "cause",
@@ -444,6 +444,7 @@ fn the_answers_for_diagnosis_are_read() {
         rx_noise: 2,
         tx_dropped: 3,
         uid: Some("00230041513250132032364E".into()),
+        program: Some("0123abcd".into()),
     };
     assert_eq!(client.ask(&QueryBoard).unwrap(), board);
     let flux = |text: String| FakeDevice::client(move |_| answers(&text)).ask(&QueryFlux);

@@ -96,11 +96,15 @@ impl SessionInfo {
         [&self.program].into_iter().chain(&self.resumed_by).map(ToString::to_string)
     }
 
-    /// Names and versions of the firmware of its devices.
+    /// Names and versions of the firmware of its devices, with the digest of the program where a device has told it.
     pub fn firmware(&self) -> impl Iterator<Item = String> {
         let word = |device: &Value, key: &str| device["identity"][key].as_str().map(str::to_owned);
         self.devices.iter().filter_map(move |device| {
-            Some(format!("{} {}", word(device, "name")?, word(device, "version")?))
+            let version = format!("{} {}", word(device, "name")?, word(device, "version")?);
+            Some(match device["program"].as_str() {
+                Some(digest) => format!("{version} (program {digest})"),
+                None => version,
+            })
         })
     }
 
@@ -118,6 +122,8 @@ pub struct DeviceReport {
     pub identity: Identity,
     /// Whether it is simulated, also one that is served by another program; `None` if it does not say.
     pub is_simulated: Option<bool>,
+    /// Digest of the program in its flash, in hexadecimal digits; `None` if it does not say.
+    pub program: Option<String>,
     /// Lines of the settings of each finger.
     pub settings: Vec<Vec<String>>,
     /// Whether each finger has a heat-flux sensor.

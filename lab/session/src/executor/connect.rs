@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use thermal_client::client::{
-    Client, ClientError, Identity, PlainCommand, QueryBoard, QueryCause, QueryIdentity, QueryState,
+    BoardReport, Client, ClientError, Identity, PlainCommand, QueryBoard, QueryCause,
+    QueryIdentity, QueryState,
 };
 use thermal_client::commissioning::settings;
 use thermal_client::link::Link;
@@ -29,13 +30,18 @@ impl<L: Link> Executor<'_, L> {
             has_flux_sensor.push(self.client.flux_report(address).map_err(ends)?.is_some());
         }
         self.fingers = Fingers::new(has_flux_sensor.clone());
-        let is_simulated = if identity.can("board") {
-            Some(self.client.ask(&QueryBoard).map_err(ends)?.is_simulated())
+        let board = if identity.can("board") {
+            Some(self.client.ask(&QueryBoard).map_err(ends)?)
         } else {
             None
         };
-        let settings = all_settings;
-        let report = DeviceReport { identity, is_simulated, settings, has_flux_sensor };
+        let report = DeviceReport {
+            identity,
+            is_simulated: board.as_ref().map(BoardReport::is_simulated),
+            program: board.and_then(|board| board.program),
+            settings: all_settings,
+            has_flux_sensor,
+        };
         self.recorder.device(&report)?;
         // Another program may have left it driven.
         self.switch_off()?;
