@@ -1,7 +1,7 @@
 //! `thermal-lab run`: a session with a participant, or with a simulated one.
 
 use std::io::{BufReader, stderr, stdin};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
@@ -79,17 +79,9 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let plan = Plan::new(&session, &code, arguments.seed)
         .with_context(|| arguments.session.display().to_string())
         .map_err(Failure::input)?;
-    if let Some(why) = session.contradiction_of_finger_and_rest() {
-        eprintln!("thermal-lab: warning: {}: {why}", arguments.session.display());
-    }
-    if let Some(DoseReached { trial, device_finger, plan_min }) =
-        DoseReached::in_plan(&session, &plan)
-    {
-        eprintln!(
-            "thermal-lab: warning: if every trial takes its longest time, the skin at display {device_finger} reaches the dose \
-             by which the device trips, {:.1} min (CEM43), in trial {trial}; the whole plan gives {plan_min:.2} min",
-            DoseReached::LIMIT_MIN
-        );
+    let warnings = warnings(&arguments.session, &session, &plan);
+    for warning in &warnings {
+        eprintln!("thermal-lab: warning: {warning}");
     }
     if arguments.plan {
         return print_text(&plan.csv());
@@ -113,11 +105,26 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             all.run(target, &stop, &mut people)
         }
     } else {
-        let session_view = SessionView::from(&session);
+        let session_view = SessionView { warnings, ..SessionView::from(&session) };
         window::show(&session.title, Some(session_view), &stop, |people| {
             all.run(target, &stop, people)
         })
     }
+}
+
+/// What the operator should know of the session of this file before its first trial.
+fn warnings(file: &Path, session: &Session, plan: &Plan) -> Vec<String> {
+    let finger = session.contradiction_of_finger_and_rest();
+    let finger = finger.map(|why| format!("{}: {why}", file.display()));
+    let dose = DoseReached::in_plan(session, plan).map(|reached| {
+        let DoseReached { trial, device_finger, plan_min } = reached;
+        format!(
+            "if every trial takes its longest time, the skin at display {device_finger} reaches the dose by which the device \
+             trips, {:.1} min (CEM43), in trial {trial}; the whole plan gives {plan_min:.2} min",
+            DoseReached::LIMIT_MIN
+        )
+    });
+    finger.into_iter().chain(dose).collect()
 }
 
 /// A folder that is not fit for the session is a wrong argument.

@@ -84,6 +84,7 @@ fn session_view() -> SessionView {
             feedback: false,
         },
         break_s: 60.0,
+        warnings: Vec::new(),
     }
 }
 

@@ -34,6 +34,8 @@ pub struct SessionView {
     pub rules: TrialRules,
     /// Shortest break, s.
     pub break_s: f64,
+    /// What the operator should know before the first trial, in sentences.
+    pub warnings: Vec<String>,
 }
 
 impl From<&Session> for SessionView {
@@ -44,6 +46,7 @@ impl From<&Session> for SessionView {
             rest: session.rest,
             rules: session.trial.clone(),
             break_s: session.break_s,
+            warnings: Vec::new(),
         }
     }
 }

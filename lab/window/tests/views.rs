@@ -11,7 +11,7 @@ use thermal_device::StateName;
 use thermal_device::safety::Fault;
 use thermal_session::{Cue, Decision, Phase, Response, Update};
 use thermal_window::views::{OperatorState, operator, participant, pressed};
-use thermal_window::{Action, Key, Model, NumberEntry, Order, texts};
+use thermal_window::{Action, Key, Model, NumberEntry, Order, SessionView, texts};
 
 const NOW: Duration = Duration::from_secs(2);
 
@@ -112,6 +112,20 @@ fn every_screen_of_the_operator_has_the_stop_and_names_the_emergency_stop() {
         assert_eq!(clicked, [Action::Stop]);
         assert!(screen.all().contains(texts::EMERGENCY_STOP));
     }
+}
+
+#[test]
+fn warnings_of_a_session_are_on_the_operators_screen_until_its_first_trial() {
+    let warnings = vec!["the skin reaches the dose in trial 3".into()];
+    let mut model = Model::new(Some(SessionView { warnings, ..session_view() }));
+    let is_shown = |model: &Model| {
+        let mut screen = Screen::new();
+        (0..3).for_each(|_| drop(screen.frame(vec![], draw_operator(model))));
+        screen.all().contains("the dose in trial 3")
+    };
+    assert!(is_shown(&model));
+    model.fold(&trial(), NOW);
+    assert!(!is_shown(&model));
 }
 
 #[test]

@@ -33,6 +33,11 @@ fn session(ui: &mut Ui, model: &Model, now: Duration) {
         }
         None => {}
     }
+    if let (None, Some(session)) = (model.trial(), model.session()) {
+        for warning in &session.warnings {
+            ui.label(RichText::new(warning).color(colours.warning));
+        }
+    }
     if let Some(view) = model.trial() {
         let trial = &view.trial;
         ui.label(RichText::new(format!("Trial {} of {}", trial.number, view.of)).heading());

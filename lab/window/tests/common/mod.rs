@@ -34,6 +34,7 @@ pub fn session_view() -> SessionView {
             feedback: false,
         },
         break_s: 60.0,
+        warnings: Vec::new(),
     }
 }
 

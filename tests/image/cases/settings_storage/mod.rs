@@ -80,16 +80,17 @@ fn corrupt_settings_trip_the_device_until_others_are_saved() {
     assert!(!state.contains("settings-corrupt"), "{state}");
 }
 
-/// Cycles at 16 MHz in milliseconds.
-fn start_ms(cycles: u64) -> f64 {
-    cycles as f64 / 16e3
+/// Time of a cycle of the present clock since the last reset, ms.
+fn since_reset_ms(device: &Bare, cycle: u64) -> f64 {
+    let reset = device.0.resets().last().expect("at power-on");
+    (device.0.ps_at(cycle) - reset.at_ps) as f64 / 1e9
 }
 
-/// Time from power-up to the first conversion, ms; the core runs at 16 MHz until then.
+/// Time from power-up to the first conversion, ms.
 fn first_conversion_ms(firmware: &Firmware, cells: &FlashCells) -> f64 {
     let mut device = Bare::switched_on(firmware, cells);
     device.run_until(1000, |machine| machine.wiring().converted_at > 0);
-    start_ms(device.0.wiring().converted_at)
+    since_reset_ms(&device, device.0.wiring().converted_at)
 }
 
 /// Time from the reset that a save causes to its answer, ms.
@@ -99,8 +100,7 @@ fn save_ms(firmware: &Firmware, cells: &FlashCells, number: u32) -> f64 {
         assert_eq!(device.answer(line.trim_start_matches("ok ")), "ok");
     }
     assert_eq!(device.ask("save", START), ["ok"]);
-    let reset = device.0.resets().last().expect("resets").at;
-    start_ms(device.0.wiring().sent_at - reset)
+    since_reset_ms(&device, device.0.wiring().sent_at)
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn settings_are_saved_with_the_slowest_flash() {
         assert_eq!(device.ask("save", 2 * START), ["ok"]);
         let resets: Vec<_> = (device.0.resets().iter()).map(|reset| reset.cause).collect();
         assert_eq!(resets, [ResetCause::PowerOn, ResetCause::Software]);
-        let took_ms = start_ms(device.0.wiring().sent_at - device.0.resets()[1].at);
+        let took_ms = since_reset_ms(&device, device.0.wiring().sent_at);
         assert_eq!(took_ms > 500.0, with_erase, "{took_ms} ms");
         assert!(took_ms < 1500.0, "{took_ms} ms");
         assert_eq!(device.settings(), lines(kept.as_ref()));
