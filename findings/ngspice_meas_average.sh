@@ -2,12 +2,13 @@
 # Guess: in ngspice, the AVG of a .meas statement is its INTEG over the same window divided by the window's length, and MAX is the
 # largest value within.
 #
-# Seen, with ngspice 39.3: only INTEG and FIND interpolate at the ends of the window. AVG and MAX start and end at the computed points next to
-# them: of a ramp of 1 V/ms from 0.105 to 0.205 ms, whose steps become 20 us, INTEG gives 15.5 uV s, hence 0.155 V, AVG gives
-# 0.1456 V, 6 % less, and MAX 0.1856 V where FIND gives 0.205 V at the end. AVG prints another end of its window (0.2056 ms) than asked for.
+# Seen, with ngspice 39.3: only INTEG and FIND interpolate at the ends of the window. AVG and MAX start and end at the computed points
+# next to them: of a ramp of 1 V/ms from 0.105 to 0.205 ms, whose steps become 20 us, INTEG gives 15.5 uV s, hence 0.155 V, AVG gives
+# 0.1456 V, 6 % less, and MAX 0.1856 V where FIND gives 0.205 V at the end. AVG prints another end of its window (0.2056 ms) than
+# asked for.
 #
-# Mean power of a bridge or a heater over a few switching periods is such a window. INTEG divided by the length is safe; so is a
-# step that is small against the window.
+# Mean power of a bridge or a heater over a few switching periods is such a window. INTEG divided by the length is safe; so is a step
+# that is small against the window.
 #
 # Installs nothing but ngspice itself, from Debian 12's package; its libraries are those of an installed ngspice.
 #
@@ -33,5 +34,8 @@ usr/bin/ngspice -b ramp.cir 2>/dev/null | grep -E '^(integral|average|maximum|at
 awk '
     { value[$1] = $3 }
     function is(name, expected) { return value[name] > expected * 0.9999 && value[name] < expected * 1.0001 }
-    END { if (!(is("integral", 15.5e-6) && is("average", 0.1456) && is("maximum", 0.1856) && is("at_end", 0.205))) { print "CHANGED"; exit 1 } }
+    END {
+        as_stated = is("integral", 15.5e-6) && is("average", 0.1456) && is("maximum", 0.1856) && is("at_end", 0.205)
+        if (!as_stated) { print "CHANGED"; exit 1 }
+    }
 ' seen
