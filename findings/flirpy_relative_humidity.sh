@@ -1,10 +1,10 @@
 #!/bin/sh
 # Guess: flirpy converts a thermal image with the relative humidity that the camera wrote into it, in percent.
 #
-# Seen, with flirpy 0.6.2 on Python 3.11: `raw2temp` takes 50 % as 50, a hundred times the water vapour of 0.5. It means to convert percent to
-# a fraction, but divides only numbers above 100. Half-saturated air at 20 C then holds 856 mmHg of vapour (saturated air: 17.5 mmHg),
-# and a metre of it transmits 0.958 in place of 0.996. A plate of 3.97 C, seen from 1 m, reads 2.56 C; from 0.3 m the error is 0.7 K.
-# It vanishes only where the plate has the temperature of the air.
+# Seen, with flirpy 0.6.2 on Python 3.11: `raw2temp` takes 50 % as 50, a hundred times the water vapour of 0.5. It means to convert
+# percent to a fraction, but divides only numbers above 100. Half-saturated air at 20 C then holds 856 mmHg of vapour (saturated air:
+# 17.5 mmHg), and a metre of it transmits 0.958 in place of 0.996. A plate of 3.97 C, seen from 1 m, reads 2.56 C; from 0.3 m the
+# error is 0.7 K. It vanishes only where the plate has the temperature of the air.
 #
 # Give the humidity as a fraction.
 #
