@@ -7,8 +7,8 @@
 # 0.1456 V, 6 % less, and MAX 0.1856 V where FIND gives 0.205 V at the end. AVG prints another end of its window (0.2056 ms) than
 # asked for.
 #
-# Mean power of a bridge or a heater over a few switching periods is such a window. INTEG divided by the length is safe; so is a step
-# that is small against the window.
+# Mean power of a bridge or a heater over a few switching periods is such a window. INTEG divided by the length is right in any window
+# that has a computed point; AVG is near it where the step is small against the window.
 #
 # Installs nothing but ngspice itself, from Debian 12's package; its libraries are those of an installed ngspice.
 #
