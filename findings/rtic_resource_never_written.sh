@@ -11,6 +11,7 @@
 # whole array, `&'static [T; N]`, has no such position to compute.
 #
 # The programs run in Unicorn 2.1.4 from reset until they idle, in RAM filled with 0xa5, then the task until it reads the resource.
+# The target thumbv7em-none-eabihf is added to rustup and stays there.
 #
 # Fails if the task reads something else.
 set -eu
