@@ -102,7 +102,7 @@ impl Stimulus {
     pub fn triangles(height_k: f64, rate_k_s: f64) -> Self {
         let way_s = height_k / rate_k_s;
         let corner = |way: u32| {
-            let height_k = if way % 2 == 0 { 0.0 } else { height_k };
+            let height_k = if way.is_multiple_of(2) { 0.0 } else { height_k };
             (f64::from(way) * way_s, 28.0 + height_k)
         };
         let corners: Vec<_> = (0..=20).map(corner).collect();
