@@ -5,12 +5,16 @@ use std::sync::LazyLock;
 
 mod cases;
 mod check;
+mod constants;
 mod generator;
 mod parse;
+mod prose;
 
 pub use cases::one_case_in;
 pub use check::Verdict;
+pub use constants::Constants;
 pub use generator::{GENERATORS_REQUIRED, VIRTUAL_ENVIRONMENT, python_with_mpmath, run_generator};
+pub use prose::{ResultInProse, is_head_of_records, results};
 
 /// The source of all figures.
 const TEXT: &str = include_str!("../../docs/figures.toml");

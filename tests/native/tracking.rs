@@ -27,6 +27,14 @@ fn ramps_of_1_and_5_k_s_are_followed_under_a_finger() {
 }
 
 #[test]
+fn a_course_that_turns_often_is_missed_by_more_at_its_corners() {
+    for (rate_k_s, figure) in [(4.0, "tracking.triangles_4"), (6.0, "tracking.triangles_6")] {
+        let triangles = Stimulus::triangles(3.0, rate_k_s);
+        assert_figure(figure, worst_mk(&triangles, TouchingFinger::Thesis));
+    }
+}
+
+#[test]
 fn a_step_is_overshot_little() {
     assert_figure("tracking.step_10", worst_mk(&Stimulus::step(10.0), TouchingFinger::Thesis));
 }

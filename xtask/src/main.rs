@@ -153,7 +153,7 @@ enum Task {
         #[command(flatten)]
         options: fuzz::Options,
     },
-    /// Write the figures of docs/figures.toml into the documents
+    /// Write the figures of docs/figures.toml into the pages; fail at results in prose that no test asserts and no commit dates
     Docs {
         /// Write nothing; fail if a document differs, or if no test asserts a figure
         #[arg(long)]

@@ -1,4 +1,4 @@
-//! Measurements in the emulator: the longest tick and the deepest stack over the scenes.
+//! Measurements in the emulator: the longest tick and the deepest stack over the scenes, beside the stack's proven bound.
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
@@ -50,8 +50,9 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
     section.lines.push(format!("{} scenes; {available} cycles are there for a tick", all.len()));
     let Section { lines, violations, differences, .. } = &mut section;
     let hand = if fingers == 1 { "one" } else { "five" };
+    let proven = (u64::from(bound), "proven");
     for (what, (value, scene)) in
-        [("instructions", instructions), ("cycles", cycles), ("stack", stack)]
+        [("instructions", instructions), ("cycles", cycles), ("stack", stack), ("bound", proven)]
     {
         let figure = figure(&format!("proof.{what}_{hand}"));
         lines.push(format!("{value} {} ({scene}), {figure}", figure.unit));

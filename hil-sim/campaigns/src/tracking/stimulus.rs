@@ -98,6 +98,17 @@ impl Stimulus {
         )
     }
 
+    /// Ten triangles from 28 °C up, so many kelvin high, at a rate, K/s.
+    pub fn triangles(height_k: f64, rate_k_s: f64) -> Self {
+        let way_s = height_k / rate_k_s;
+        let corner = |way: u32| {
+            let height_k = if way.is_multiple_of(2) { 0.0 } else { height_k };
+            (f64::from(way) * way_s, 28.0 + height_k)
+        };
+        let corners: Vec<_> = (0..=20).map(corner).collect();
+        Self::played(format!("triangles of {height_k} K at {rate_k_s} K/s"), &corners)
+    }
+
     /// The surface of a display that imitates copper of 24 °C under a skin of 34 °C, by Eq. 6-12, recorded every 10 ms and
     /// reduced to the points of a course.
     ///
