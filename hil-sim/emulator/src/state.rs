@@ -1,8 +1,9 @@
 //! State shared by the hooks of the CPU emulation: the chip, the cycle count, and why the CPU paused.
 use super::Wiring;
 use super::chip::Chip;
+use super::corrections::{self, Correction};
 use super::cost::{self, Block, CostTable, Exclusive, Last};
-use super::elf::FLASH_BASE;
+use super::elf::{FLASH_BASE, RAM_BASE};
 use super::exceptions::CLREX_AT;
 use super::execution_path::ExecutedBlock;
 use super::faults::{Fault, PRIVATE_BUS, RESERVED_ADDRESS};
@@ -78,6 +79,10 @@ pub(crate) struct State<W> {
     pub invalid: Option<(u32, u32, bool)>,
     /// Event register of WFE (ARMv7-M B1.5.18).
     pub event_register: bool,
+    /// The masks while thread mode runs without privilege, in which the emulation shows them as 0.
+    pub unprivileged_masks: Option<Masks>,
+    /// What the instruction before left wrong.
+    correction: Option<Correction>,
     /// An LDREX has perhaps set the exclusive monitor of the CPU emulation.
     pub exclusive_set: bool,
 }
@@ -108,6 +113,8 @@ impl<W: Wiring> State<W> {
             raised: None,
             invalid: None,
             event_register: false,
+            unprivileged_masks: None,
+            correction: None,
             exclusive_set: false,
         }
     }
@@ -196,6 +203,15 @@ impl<W: Wiring> State<W> {
         (self.pause_requested, self.undisturbed_until) = (true, 0);
     }
 
+    /// Has a correction made before the next instruction that a hook sees, or the next block.
+    pub fn correct_behind(&mut self, correction: Correction) {
+        (self.correction, self.undisturbed_until) = (Some(correction), 0);
+    }
+
+    pub fn take_correction(&mut self) -> Option<Correction> {
+        self.correction.take()
+    }
+
     /// Takes a fault before the next block.
     pub fn raise(&mut self, fault: Fault) {
         self.request_pause();
@@ -239,9 +255,35 @@ pub(crate) fn get<D>(cpu: &Unicorn<'_, D>, register: Reg) -> u32 {
     cpu.reg_read(register).map_or(0, |v| v as u32)
 }
 
+/// The emulation's number of core register 0 to 14; it numbers R0 to R12 consecutively.
+pub(crate) fn core_register(n: u32) -> i32 {
+    match n {
+        13 => Reg::SP as i32,
+        14 => Reg::LR as i32,
+        _ => Reg::R0 as i32 + n as i32,
+    }
+}
+
+/// The two half-words of code at an address; `None` where no memory is.
+pub(crate) fn half_words<W: Wiring>(cpu: &Cpu<'_, W>, address: u32) -> Option<(u32, u32)> {
+    let at = (address & 0x07ff_ffff) as usize;
+    let mut code = [0; 4];
+    match cpu.get_data().flash.get(at..at + 4) {
+        Some(bytes) if address < RAM_BASE => code.copy_from_slice(bytes),
+        _ => cpu.mem_read(address.into(), &mut code).ok()?,
+    }
+    let [a, b, c, d] = code;
+    Some((u16::from_le_bytes([a, b]).into(), u16::from_le_bytes([c, d]).into()))
+}
+
 /// PRIMASK, BASEPRI, FAULTMASK.
-pub(crate) fn masks<D>(cpu: &Unicorn<'_, D>) -> (u32, u32, u32) {
-    (get(cpu, Reg::PRIMASK), get(cpu, Reg::BASEPRI), get(cpu, Reg::FAULTMASK))
+pub(crate) type Masks = (u32, u32, u32);
+
+/// The masks now.
+pub(crate) fn masks<W: Wiring>(cpu: &Cpu<'_, W>) -> Masks {
+    cpu.get_data().unprivileged_masks.unwrap_or_else(|| {
+        (get(cpu, Reg::PRIMASK), get(cpu, Reg::BASEPRI), get(cpu, Reg::FAULTMASK))
+    })
 }
 
 /// The exception to be taken now, if any.
@@ -270,6 +312,7 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
     if address == CLREX_AT {
         return;
     }
+    let corrected = corrections::correct(cpu);
     let state = cpu.get_data_mut();
     let now = state.cycles;
     state.block_pc = address;
@@ -283,7 +326,12 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
     let pause = {
         let state = cpu.get_data_mut();
         let (limit, chip) = (state.limit, state.chip_ref());
-        state.pause_requested || now >= limit || chip.reset.is_some() || chip.misuse.is_some()
+        // the block was looked up for a floating-point context that may be another now
+        corrected
+            || state.pause_requested
+            || now >= limit
+            || chip.reset.is_some()
+            || chip.misuse.is_some()
     } || takeable(cpu).is_some();
     let state = cpu.get_data_mut();
     if pause {
@@ -329,6 +377,12 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
 /// Tells the profile whether the program masks more exceptions now than the running handler does by its own priority.
 fn note_masking<W: Wiring>(cpu: &mut Cpu<'_, W>) {
     let (primask, basepri, faultmask) = masks(cpu);
+    // the priorities of this chip have four bits
+    if basepri & 0xf != 0
+        && let Err(error) = cpu.reg_write(Reg::BASEPRI, u64::from(basepri & 0xf0))
+    {
+        debug_assert!(false, "{error:?}");
+    }
     let state = cpu.get_data_mut();
     let nvic = &state.chip_ref().nvic;
     let masked =
