@@ -1,10 +1,12 @@
-//! Instructions that the CPU emulation executes otherwise than the architecture (ARMv7-M). Hooks stand on the code that holds one of
-//! them, and correct behind it what it leaves; other code runs without them.
+//! Instructions that the CPU emulation executes otherwise than the architecture (ARMv7-M). When a basic block with one of them is
+//! about to run for the first time, hooks are set on it, which correct behind the instruction what it leaves. Other code runs
+//! without hooks, but for code in the RAM, which may change.
 //!
 //! The instruction behind may be one that the condition of an IT block skips, together with its hook. So the hooks reach to the
 //! first instruction behind a block of four, and a correction waits for the next instruction that is executed, or the next basic
 //! block.
 use super::Wiring;
+use super::cost;
 use super::elf::{FLASH_BASE, RAM_BASE, RAM_SIZE};
 use super::state::{Cpu, Masks, core_register, get, half_words, masks};
 use unicorn_engine::{RegisterARM as Reg, uc_error};
@@ -47,41 +49,42 @@ pub(crate) enum Correction {
     Control { masks: Masks },
 }
 
+/// The instruction that begins with two half-words, if it is one of those.
 fn suspect(first: u32, second: u32) -> Option<Suspect> {
-    let register = second >> 8 & 0xf;
-    let addend = second >> 12;
-    Some(match (first, second) {
-        _ if first & 0xfff0 == 0xfb20 && second & 0xe0 == 0 && addend != 15 => {
-            Suspect::DualMultiply { n: first & 0xf, m: second & 0xf, addend }
+    let (low, result, target) = (first & 0xf, second >> 8 & 0xf, second >> 12);
+    // What leaves an SP that is not a multiple of 4 as it was before: data processing, a load, a write-back.
+    let stack = |misaligns: bool| misaligns.then_some(Suspect::WritesStackPointer);
+    match first >> 4 {
+        0xfb2 if second & 0xe0 == 0 && target != 15 => {
+            Some(Suspect::DualMultiply { n: low, m: second & 0xf, addend: target })
         }
-        _ if first & 0xffbe == 0xeeba && second & 0x0fd0 == 0x0ac0 => Suspect::FromFixedPoint {
-            register: second >> 11 & 0x1e | first >> 6 & 1,
-            unsigned: first & 1 != 0,
-            fraction_bits: 32 - (second << 1 & 0x1e | second >> 5 & 1),
-        },
-        (0xf3ef, _) if second & 0xf0ff == 0x8014 => Suspect::ReadsControl { register },
-        (0xf380..0xf390, 0x8814) => Suspect::WritesControl,
-        (0xf380..0xf390, 0x8808 | 0x8809) => Suspect::WritesStackPointer,
-        _ if may_misalign_stack(first, second) => Suspect::WritesStackPointer,
-        _ => return None,
-    })
-}
-
-/// Whether data processing, a load or a write-back may leave an SP that is not a multiple of 4 as it was before.
-fn may_misalign_stack(first: u32, second: u32) -> bool {
-    let (base, result) = (first & 0xf, second >> 8 & 0xf);
-    match first {
-        _ if first & 0xfd87 == 0x4485 => first >> 3 & 0xf != SP, // ADD, MOV of a register
-        0xea4f | 0xea5f => result == SP,                         // MOV of a register
-        0xeb0d | 0xeb1d | 0xebad | 0xebbd => result == SP,       // ADD, SUB of a register
-        0xf10d | 0xf11d | 0xf1ad | 0xf1bd | 0xf50d | 0xf51d | 0xf5ad | 0xf5bd => {
-            result == SP && expanded_immediate(first, second) & 3 != 0
+        0xeeb | 0xeef if low & 0xe == 0xa && second & 0xfd0 == 0xac0 => {
+            Some(Suspect::FromFixedPoint {
+                register: second >> 11 & 0x1e | first >> 6 & 1,
+                unsigned: low & 1 != 0,
+                fraction_bits: 32 - (second << 1 & 0x1e | second >> 5 & 1),
+            })
         }
-        0xf20d | 0xf2ad | 0xf60d | 0xf6ad => result == SP && second & 3 != 0, // ADDW, SUBW
-        _ if first & 0xff70 == 0xf850 && second >> 12 == SP => true,          // LDR
+        0xf3e if low == 15 && second & 0xf0ff == 0x8014 => {
+            Some(Suspect::ReadsControl { register: result })
+        }
+        0xf38 if second == 0x8814 => Some(Suspect::WritesControl),
+        0xf38 => stack(matches!(second, 0x8808 | 0x8809)), // MSR to MSP, PSP
+        // ADD, MOV of a register
+        0x448..=0x44f | 0x468..=0x46f => stack(first & 0x87 == 0x85 && first >> 3 & 0xf != SP),
+        0xea4 | 0xea5 => stack(low == 15 && result == SP),
+        0xeb0 | 0xeb1 | 0xeba | 0xebb => stack(low == SP && result == SP),
+        // ADD, SUB of a constant
+        0xf10 | 0xf11 | 0xf1a | 0xf1b | 0xf50 | 0xf51 | 0xf5a | 0xf5b => {
+            stack(low == SP && result == SP && expanded_immediate(first, second) & 3 != 0)
+        }
+        0xf20 | 0xf2a | 0xf60 | 0xf6a => stack(low == SP && result == SP && second & 3 != 0),
+        0xf85 | 0xf8d if target == SP => stack(true), // LDR
         // loads and stores with write-back
-        _ if first & 0xfe80 == 0xf800 && base == SP => second & 0x900 == 0x900 && second & 3 != 0,
-        _ => false,
+        0xf80..=0xf87 | 0xf90..=0xf97 => {
+            stack(low == SP && second & 0x900 == 0x900 && second & 3 != 0)
+        }
+        _ => None,
     }
 }
 
@@ -129,6 +132,7 @@ impl Suspect {
 }
 
 impl Correction {
+    #[cold]
     fn make<W: Wiring>(self, cpu: &mut Cpu<'_, W>) -> Result<(), uc_error> {
         match self {
             Self::ClearSaturation => {
@@ -162,59 +166,65 @@ impl Correction {
     }
 }
 
-/// Makes the correction that waits, if any; returns whether there was one.
-pub(crate) fn correct<W: Wiring>(cpu: &mut Cpu<'_, W>) -> bool {
-    let Some(correction) = cpu.get_data_mut().take_correction() else {
-        return false;
-    };
-    if let Err(error) = correction.make(cpu) {
-        debug_assert!(false, "{error:?}");
-    }
-    true
+/// Whether the instruction that begins with two half-words may need a correction.
+pub(crate) fn is_suspect(first: u32, second: u32) -> bool {
+    suspect(first, second).is_some()
 }
 
-/// Called before each instruction of a range that [`watch`] found.
+/// Makes the correction that waits, if any.
+pub(crate) fn correct<W: Wiring>(cpu: &mut Cpu<'_, W>) {
+    if let Some((_, correction)) = cpu.get_data_mut().correction.take()
+        && let Err(error) = correction.make(cpu)
+    {
+        debug_assert!(false, "{error:?}");
+    }
+}
+
+/// Called before each instruction that is watched, once by each hook that reaches to it.
 fn on_instruction<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32) {
+    if cpu.get_data().correction.is_some_and(|(at, _)| at == address) {
+        return;
+    }
     correct(cpu);
     let instruction = half_words(cpu, address).and_then(|(first, second)| suspect(first, second));
     if let Some(correction) = instruction.and_then(|suspect| suspect.correction(cpu)) {
-        cpu.get_data_mut().correct_behind(correction);
+        cpu.get_data_mut().correct_behind(address, correction);
     }
 }
 
-/// First and last offset of each range of code to be watched. Data may look like an instruction; its range is never executed, or
-/// finds nothing.
-fn watched(code: &[u8]) -> Vec<(u32, u32)> {
-    let halves: Vec<_> =
-        code.as_chunks().0.iter().map(|half| u32::from(u16::from_le_bytes(*half))).collect();
-    let mut ranges: Vec<(u32, u32)> = Vec::new();
-    for (n, &first) in halves.iter().enumerate() {
-        let second = halves.get(n + 1).copied().unwrap_or_default();
-        if suspect(first, second).is_some() {
-            let at = 2 * n as u32;
-            match ranges.last_mut() {
-                Some((_, last)) if *last >= at => *last = at + REACH,
-                _ => ranges.push((at, at + REACH)),
+fn add_hook<W: Wiring + 'static>(
+    cpu: &mut Cpu<'static, W>,
+    first: u32,
+    last: u32,
+) -> Result<(), uc_error> {
+    let hook = |cpu: &mut Cpu<'_, W>, address: u64, _: u32| on_instruction(cpu, address as u32);
+    cpu.add_code_hook(first.into(), last.into(), hook).map(drop)
+}
+
+/// Watches all of the RAM.
+pub(crate) fn watch_ram<W: Wiring + 'static>(cpu: &mut Cpu<'static, W>) -> Result<(), uc_error> {
+    add_hook(cpu, RAM_BASE, RAM_BASE + RAM_SIZE - 1)
+}
+
+/// Watches the instructions of a block that may need a correction, at both addresses of the flash.
+pub(crate) fn watch_block<W: Wiring + 'static>(
+    cpu: &mut Cpu<'static, W>,
+    block: (u32, u32),
+) -> Result<(), uc_error> {
+    let (offset, bytes) = block;
+    let flash = cpu.get_data().flash.clone();
+    let code = &flash[offset as usize..(offset + bytes) as usize];
+    for (at, _) in cost::instructions(code) {
+        let at = offset + at;
+        if half_words(cpu, at).is_some_and(|(first, second)| is_suspect(first, second)) {
+            for base in [0, FLASH_BASE] {
+                add_hook(cpu, base + at, base + at + REACH)?;
             }
         }
     }
-    ranges
-}
-
-/// Sets the hooks on an image's code, at both of its addresses, and on all of the RAM, whose code is not known before.
-pub(crate) fn watch<W: Wiring + 'static>(
-    cpu: &mut Cpu<'static, W>,
-    flash: &[u8],
-) -> Result<(), uc_error> {
-    let in_flash = watched(flash)
-        .into_iter()
-        .flat_map(|(first, last)| [0, FLASH_BASE].map(|base| (base + first, base + last)));
-    for (first, last) in in_flash.chain([(RAM_BASE, RAM_BASE + RAM_SIZE - 1)]) {
-        cpu.add_code_hook(first.into(), last.into(), |cpu, address, _| {
-            on_instruction(cpu, address as u32);
-        })?;
-    }
-    Ok(())
+    cpu.get_data_mut().watched.insert(block);
+    // hooks are part of the translation
+    cpu.ctl_flush_tb()
 }
 
 #[cfg(test)]
@@ -264,14 +274,5 @@ mod tests {
         ] {
             assert_eq!(suspect(first, second), found, "{first:04x} {second:04x}");
         }
-    }
-
-    #[test]
-    fn watched_ranges_do_not_overlap() {
-        let code = |halves: &[u16]| halves.iter().flat_map(|h| h.to_le_bytes()).collect::<Vec<_>>();
-        assert_eq!(watched(&code(&[0xbf00; 20])), []);
-        let mut halves = [0xbf00; 40];
-        (halves[3], halves[11], halves[30]) = (0x468d, 0x468d, 0x468d);
-        assert_eq!(watched(&code(&halves)), [(6, 38), (60, 76)]);
     }
 }

@@ -231,7 +231,9 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
     if exc_return & 8 != 0 {
         // To thread mode: leave handler mode first, so that SP is the stack pointer that SPSEL selects, and with privilege, so
         // that CONTROL can be written.
-        set(cpu, Reg::CONTROL, control & !1)?;
+        if control & 1 != 0 {
+            set(cpu, Reg::CONTROL, control & !1)?;
+        }
         set_xpsr(cpu, xpsr & !0x1ff)?;
         set(cpu, Reg::CONTROL, control & !3 | (exc_return >> 2 & 1) << 1)?;
     }

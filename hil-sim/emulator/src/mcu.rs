@@ -68,7 +68,7 @@ impl<W: Wiring + 'static> Machine<W> {
         let mut cpu = create_cpu(state, &flash).map_err(emulator)?;
         let initial_ram = vec![PAINT; RAM_SIZE as usize];
         cpu.mem_write(RAM_BASE.into(), &initial_ram).map_err(emulator)?;
-        corrections::watch(&mut cpu, &flash).map_err(emulator)?;
+        corrections::watch_ram(&mut cpu).map_err(emulator)?;
         if strict {
             let hook = |cpu: &mut Cpu<'_, W>, address: u64, _: u32| {
                 strict::check(cpu, address as u32);

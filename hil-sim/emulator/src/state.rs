@@ -1,7 +1,7 @@
 //! State shared by the hooks of the CPU emulation: the chip, the cycle count, and why the CPU paused.
 use super::Wiring;
 use super::chip::Chip;
-use super::corrections::{self, Correction};
+use super::corrections::Correction;
 use super::cost::{self, Block, CostTable, Exclusive, Last};
 use super::elf::{FLASH_BASE, RAM_BASE};
 use super::exceptions::CLREX_AT;
@@ -11,6 +11,7 @@ use super::flash_waiting::FlashWaiting;
 use super::profile::Profile;
 use super::ram::Ram;
 use super::stop::{Access, Refusal};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use thermal_sim::processor::FlashTiming;
 use unicorn_engine::{RegisterARM as Reg, Unicorn};
@@ -81,8 +82,11 @@ pub(crate) struct State<W> {
     pub event_register: bool,
     /// The masks while thread mode runs without privilege, in which the emulation shows them as 0.
     pub unprivileged_masks: Option<Masks>,
-    /// What the instruction before left wrong.
-    correction: Option<Correction>,
+    /// What the instruction at an address left wrong.
+    pub correction: Option<(u32, Correction)>,
+    /// Offset into the flash and length of the blocks with instructions that are watched, and of one that is to be.
+    pub watched: BTreeSet<(u32, u32)>,
+    pub to_watch: Option<(u32, u32)>,
     /// An LDREX has perhaps set the exclusive monitor of the CPU emulation.
     pub exclusive_set: bool,
 }
@@ -115,6 +119,8 @@ impl<W: Wiring> State<W> {
             event_register: false,
             unprivileged_masks: None,
             correction: None,
+            watched: BTreeSet::new(),
+            to_watch: None,
             exclusive_set: false,
         }
     }
@@ -151,6 +157,7 @@ impl<W: Wiring> State<W> {
     }
 
     /// Sets until when blocks need no look at the chip; called when the present block does not pause the run.
+    #[inline(always)]
     fn set_undisturbed(&mut self) {
         let chip = self.chip_ref();
         self.undisturbed_until =
@@ -203,13 +210,21 @@ impl<W: Wiring> State<W> {
         (self.pause_requested, self.undisturbed_until) = (true, 0);
     }
 
-    /// Has a correction made before the next instruction that a hook sees, or the next block.
-    pub fn correct_behind(&mut self, correction: Correction) {
-        (self.correction, self.undisturbed_until) = (Some(correction), 0);
+    /// Has a correction made behind the instruction at an address: before the next that is watched, or the next block.
+    pub fn correct_behind(&mut self, address: u32, correction: Correction) {
+        self.correction = Some((address, correction));
+        self.request_pause();
     }
 
-    pub fn take_correction(&mut self) -> Option<Correction> {
-        self.correction.take()
+    /// Whether a block with instructions to be watched must not run yet.
+    fn must_watch(&mut self, address: u32, bytes: u32) -> bool {
+        let block = (address & !FLASH_BASE, bytes);
+        let unwatched = address < RAM_BASE && !self.watched.contains(&block);
+        if unwatched {
+            self.to_watch = Some(block);
+            self.request_pause();
+        }
+        unwatched
     }
 
     /// Takes a fault before the next block.
@@ -312,7 +327,6 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
     if address == CLREX_AT {
         return;
     }
-    let corrected = corrections::correct(cpu);
     let state = cpu.get_data_mut();
     let now = state.cycles;
     state.block_pc = address;
@@ -326,12 +340,7 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
     let pause = {
         let state = cpu.get_data_mut();
         let (limit, chip) = (state.limit, state.chip_ref());
-        // the block was looked up for a floating-point context that may be another now
-        corrected
-            || state.pause_requested
-            || now >= limit
-            || chip.reset.is_some()
-            || chip.misuse.is_some()
+        state.pause_requested || now >= limit || chip.reset.is_some() || chip.misuse.is_some()
     } || takeable(cpu).is_some();
     let state = cpu.get_data_mut();
     if pause {
@@ -347,7 +356,9 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
             }
         };
         let state = cpu.get_data_mut();
-        if !block.float || state.chip_ref().ppb.float_enabled() {
+        if block.suspect && state.must_watch(address, bytes) {
+            state.exit = Exit::Requested;
+        } else if !block.float || state.chip_ref().ppb.float_enabled() {
             state.event_register |= block.sev;
             match block.exclusive {
                 Exclusive::Unchanged => {}
@@ -364,8 +375,9 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
                 state.undisturbed_until = 0;
             }
             return;
+        } else {
+            state.exit = Exit::FloatDenied;
         }
-        state.exit = Exit::FloatDenied;
     }
     let state = cpu.get_data_mut();
     state.block = Block::default();

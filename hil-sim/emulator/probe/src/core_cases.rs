@@ -1,6 +1,6 @@
 //! Cases of the core: exceptions, masks, stacks, floating-point context, faults, sleep.
 use crate::{done, log, read, write};
-use core::arch::asm;
+use core::arch::{asm, global_asm};
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use cortex_m::asm::{dsb, isb, wfe, wfi};
@@ -222,17 +222,53 @@ pub fn float_state_behind_an_exception() {
     }
 }
 
-/// Logs SMLAD of operands of -32768 and the flags; PSP, SP and BASEPRI after values with bits that they do not have; CONTROL.
+// r0 = SMLAD of r1 with itself, three times, in the flash and in the RAM.
+global_asm!(
+    ".macro multiply name",
+    ".global \\name",
+    ".thumb_func",
+    "\\name:",
+    "smlad r0, r1, r1, r1",
+    "bx lr",
+    ".endm",
+    ".section .text.multiply_in_flash, \"ax\", %progbits",
+    "multiply multiply_in_flash",
+    ".section .data.multiply_in_ram, \"aw\", %progbits",
+    ".balign 4",
+    "multiply multiply_in_ram",
+);
+
+unsafe extern "C" {
+    fn multiply_in_flash();
+    fn multiply_in_ram();
+}
+
+/// Logs SMLAD of operands of -32768 and the flags, by code in the flash, there at its other address, and in the RAM.
+pub fn dual_multiplication() {
+    const FLASH: usize = 0x0800_0000;
+    let flash = multiply_in_flash as *const () as usize;
+    for code in [flash, flash - FLASH, multiply_in_ram as *const () as usize] {
+        let (sum, flags): (u32, u32);
+        // SAFETY: the code changes r0 and flags.
+        unsafe {
+            asm!(
+                "msr apsr_nzcvq, {zero}",
+                "blx {code}",
+                "mrs {flags}, apsr",
+                code = in(reg) code, zero = in(reg) 0, flags = out(reg) flags, out("r0") sum,
+                in("r1") 0x8000_8000_u32, out("lr") _,
+            );
+        }
+        log(sum);
+        log(flags);
+    }
+}
+
+/// Logs PSP, SP and BASEPRI after values with bits that they do not have, and CONTROL.
 pub fn special_registers() {
-    let (sum, flags, process, main, mask, control): (u32, u32, u32, u32, u32, u32);
+    let (process, main, mask, control): (u32, u32, u32, u32);
     // SAFETY: the process stack is not used; stack pointer and mask are as before at the end.
     unsafe {
-        asm!(
-            "msr apsr_nzcvq, {zero}",
-            "smlad {sum}, {least}, {least}, {least}",
-            "mrs {flags}, apsr",
-            least = in(reg) 0x8000_8000_u32, zero = in(reg) 0, sum = out(reg) sum, flags = out(reg) flags,
-        );
         asm!(
             "msr psp, {odd}",
             "mrs {process}, psp",
@@ -249,7 +285,7 @@ pub fn special_registers() {
             mask = out(reg) mask, control = out(reg) control, out("s0") _,
         );
     }
-    for word in [sum, flags, process, main, mask, control] {
+    for word in [process, main, mask, control] {
         log(word);
     }
 }

@@ -84,6 +84,7 @@ fn main() -> ! {
         28 => core_cases::float_state_behind_an_exception(),
         29 => core_cases::special_registers(),
         30 => core_cases::flipped_float_state(),
+        31 => core_cases::dual_multiplication(),
         60 => device_cases::narrow_stores(),
         61 => device_cases::half_word_of_a_word_register(),
         62 => device_cases::stream_enabled_with_flags(),
