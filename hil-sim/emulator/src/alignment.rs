@@ -2,8 +2,7 @@
 //! exclusive accesses only; the others are checked before each instruction of a machine that is asked to.
 use super::Wiring;
 use super::faults::UNALIGNED;
-use super::state::{Cpu, Exit, refund};
-use unicorn_engine::RegisterARM as Reg;
+use super::state::{Cpu, Exit, core_register, refund};
 
 /// The base register, and the bits of it that must be 0; offsets and write-back keep them. `None` where the address is
 /// aligned by itself: relative to SP or PC.
@@ -30,12 +29,7 @@ pub(super) fn check<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, instruction: 
     let Some((base, mask)) = aligned_base(instruction.0, instruction.1) else {
         return;
     };
-    // The emulation numbers R0 to R12 consecutively; no other register but LR is a base.
-    let register = match base {
-        14 => Reg::LR as i32,
-        n => Reg::R0 as i32 + n as i32,
-    };
-    if cpu.reg_read(register).is_ok_and(|value| value as u32 & mask != 0) {
+    if cpu.reg_read(core_register(base)).is_ok_and(|value| value as u32 & mask != 0) {
         let state = cpu.get_data_mut();
         refund(state, address);
         state.raise(UNALIGNED);

@@ -9,6 +9,7 @@
 //! none.
 //! Waiting for the flash is `flash_waiting.rs`'s.
 
+use super::corrections;
 use super::elf::FLASH_BASE;
 use super::instruction::{Float, Instruction, Pipeline};
 
@@ -41,6 +42,8 @@ pub(crate) struct Block {
     pub exclusive: Exclusive,
     /// The block holds an instruction that writes PRIMASK, BASEPRI or FAULTMASK; the emulation ends a block behind it.
     pub writes_masks: bool,
+    /// The block holds an instruction that `corrections` watches.
+    pub suspect: bool,
     pub last: Last,
 }
 
@@ -120,6 +123,7 @@ pub(crate) fn decode(address: u32, code: &[u8]) -> Block {
         let second = code.get(at as usize + 2..).and_then(<[u8]>::first_chunk);
         let second = second.map_or(0, |half| u16::from_le_bytes(*half));
         block.writes_masks |= writes_masks(instruction.code, second.into());
+        block.suspect |= corrections::is_suspect(instruction.code, second.into());
         match exclusive_access(instruction.code, second.into()) {
             Exclusive::Unchanged => {}
             // a store that its condition skips leaves the monitor as it was

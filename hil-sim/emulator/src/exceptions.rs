@@ -3,6 +3,7 @@
 //! Floating-point state is stacked at entry and not lazily, which the program does not notice; FPCAR is not kept. Its cycles are
 //! those of lazy stacking.
 use super::Wiring;
+use super::corrections::CONTROL_SFPA;
 use super::cost;
 use super::elf::{FLASH_BASE, RAM_BASE};
 use super::nvic::exception;
@@ -31,6 +32,8 @@ fn float_registers() -> impl Iterator<Item = i32> {
     (0..8).map(|n| Reg::D0 as i32 + n)
 }
 
+/// CONTROL.FPCA, and the bit that the emulation wants beside it.
+const FLOAT_CONTEXT: u32 = 1 << 2 | CONTROL_SFPA;
 const NO_FLOAT: u32 = 0x10;
 const FRAME: u32 = 0x20;
 const FLOAT_FRAME: u32 = 0x68;
@@ -57,7 +60,9 @@ pub(crate) fn enter<W: Wiring>(
     let sp = get(cpu, Reg::SP);
     let float = control & 4 != 0;
     let size = if float { FLOAT_FRAME } else { FRAME };
-    let frame = sp.wrapping_sub(size) & !4;
+    let aligned = float || cpu.get_data().chip_ref().ppb.aligns_stack();
+    let padding = if aligned { sp & 4 } else { 0 };
+    let frame = sp.wrapping_sub(size + padding);
     let mut bytes = [0; FLOAT_FRAME as usize];
     let mut put =
         |at: usize, word: u32| bytes[4 * at..4 * at + 4].copy_from_slice(&word.to_le_bytes());
@@ -65,7 +70,7 @@ pub(crate) fn enter<W: Wiring>(
         put(i, get(cpu, register));
     }
     put(6, return_pc);
-    put(7, xpsr & !(1 << 9) | (sp >> 2 & 1) << 9);
+    put(7, xpsr & !(1 << 9) | padding << 7);
     if float {
         for (i, register) in float_registers().enumerate() {
             let pair = cpu.reg_read(register).map_err(|_| FrameError::Emulator)?;
@@ -86,6 +91,7 @@ pub(crate) fn enter<W: Wiring>(
         exc_return &= !NO_FLOAT;
     }
     set(cpu, Reg::SP, frame)?;
+    take_privilege(cpu)?;
     // SPSEL can be written in thread mode only, so before IPSR; this also selects the main stack
     set(cpu, Reg::CONTROL, control & 1)?;
     let state = cpu.get_data_mut();
@@ -100,6 +106,17 @@ pub(crate) fn enter<W: Wiring>(
     service(cpu, now);
     let late = cpu.get_data().chip_ref().nvic.late_arrival(exception);
     start_handler(cpu, late.unwrap_or(exception), exc_return)
+}
+
+/// Clears CONTROL.nPRIV in thread mode: without privilege, the emulation lets nobody write CONTROL. In handler mode it does.
+fn take_privilege<W: Wiring>(cpu: &mut Cpu<'_, W>) -> Result<(), FrameError> {
+    if cpu.get_data_mut().unprivileged_masks.take().is_none() {
+        return Ok(());
+    }
+    let (xpsr, control) = (get(cpu, Reg::XPSR), get(cpu, Reg::CONTROL));
+    set_xpsr(cpu, xpsr | exception::SVCALL as u32)?;
+    set(cpu, Reg::CONTROL, control & !1)?;
+    set_xpsr(cpu, xpsr)
 }
 
 /// Activates `exception` and points the CPU at its handler.
@@ -205,16 +222,20 @@ pub(crate) fn tail_chain<W: Wiring>(
 ) -> Result<(), FrameError> {
     cpu.get_data_mut().cycles += cost::TAIL_CHAIN;
     let control = get(cpu, Reg::CONTROL);
-    set(cpu, Reg::CONTROL, control & !4)?;
+    set(cpu, Reg::CONTROL, control & !FLOAT_CONTEXT)?;
     start_handler(cpu, exception, exc_return)
 }
 
 fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Result<(), FrameError> {
     let control = get(cpu, Reg::CONTROL);
     if exc_return & 8 != 0 {
-        // To thread mode: leave handler mode first, so that SP is the stack pointer that SPSEL selects.
+        // To thread mode: leave handler mode first, so that SP is the stack pointer that SPSEL selects, and with privilege, so
+        // that CONTROL can be written.
+        if control & 1 != 0 {
+            set(cpu, Reg::CONTROL, control & !1)?;
+        }
         set_xpsr(cpu, xpsr & !0x1ff)?;
-        set(cpu, Reg::CONTROL, control & !2 | (exc_return >> 2 & 1) << 1)?;
+        set(cpu, Reg::CONTROL, control & !3 | (exc_return >> 2 & 1) << 1)?;
     }
     let sp = get(cpu, Reg::SP);
     let float = exc_return & NO_FLOAT == 0;
@@ -240,9 +261,14 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
         set(cpu, Reg::FPSCR, word(24))?;
     }
     clear_exclusive_monitor(cpu)?;
-    set(cpu, Reg::SP, sp.wrapping_add(size) | (stacked >> 9 & 1) << 2)?;
-    let control = get(cpu, Reg::CONTROL);
-    set(cpu, Reg::CONTROL, control & !4 | u32::from(float) << 2)?;
+    let aligned = float || cpu.get_data().chip_ref().ppb.aligns_stack();
+    let padding = if aligned { stacked >> 7 & 4 } else { 0 };
+    set(cpu, Reg::SP, sp.wrapping_add(size) | padding)?;
+    let context = if float { FLOAT_CONTEXT } else { 0 };
+    let unprivileged = exc_return & 8 != 0 && control & 1 != 0;
+    cpu.get_data_mut().unprivileged_masks = unprivileged.then(|| masks(cpu));
+    let control = get(cpu, Reg::CONTROL) | control & 1;
+    set(cpu, Reg::CONTROL, control & !FLOAT_CONTEXT | context)?;
     set_xpsr(cpu, stacked & !(1 << 9) | 1 << 24)?;
     set(cpu, Reg::PC, word(6) | 1)?;
     if stacked & 1 << 24 == 0 {
@@ -256,6 +282,7 @@ pub(crate) fn reset<W: Wiring>(cpu: &mut Cpu<'_, W>) -> Result<(), FrameError> {
     let state = cpu.get_data_mut();
     (state.refill, state.float_state_pending) = (0, false);
     state.flash_waiting.control(0);
+    take_privilege(cpu)?;
     clear_exclusive_monitor(cpu)?;
     set_xpsr(cpu, 1 << 24)?;
     let masks = [Reg::PRIMASK, Reg::BASEPRI, Reg::FAULTMASK];
@@ -263,7 +290,7 @@ pub(crate) fn reset<W: Wiring>(cpu: &mut Cpu<'_, W>) -> Result<(), FrameError> {
         set(cpu, register, 0)?;
     }
     let (sp, pc) = (vector(cpu, 0)?, vector(cpu, 4)?);
-    set(cpu, Reg::SP, sp)?;
+    set(cpu, Reg::SP, sp & !3)?;
     set(cpu, Reg::LR, 0xffff_ffff)?;
     set(cpu, Reg::PC, pc)
 }

@@ -5,6 +5,7 @@ mod alignment;
 mod board;
 mod build;
 mod chip;
+mod corrections;
 mod cost;
 mod cpu_setup;
 mod crc;

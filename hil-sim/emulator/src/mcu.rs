@@ -1,5 +1,6 @@
 //! The emulated microcontroller: its public interface.
 use super::chip::Chip;
+use super::corrections;
 use super::cpu_setup::create_cpu;
 use super::debugger::Halted;
 use super::elf::{Firmware, RAM_BASE, RAM_SIZE};
@@ -67,6 +68,7 @@ impl<W: Wiring + 'static> Machine<W> {
         let mut cpu = create_cpu(state, &flash).map_err(emulator)?;
         let initial_ram = vec![PAINT; RAM_SIZE as usize];
         cpu.mem_write(RAM_BASE.into(), &initial_ram).map_err(emulator)?;
+        corrections::watch_ram(&mut cpu).map_err(emulator)?;
         if strict {
             let hook = |cpu: &mut Cpu<'_, W>, address: u64, _: u32| {
                 strict::check(cpu, address as u32);

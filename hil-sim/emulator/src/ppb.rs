@@ -6,6 +6,8 @@ use super::stop::{Answer, Refusal, only};
 
 /// Bits of CR, APB1_FZ and APB2_FZ (RM0390 33.16.3 to 33.16.5).
 const DBGMCU_BITS: [u32; 3] = [0xe7, 0x07e0_1dff, 0x0007_0003];
+/// CCR: frames without floating-point state begin at a multiple of 8, too.
+const STKALIGN: u32 = 1 << 9;
 /// DEMCR: a debugger halts the core at a reset, and at a hard fault.
 const VC_CORERESET: u32 = 1;
 const VC_HARDERR: u32 = 1 << 10;
@@ -28,6 +30,7 @@ pub(crate) struct Ppb {
     pub cfsr: u32,
     pub hfsr: u32,
     pub fault_address: u32,
+    ccr: u32,
     cpacr: u32,
     fpccr: u32,
     demcr: u32,
@@ -43,7 +46,7 @@ pub(crate) struct Ppb {
 
 impl Ppb {
     pub fn new() -> Self {
-        Self { systick_due: u64::MAX, fpccr: 0xc000_0000, ..Self::default() }
+        Self { systick_due: u64::MAX, ccr: STKALIGN, fpccr: 0xc000_0000, ..Self::default() }
     }
 
     /// Whether a configurable fault has its own handler enabled.
@@ -146,7 +149,7 @@ impl Ppb {
             0xe000_ed08 => self.vtor,
             0xe000_ed0c => 0xfa05_0000 | u32::from(nvic.group()) << 8,
             0xe000_ed10 => 0,
-            0xe000_ed14 => 0x200,
+            0xe000_ed14 => self.ccr,
             0xe000_ed18..0xe000_ed24 => nvic.priority_word((address - 0xe000_ed18 + 4) as usize),
             0xe000_ed24 => self.shcsr | Self::active_bits(nvic),
             0xe000_ed28 => self.cfsr,
@@ -230,7 +233,10 @@ impl Ppb {
                 return Ok(value & 4 != 0);
             }
             0xe000_ed10 => only(value, 0, "SCR (deep sleep, sleep on exit, SEVONPEND)")?,
-            0xe000_ed14 => only(value, 0x200, "CCR traps")?,
+            0xe000_ed14 => {
+                only(value, STKALIGN, "CCR traps")?;
+                self.ccr = value;
+            }
             0xe000_ed24 => {
                 only(value & !Self::active_bits(nvic), 0x7_0000, "SHCSR pending or active bits")?;
                 self.shcsr = value & 0x7_0000;
@@ -301,6 +307,11 @@ impl Ppb {
 
     pub fn catches_hard_fault(&self) -> bool {
         self.debugger_is_attached && self.demcr & VC_HARDERR != 0
+    }
+
+    /// CCR.STKALIGN.
+    pub fn aligns_stack(&self) -> bool {
+        self.ccr & STKALIGN != 0
     }
 
     /// FPCCR.LSPEN: an exception's entry reserves the place of the floating-point state only.

@@ -1,4 +1,5 @@
 //! The run loop: CPU emulation between events, sleep and resets.
+use super::corrections;
 use super::cost::Last;
 use super::debugger::Halted;
 use super::elf::{FLASH_BASE, RAM_BASE};
@@ -77,6 +78,12 @@ impl<W: Wiring + 'static> Machine<W> {
         if !std::mem::take(&mut state.pause_requested) {
             return Ok(());
         }
+        corrections::correct(&mut self.cpu);
+        let state = self.cpu.get_data_mut();
+        if let Some(block) = state.to_watch.take() {
+            corrections::watch_block(&mut self.cpu, block).map_err(emulator)?;
+        }
+        let state = self.cpu.get_data_mut();
         if let Some(refused) = state.refused.take() {
             return Err(self.refusal(refused));
         }
@@ -157,6 +164,7 @@ impl<W: Wiring + 'static> Machine<W> {
         let state = self.cpu.get_data_mut();
         (state.pause_requested, state.event_register) = (false, false);
         (state.refused, state.raised) = (None, None);
+        (state.correction, state.to_watch) = (None, None);
         self.halt = None;
         self.resets.push(Reset { at, at_ps, cause });
         exceptions::reset(&mut self.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))?;

@@ -1,8 +1,9 @@
 //! State shared by the hooks of the CPU emulation: the chip, the cycle count, and why the CPU paused.
 use super::Wiring;
 use super::chip::Chip;
+use super::corrections::Correction;
 use super::cost::{self, Block, CostTable, Exclusive, Last};
-use super::elf::FLASH_BASE;
+use super::elf::{FLASH_BASE, RAM_BASE};
 use super::exceptions::CLREX_AT;
 use super::execution_path::ExecutedBlock;
 use super::faults::{Fault, PRIVATE_BUS, RESERVED_ADDRESS};
@@ -10,6 +11,7 @@ use super::flash_waiting::FlashWaiting;
 use super::profile::Profile;
 use super::ram::Ram;
 use super::stop::{Access, Refusal};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use thermal_sim::processor::FlashTiming;
 use unicorn_engine::{RegisterARM as Reg, Unicorn};
@@ -78,6 +80,13 @@ pub(crate) struct State<W> {
     pub invalid: Option<(u32, u32, bool)>,
     /// Event register of WFE (ARMv7-M B1.5.18).
     pub event_register: bool,
+    /// The masks while thread mode runs without privilege, in which the emulation shows them as 0.
+    pub unprivileged_masks: Option<Masks>,
+    /// What the instruction at an address left wrong.
+    pub correction: Option<(u32, Correction)>,
+    /// Offset into the flash and length of the blocks with instructions that are watched, and of one that is to be.
+    pub watched: BTreeSet<(u32, u32)>,
+    pub to_watch: Option<(u32, u32)>,
     /// An LDREX has perhaps set the exclusive monitor of the CPU emulation.
     pub exclusive_set: bool,
 }
@@ -108,6 +117,10 @@ impl<W: Wiring> State<W> {
             raised: None,
             invalid: None,
             event_register: false,
+            unprivileged_masks: None,
+            correction: None,
+            watched: BTreeSet::new(),
+            to_watch: None,
             exclusive_set: false,
         }
     }
@@ -144,6 +157,7 @@ impl<W: Wiring> State<W> {
     }
 
     /// Sets until when blocks need no look at the chip; called when the present block does not pause the run.
+    #[inline(always)]
     fn set_undisturbed(&mut self) {
         let chip = self.chip_ref();
         self.undisturbed_until =
@@ -196,6 +210,23 @@ impl<W: Wiring> State<W> {
         (self.pause_requested, self.undisturbed_until) = (true, 0);
     }
 
+    /// Has a correction made behind the instruction at an address: before the next that is watched, or the next block.
+    pub fn correct_behind(&mut self, address: u32, correction: Correction) {
+        self.correction = Some((address, correction));
+        self.request_pause();
+    }
+
+    /// Whether a block with instructions to be watched must not run yet.
+    fn must_watch(&mut self, address: u32, bytes: u32) -> bool {
+        let block = (address & !FLASH_BASE, bytes);
+        let unwatched = address < RAM_BASE && !self.watched.contains(&block);
+        if unwatched {
+            self.to_watch = Some(block);
+            self.request_pause();
+        }
+        unwatched
+    }
+
     /// Takes a fault before the next block.
     pub fn raise(&mut self, fault: Fault) {
         self.request_pause();
@@ -239,9 +270,35 @@ pub(crate) fn get<D>(cpu: &Unicorn<'_, D>, register: Reg) -> u32 {
     cpu.reg_read(register).map_or(0, |v| v as u32)
 }
 
+/// The emulation's number of core register 0 to 14; it numbers R0 to R12 consecutively.
+pub(crate) fn core_register(n: u32) -> i32 {
+    match n {
+        13 => Reg::SP as i32,
+        14 => Reg::LR as i32,
+        _ => Reg::R0 as i32 + n as i32,
+    }
+}
+
+/// The two half-words of code at an address; `None` where no memory is.
+pub(crate) fn half_words<W: Wiring>(cpu: &Cpu<'_, W>, address: u32) -> Option<(u32, u32)> {
+    let at = (address & 0x07ff_ffff) as usize;
+    let mut code = [0; 4];
+    match cpu.get_data().flash.get(at..at + 4) {
+        Some(bytes) if address < RAM_BASE => code.copy_from_slice(bytes),
+        _ => cpu.mem_read(address.into(), &mut code).ok()?,
+    }
+    let [a, b, c, d] = code;
+    Some((u16::from_le_bytes([a, b]).into(), u16::from_le_bytes([c, d]).into()))
+}
+
 /// PRIMASK, BASEPRI, FAULTMASK.
-pub(crate) fn masks<D>(cpu: &Unicorn<'_, D>) -> (u32, u32, u32) {
-    (get(cpu, Reg::PRIMASK), get(cpu, Reg::BASEPRI), get(cpu, Reg::FAULTMASK))
+pub(crate) type Masks = (u32, u32, u32);
+
+/// The masks now.
+pub(crate) fn masks<W: Wiring>(cpu: &Cpu<'_, W>) -> Masks {
+    cpu.get_data().unprivileged_masks.unwrap_or_else(|| {
+        (get(cpu, Reg::PRIMASK), get(cpu, Reg::BASEPRI), get(cpu, Reg::FAULTMASK))
+    })
 }
 
 /// The exception to be taken now, if any.
@@ -299,7 +356,9 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
             }
         };
         let state = cpu.get_data_mut();
-        if !block.float || state.chip_ref().ppb.float_enabled() {
+        if block.suspect && state.must_watch(address, bytes) {
+            state.exit = Exit::Requested;
+        } else if !block.float || state.chip_ref().ppb.float_enabled() {
             state.event_register |= block.sev;
             match block.exclusive {
                 Exclusive::Unchanged => {}
@@ -316,8 +375,9 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
                 state.undisturbed_until = 0;
             }
             return;
+        } else {
+            state.exit = Exit::FloatDenied;
         }
-        state.exit = Exit::FloatDenied;
     }
     let state = cpu.get_data_mut();
     state.block = Block::default();
@@ -329,6 +389,12 @@ fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
 /// Tells the profile whether the program masks more exceptions now than the running handler does by its own priority.
 fn note_masking<W: Wiring>(cpu: &mut Cpu<'_, W>) {
     let (primask, basepri, faultmask) = masks(cpu);
+    // the priorities of this chip have four bits
+    if basepri & 0xf != 0
+        && let Err(error) = cpu.reg_write(Reg::BASEPRI, u64::from(basepri & 0xf0))
+    {
+        debug_assert!(false, "{error:?}");
+    }
     let state = cpu.get_data_mut();
     let nvic = &state.chip_ref().nvic;
     let masked =

@@ -1,6 +1,6 @@
 //! Cases of the core: exceptions, masks, stacks, floating-point context, faults, sleep.
 use crate::{done, log, read, write};
-use core::arch::asm;
+use core::arch::{asm, global_asm};
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use cortex_m::asm::{dsb, isb, wfe, wfi};
@@ -191,6 +191,121 @@ pub fn bad_load() {
 pub fn undefined() {
     log(1);
     cortex_m::asm::udf();
+}
+
+/// Divides 1 by 3 towards zero before and behind an exception whose handler uses no floating point; logs both results, and FPSCR
+/// behind the division and behind another exception.
+pub fn float_state_behind_an_exception() {
+    let (before, behind, inexact, modes): (u32, u32, u32, u32);
+    // SAFETY: the handler changes only what its frame restores, and memory.
+    unsafe {
+        asm!(
+            "vmsr fpscr, {towards_zero}",
+            "vmov.f32 s1, #1.0",
+            "vmov.f32 s2, #3.0",
+            "vdiv.f32 s0, s1, s2",
+            "vmov {before}, s0",
+            "svc 0",
+            "vdiv.f32 s0, s1, s2",
+            "vmov {behind}, s0",
+            "vmrs {inexact}, fpscr",
+            "vmsr fpscr, {towards_zero}",
+            "svc 0",
+            "vmrs {modes}, fpscr",
+            "vmsr fpscr, {zero}",
+            towards_zero = in(reg) 0xc0_0000, zero = in(reg) 0, before = out(reg) before, behind = out(reg) behind,
+            inexact = out(reg) inexact, modes = out(reg) modes, out("s0") _, out("s1") _, out("s2") _,
+        );
+    }
+    for word in [before, behind, inexact, modes] {
+        log(word);
+    }
+}
+
+// r0 = SMLAD of r1 with itself, three times, in the flash and in the RAM.
+global_asm!(
+    ".macro multiply name",
+    ".global \\name",
+    ".thumb_func",
+    "\\name:",
+    "smlad r0, r1, r1, r1",
+    "bx lr",
+    ".endm",
+    ".section .text.multiply_in_flash, \"ax\", %progbits",
+    "multiply multiply_in_flash",
+    ".section .data.multiply_in_ram, \"aw\", %progbits",
+    ".balign 4",
+    "multiply multiply_in_ram",
+);
+
+unsafe extern "C" {
+    fn multiply_in_flash();
+    fn multiply_in_ram();
+}
+
+/// Logs SMLAD of operands of -32768 and the flags, by code in the flash, there at its other address, and in the RAM.
+pub fn dual_multiplication() {
+    const FLASH: usize = 0x0800_0000;
+    let flash = multiply_in_flash as *const () as usize;
+    for code in [flash, flash - FLASH, multiply_in_ram as *const () as usize] {
+        let (sum, flags): (u32, u32);
+        // SAFETY: the code changes r0 and flags.
+        unsafe {
+            asm!(
+                "msr apsr_nzcvq, {zero}",
+                "blx {code}",
+                "mrs {flags}, apsr",
+                code = in(reg) code, zero = in(reg) 0, flags = out(reg) flags, out("r0") sum,
+                in("r1") 0x8000_8000_u32, out("lr") _,
+            );
+        }
+        log(sum);
+        log(flags);
+    }
+}
+
+/// Logs PSP, SP and BASEPRI after values with bits that they do not have, and CONTROL.
+pub fn special_registers() {
+    let (process, main, mask, control): (u32, u32, u32, u32);
+    // SAFETY: the process stack is not used; stack pointer and mask are as before at the end.
+    unsafe {
+        asm!(
+            "msr psp, {odd}",
+            "mrs {process}, psp",
+            "mov {old}, sp",
+            "mov sp, {odd}",
+            "mov {main}, sp",
+            "mov sp, {old}",
+            "msr basepri, {odd}",
+            "mrs {mask}, basepri",
+            "msr basepri, {zero}",
+            "vmov s0, {zero}",
+            "mrs {control}, control",
+            odd = in(reg) 0x2000_103f, zero = in(reg) 0, old = out(reg) _, process = out(reg) process, main = out(reg) main,
+            mask = out(reg) mask, control = out(reg) control, out("s0") _,
+        );
+    }
+    for word in [process, main, mask, control] {
+        log(word);
+    }
+}
+
+/// Behind an exception, waits without floating point until r4 has changed, and logs FPSCR.
+pub fn flipped_float_state() {
+    let modes: u32;
+    // SAFETY: changes only its registers; the handler changes only what its frame restores, and memory.
+    unsafe {
+        asm!(
+            "vmsr fpscr, r4",
+            "svc 0",
+            "2: cmp r4, #0",
+            "beq 2b",
+            "vmrs {modes}, fpscr",
+            inout("r4") 0 => _,
+            modes = out(reg) modes,
+        );
+    }
+    log(modes);
 }
 
 /// Logs what the debugger answers to a call of operation 0x11 with parameter 0x22, and whether it is attached.

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Runs a program of the probe in QEMU and prints what it leaves in memory, as the tests of the emulator compare it.
+"""Runs the programs of the probe that compare cores in QEMU, and writes what they leave in memory to files beside this one, as the
+tests of the emulator compare it.
 
-usage: from_qemu.py instructions|exceptions ELF
+usage: from_qemu.py FOLDER    (that of `cargo xtask probe`)
 
 QEMU's board is a Netduino Plus 2 (STM32F405: the same core, flash and RAM at the same addresses).
 """
+import pathlib
 import struct
 import subprocess
 import sys
@@ -13,6 +15,7 @@ import time
 
 RAM, RAM_SIZE = 0x20000000, 128 * 1024
 GROUPS = 4
+BLOCKS, HANDLERS, STACKS = 3, 2, 2
 # Upper half of the words with which a step of the exceptions begins.
 STEPS = (0x9000, 0xA000, 0xB000, 0xC000, 0xD000, 0xF000)
 
@@ -44,10 +47,10 @@ class Elf:
         raise ValueError(f"{address:#010x} is in no segment")
 
 
-def ram_after(elf, path, finished):
+def ram_after(elf, path, finished, options=()):
     """The RAM once the word at symbol `finished` is not 0."""
     command = ["qemu-system-arm", "-M", "netduinoplus2", "-kernel", path, "-display", "none", "-serial", "none",
-               "-monitor", "stdio"]
+               "-monitor", "stdio", *options]
     qemu = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
     with tempfile.NamedTemporaryFile() as dump:
         for _ in range(600):
@@ -84,7 +87,7 @@ def instructions(elf, path):
         positions = ram[at + 4 * GROUPS:at + 4 * GROUPS + 4]
         values = struct.unpack_from("<4I", ram, at + 4 * GROUPS + 4)
         sample = [f"{register(p)}={v:08x}" for p, v in zip(positions, values) if p != 255]
-        print(" ".join(f"{s:08x}" for s in sums), "|", elf.text(elf.offset(name)), "|", " ".join(sample))
+        yield " | ".join([" ".join(f"{s:08x}" for s in sums), elf.text(elf.offset(name)), " ".join(sample)])
 
 
 def exceptions(elf, path):
@@ -96,8 +99,19 @@ def exceptions(elf, path):
         if not lines or entry >> 16 in STEPS:
             lines.append([])
         lines[-1].append(f"{entry:08x}")
-    print("\n".join(" ".join(line) for line in lines))
+    return (" ".join(line) for line in lines)
 
 
-program, path = sys.argv[1:]
-{"instructions": instructions, "exceptions": exceptions}[program](Elf(path), path)
+def interrupted(elf, path):
+    """An instruction takes 8 ns, and a cycle of SysTick 6 ns: no instruction is left out when its period grows by one."""
+    ram = ram_after(elf, path, "FINISHED", ["-icount", "shift=3"])
+    for n in range(BLOCKS * HANDLERS * STACKS):
+        total, different, missed = struct.unpack_from("<3I", ram, elf.symbols["OUTCOMES"] - RAM + 12 * n)
+        yield f"{total:08x} {different} {missed}"
+
+
+folder = pathlib.Path(sys.argv[1])
+for program in (instructions, exceptions, interrupted):
+    path = str(folder / program.__name__)
+    answers = pathlib.Path(__file__).with_name(program.__name__ + ".txt")
+    answers.write_text("".join(line + "\n" for line in program(Elf(path), path)))

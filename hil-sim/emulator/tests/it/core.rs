@@ -1,6 +1,6 @@
 //! The emulated core against the ARMv7-M Architecture Reference Manual.
 use stm32_emulator::{Halted, Stop};
-use thermal_sim::processor::ResetCause;
+use thermal_sim::processor::{CoreRegister, ResetCause};
 
 use crate::probe;
 
@@ -39,6 +39,47 @@ fn exceptions_nest_tail_chain_and_obey_the_mask_registers() {
 fn floating_point_context_survives_interrupts() {
     let (_, log) = probe::run(1, 3_000_000);
     assert_eq!(log, [0, 1, DONE], "wrong results, more than 100 ticks");
+}
+
+/// What the supervisor call of the probe and the exception that it pends log.
+const SUPERVISOR_CALL: [u32; 3] = [0x200b, 0x2100, 0x100e];
+
+/// 1 / 3 towards zero is 0x3eaaaaaa; FPSCR has its rounding mode and, behind a division, IXC (ARMv7-M, FPSCR).
+#[test]
+fn fpscr_survives_exceptions_whose_handlers_use_no_floating_point() {
+    let (_, log) = probe::run(28, 100_000);
+    let [first, second] = [SUPERVISOR_CALL; 2];
+    let values = [0x3eaa_aaaa, 0x3eaa_aaaa, 0x00c0_0010, 0x00c0_0000];
+    assert_eq!(log, [&first[..], &second, &values, &[DONE]].concat());
+}
+
+#[test]
+fn a_flip_of_fpscr_behind_an_exception_lasts() {
+    const ROUNDING: u8 = 23;
+    let mut machine = probe::machine(30);
+    machine.run_until(100_000).expect("runs");
+    assert_eq!(probe::log(&machine), SUPERVISOR_CALL);
+    machine.flip_core_bit(CoreRegister::Fpscr, ROUNDING).expect("flips");
+    machine.run_until(200_000).expect("runs");
+    machine.flip_core_bit(CoreRegister::R(4), 0).expect("flips");
+    machine.run_until(300_000).expect("runs");
+    assert_eq!(probe::log(&machine)[3..], [1 << ROUNDING, DONE]);
+}
+
+/// Of SMLAD, Q tells whether the sum with the addend overflows (ARMv7-M, SMLAD): 2 * 2^30 - 0x7fff8000 is 0x8000.
+#[test]
+fn smlad_leaves_q_clear_if_the_addend_brings_the_sum_back_into_range() {
+    let (_, log) = probe::run(31, 100_000);
+    let (sum, no_flags) = (0x8000, 0);
+    assert_eq!(log, [sum, no_flags, sum, no_flags, sum, no_flags, DONE]);
+}
+
+/// Bits 1:0 of stack pointers are 0; BASEPRI has the bits of the priorities that the chip has; CONTROL has three bits (ARMv7-M, special
+/// registers).
+#[test]
+fn special_registers_have_the_bits_of_the_architecture_only() {
+    let (_, log) = probe::run(29, 100_000);
+    assert_eq!(log, [0x2000_103c, 0x2000_103c, 0x30, 4, DONE]);
 }
 
 #[test]

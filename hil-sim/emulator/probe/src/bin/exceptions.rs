@@ -23,7 +23,7 @@ pub static FINISHED: AtomicU32 = AtomicU32::new(0);
 /// Address at which the program continues after a fault.
 #[unsafe(no_mangle)]
 static RESUME: AtomicU32 = AtomicU32::new(0);
-/// Stack pointer before an exception.
+/// Stack pointer before a supervisor call; 0 if its frame is not to be logged.
 #[unsafe(no_mangle)]
 static STACK_BEFORE: AtomicU32 = AtomicU32::new(0);
 /// What the handler of an interrupt does.
@@ -34,10 +34,15 @@ static ACTION: AtomicU32 = AtomicU32::new(0);
 struct Vectors([AtomicU32; 128]);
 static VECTORS: Vectors = Vectors([const { AtomicU32::new(0) }; 128]);
 
+#[repr(C, align(8))]
+struct Stack([AtomicU32; 128]);
+static PROCESS_STACK: Stack = Stack([const { AtomicU32::new(0) }; 128]);
+
 const CPACR: usize = 0xe000_ed88;
 const ICSR: usize = 0xe000_ed04;
 const VTOR: usize = 0xe000_ed08;
 const AIRCR: usize = 0xe000_ed0c;
+const CCR: usize = 0xe000_ed14;
 const SHPR2: usize = 0xe000_ed1c;
 const SHPR3: usize = 0xe000_ed20;
 const SHCSR: usize = 0xe000_ed24;
@@ -148,7 +153,11 @@ extern "C" fn dispatch(frame: *mut [u32; 8], exc_return: u32) -> u32 {
             }
             fault(frame);
         }
-        11 if supervisor_call(frame) == 5 => return_by = 0xffff_fff5, // no valid EXC_RETURN
+        11 => match supervisor_call(frame) {
+            5 => return_by = 0xffff_fff5, // no valid EXC_RETURN
+            7 => return_by = 0xffff_fffd, // to the process stack
+            _ => {}
+        },
         22 => first(),
         _ => {}
     }
@@ -189,12 +198,16 @@ fn use_float() {
     }
     log(modes);
     log(kept);
-    log(special(CONTROL) & 7);
+    log(special(CONTROL));
 }
 
 /// Returns the number of the call.
 fn supervisor_call(frame: *mut [u32; 8]) -> u8 {
-    log(STACK_BEFORE.load(Relaxed).wrapping_sub(frame as u32));
+    let stacked = match STACK_BEFORE.swap(0, Relaxed) {
+        0 => 0,
+        before => before - frame as u32,
+    };
+    log(stacked);
     // SAFETY: as in `fault`; the instruction before the return address is in the flash.
     let (number, psr) = unsafe {
         let pc = (*frame)[6];
@@ -215,6 +228,18 @@ fn supervisor_call(frame: *mut [u32; 8]) -> u8 {
         6 => {
             // SAFETY: raises the privilege of the caller.
             unsafe { asm!("mrs {r}, control", "bic {r}, #1", "msr control, {r}", r = out(reg) _) };
+        }
+        7 => {
+            // SAFETY: the frame is without floating-point state; the process stack is not used.
+            unsafe {
+                let copy = PROCESS_STACK.0.as_ptr().cast_mut().cast::<[u32; 8]>().add(2);
+                copy.write(*frame);
+                asm!(
+                    "msr psp, {copy}", "mrs {r}, control", "orr {r}, #1", "msr control, {r}",
+                    copy = in(reg) copy, r = out(reg) _,
+                );
+            }
+            log(special(CONTROL));
         }
         _ => {}
     }
@@ -337,7 +362,6 @@ fn supervisor_calls() {
         )
     }
     // floating-point frames, from the main stack and from the process stack
-    static STACK: [AtomicU32; 128] = [const { AtomicU32::new(0) }; 128];
     for process in [0, 2] {
         let (kept, modes, after): (u32, u32, u32);
         // SAFETY: the stack is large enough for the frames; SP is as before at the end.
@@ -350,19 +374,99 @@ fn supervisor_calls() {
                 "vmov {kept}, s5", "vmrs {modes}, fpscr", "mrs {after}, control",
                 "bic {t}, {after}, #2", "msr control, {t}", "isb",
                 "mov {t}, #0", "vmsr fpscr, {t}",
-                top = in(reg) (STACK.as_ptr_range().end as u32) & !7, process = in(reg) process,
+                top = in(reg) PROCESS_STACK.0.as_ptr_range().end, process = in(reg) process,
                 before = in(reg) STACK_BEFORE.as_ptr(), t = out(reg) _, kept = out(reg) kept,
                 modes = out(reg) modes, after = out(reg) after, out("s5") _, out("s20") _,
             )
         }
         log(kept);
         log(modes);
-        log(after & 7);
+        log(after);
     }
     // the context is no longer that of a program that uses the floating-point unit
     // SAFETY: the values of its registers are not needed any more.
     unsafe { asm!("mrs {t}, control", "bic {t}, #4", "msr control, {t}", "isb", t = out(reg) _) };
     supervisor_call!(0);
+}
+
+/// Modes, flags and results of the floating-point unit before and behind an exception.
+fn float_state() {
+    macro_rules! divide {
+        ($step:literal, $($exception:literal),+) => {{
+            log(0xb000_0000 | $step);
+            let (before, behind, flags, control): (u32, u32, u32, u32);
+            // SAFETY: the handlers change only what their frames restore, and memory.
+            unsafe {
+                asm!(
+                    "mov {t}, #0xc00000", "vmsr fpscr, {t}", "vmov.f32 s1, #1.0", "vmov.f32 s2, #3.0",
+                    "vdiv.f32 s0, s1, s2", "vmov {before}, s0", "vmsr fpscr, {t}",
+                    "str sp, [{stack}]", "cmp {stack}, {stack}", $($exception),+,
+                    "vmrs {flags}, fpscr", "vdiv.f32 s0, s1, s2", "vmov {behind}, s0", "mrs {control}, control",
+                    "mov {t}, #0", "vmsr fpscr, {t}",
+                    before = out(reg) before, behind = out(reg) behind, flags = out(reg) flags, control = out(reg) control,
+                    t = out(reg) _, stack = in(reg) STACK_BEFORE.as_ptr(), out("s0") _, out("s1") _, out("s2") _,
+                )
+            }
+            for word in [before, behind, flags, control] {
+                log(word);
+            }
+        }};
+    }
+    divide!(1, "svc 0");
+    divide!(2, "svc 1");
+    divide!(3, "svc 2");
+    divide!(4, "svc 0", "svc 0");
+    divide!(
+        5,
+        "mrs {t}, control",
+        "bic {t}, #4",
+        "msr control, {t}",
+        "isb",
+        "orr {t}, #4",
+        "msr control, {t}",
+        "isb"
+    );
+    divide!(6, "mov {t}, #4", "msr control, {t}", "isb", "svc 0");
+    divide!(7, "mov {t}, #0", "msr control, {t}", "isb", "svc 0");
+}
+
+/// Frames at stack pointers that are no multiple of 8, with CCR.STKALIGN and without, and stack pointers that are no multiple
+/// of 4.
+fn stack_alignment() {
+    log(0xb000_0008);
+    for stkalign in [1 << 9, 0] {
+        write(CCR, stkalign);
+        log(read(CCR) & 1 << 9);
+        for offset in [8, 12] {
+            let moved: u32;
+            // SAFETY: the stack pointer is as before at the end; no floating-point state is needed.
+            unsafe {
+                asm!(
+                    "mrs {t}, control", "bic {t}, #4", "msr control, {t}", "isb",
+                    "mov {old}, sp", "mov {t}, sp", "bic {t}, #7", "sub {t}, {offset}", "mov sp, {t}",
+                    "str sp, [{before}]", "cmp {before}, {before}", "svc 0",
+                    "mov {moved}, sp", "sub {moved}, {t}", "mov sp, {old}",
+                    before = in(reg) STACK_BEFORE.as_ptr(), offset = in(reg) offset, moved = out(reg) moved,
+                    old = out(reg) _, t = out(reg) _,
+                )
+            }
+            log(moved);
+        }
+    }
+    write(CCR, 1 << 9);
+    for value in [0x2000_1000, 0x2000_1001, 0x2000_1002, 0x2000_1003_u32] {
+        let (process, main): (u32, u32);
+        // SAFETY: the process stack is not used; the stack pointer is as before at the end.
+        unsafe {
+            asm!(
+                "msr psp, {value}", "mrs {process}, psp",
+                "mov {old}, sp", "mov sp, {value}", "mov {main}, sp", "mov sp, {old}",
+                value = in(reg) value, process = out(reg) process, main = out(reg) main, old = out(reg) _,
+            )
+        }
+        log(process);
+        log(main);
+    }
 }
 
 /// Executes code that faults, and continues behind it.
@@ -522,6 +626,56 @@ fn unprivileged() {
     log(special(PRIMASK));
     supervisor_call!(6);
     log(special(CONTROL) & 1);
+    // the masks hold without privilege, too
+    log(0x9000_0001);
+    write(SHPR2, 0x2000_0000);
+    write(IPR2, 0x60);
+    // SAFETY: nothing depends on the mask.
+    unsafe { cortex_m::register::basepri::write(0x40) };
+    write(ISER0, 1 << THIRD);
+    write(ISPR0, 1 << THIRD);
+    drop_privilege();
+    log(special(CONTROL) & 1);
+    supervisor_call!(6);
+    log(1);
+    // SAFETY: as above.
+    unsafe { cortex_m::register::basepri::write(0) };
+    isb();
+    log(2);
+    // exceptions from the process stack, and handlers that do not inherit the floating-point context
+    log(0x9000_0002);
+    let (modes, control): (u32, u32);
+    // SAFETY: the stack is large enough for the frames; SP, privilege and modes are as before at the end.
+    unsafe {
+        asm!(
+            "msr psp, {top}", "mov {t}, #0xc00000", "vmsr fpscr, {t}",
+            "mrs {t}, control", "orr {t}, #3", "msr control, {t}", "isb",
+            "str sp, [{before}]", "cmp {before}, {before}", "svc 1",
+            "cmp {before}, {before}", "svc 2",
+            "vmrs {modes}, fpscr", "mrs {control}, control",
+            "cmp {before}, {before}", "svc 6",
+            "mrs {t}, control", "bic {t}, #2", "msr control, {t}", "isb", "mov {t}, #0", "vmsr fpscr, {t}",
+            top = in(reg) PROCESS_STACK.0.as_ptr_range().end, before = in(reg) STACK_BEFORE.as_ptr(), t = out(reg) _,
+            modes = out(reg) modes, control = out(reg) control, out("s5") _, out("s20") _,
+        )
+    }
+    log(modes);
+    log(control);
+    // a handler takes privilege and changes the stack
+    log(0x9000_0003);
+    let (control, moved): (u32, u32);
+    // SAFETY: as above.
+    unsafe {
+        asm!(
+            "mrs {t}, control", "bic {t}, #4", "msr control, {t}", "isb", "mov {old}, sp",
+            "cmp {old}, {old}", "svc 7",
+            "mrs {control}, control", "mov {moved}, sp", "cmp {old}, {old}", "svc 6",
+            "mrs {t}, control", "bic {t}, #2", "msr control, {t}", "isb", "mov sp, {old}",
+            t = out(reg) _, old = out(reg) _, control = out(reg) control, moved = out(reg) moved,
+        )
+    }
+    log(control);
+    log(moved - PROCESS_STACK.0.as_ptr() as u32);
 }
 
 #[entry]
@@ -533,6 +687,8 @@ fn main() -> ! {
     write(CPACR, 0xf0_0000);
     priorities();
     supervisor_calls();
+    float_state();
+    stack_alignment();
     exclusive_monitor();
     faults();
     alignment();
