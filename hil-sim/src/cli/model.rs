@@ -100,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for (t_s, row) in arguments.times.iter().zip(&rows) {
         if let Some((column, value)) = row.columns().into_iter().find(|(_, x)| !x.is_finite()) {
             return Err(Failure::input(anyhow!(
-                "--times {t_s}: {column} is {value} of this material and load; allowed are those with which every column is finite"
+                "--times {t_s:?}: {column} is {value} of this material and load; allowed are those with which every column is finite"
             )));
         }
     }
