@@ -57,13 +57,8 @@ pub struct BenchOperator<'a> {
 pub fn lines(reader: impl BufRead + Send + 'static) -> Lines {
     let (sender, lines) = mpsc::channel();
     thread::spawn(move || {
-        let lines = reader.split(b'\n').map(|line| {
-            let mut line = text::decode(line?)?;
-            line.truncate(line.trim_end_matches('\r').len());
-            Ok(line)
-        });
         // Ends when nobody listens.
-        for line in lines {
+        for line in text::lines(reader) {
             if sender.send(line).is_err() {
                 break;
             }

@@ -5,6 +5,7 @@ use std::io::Write;
 use std::sync::mpsc::TryRecvError;
 
 use thermal_client::client::ReceivedTelemetry;
+use thermal_client::text::escaped_text;
 use thermal_device::StateName;
 use thermal_session::{AnswerKind, Decision, OperatorQuestion, People, Question, Response, Update};
 use thermal_window::{MonitorPeople, Order, StopFlag, Tones, texts};
@@ -74,7 +75,8 @@ impl<'a> TerminalPeople<'a> {
 
     fn tell(&mut self, text: &str) {
         // What is on the screen changes nothing of the session.
-        let _ignored = writeln!(self.screen, "{text}").and_then(|()| self.screen.flush());
+        let _ignored =
+            writeln!(self.screen, "{}", escaped_text(text)).and_then(|()| self.screen.flush());
     }
 
     /// Takes what was entered meanwhile; never waits.

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use thermal_client::text::escaped_text;
 use thermal_session::{Decision, People, Response, Update};
 use thermal_window::StopFlag;
 
@@ -53,7 +54,7 @@ impl<'a> Progress<'a> {
 
     fn tell(&mut self, text: &str) {
         // What is on the screen changes nothing of the session.
-        let _ignored = writeln!(self.screen, "{text}");
+        let _ignored = writeln!(self.screen, "{}", escaped_text(text));
     }
 }
 

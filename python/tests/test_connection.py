@@ -143,6 +143,14 @@ def test_a_refusal_names_line_and_answer(fake: FakeDevice, display: Display) -> 
     assert refused.value.reason == "temperature 99 out of range; temperature is 15 to 42 C"
 
 
+def test_control_characters_of_a_device_are_shown_by_their_numbers(fake: FakeDevice, display: Display) -> None:
+    fake.answers["hold 99"] = "err \x1b]0;title\x07 \x7f2J"
+    with pytest.raises(Refused) as refused:
+        display.hold(99)
+    assert refused.value.reason == r"\u{1b}]0;title\u{7} \u{7f}2J"
+    assert str(refused.value).isprintable()
+
+
 @pytest.mark.parametrize("failure", ["line-lost", "line-damaged", "answer-lost", "answer-damaged", "checksum-lost"])
 def test_questions_are_repeated_whatever_happens_to_line_or_answer(
     fake: FakeDevice, display: Display, failure: str

@@ -82,6 +82,12 @@ def test_questions_and_numbered_rows_only_may_be_repeated(line: str, repeated: b
     assert wire.may_be_repeated(line) is repeated
 
 
+def test_control_characters_are_shown_by_their_numbers() -> None:
+    for code in [*range(0x20), *range(0x7F, 0xA0)]:
+        assert wire.escaped(f"a{chr(code)}b") == f"a\\u{{{code:x}}}b"
+    assert wire.escaped("err 23 °C; \\u{1b}") == "err 23 °C; \\u{1b}"
+
+
 def test_bytes_are_split_into_lines_wherever_they_are_cut() -> None:
     data = b"ok\r\n\nE 1 0 land\nT 1 off - - - - - - 0 0 0 -\n"
     for cut in range(len(data)):

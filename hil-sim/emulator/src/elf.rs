@@ -2,6 +2,7 @@
 use object::read::elf::{ElfFile32, FileHeader, ProgramHeader};
 use object::{Endianness, Object, ObjectSymbol, SymbolKind, elf};
 use std::path::Path;
+use thermal_client::text;
 
 /// First address of the main flash.
 pub const FLASH_BASE: u32 = 0x0800_0000;
@@ -74,7 +75,8 @@ impl Firmware {
     /// # Errors
     /// The file cannot be read, or is not an image for the STM32F446RE.
     pub fn from_file(path: &Path) -> Result<Self, ImageError> {
-        let bytes = std::fs::read(path).map_err(ImageError::Unreadable)?;
+        let bytes =
+            text::read_bytes(path, text::TABLE_BYTES_MAX).map_err(ImageError::Unreadable)?;
         Self::from_elf(&bytes)
     }
 

@@ -10,6 +10,7 @@ use object::read::elf::ElfFile32;
 use object::{Endianness, Object, ObjectSection, ObjectSymbol};
 use serde::Deserialize;
 use std::path::Path;
+use thermal_client::text;
 
 /// Version of the protocol in which the ELF file lists the tests.
 const PROTOCOL: [u8; 4] = 1u32.to_le_bytes();
@@ -87,7 +88,7 @@ impl EmbeddedTests {
     /// # Errors
     /// It is no image for the STM32F446RE, or was not built with `embedded-test` 0.7.
     pub fn from_file(path: &Path) -> Result<Self, NotATestImage> {
-        let bytes = std::fs::read(path)?;
+        let bytes = text::read_bytes(path, text::TABLE_BYTES_MAX)?;
         let firmware = Firmware::from_elf(&bytes)?;
         let tests = tests(&bytes).map_err(NotATestImage::List)?;
         Ok(Self { firmware, tests })

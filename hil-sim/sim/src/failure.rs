@@ -3,6 +3,8 @@
 use std::fmt;
 use std::process::ExitCode;
 
+use thermal_client::text::escaped_text;
+
 /// Why a command failed, and the exit status that says so.
 #[derive(Debug)]
 pub struct Failure {
@@ -34,7 +36,7 @@ impl Failure {
         match ended {
             Ok(()) => ExitCode::SUCCESS,
             Err(failure) => {
-                eprintln!("{command}: {failure}");
+                eprintln!("{command}: {}", escaped_text(&failure.to_string()));
                 ExitCode::from(failure.status)
             }
         }

@@ -113,7 +113,8 @@ fn commission_on<E: Engine>(
 
 /// The lines of a file, without empty ones.
 fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
-    let text = text::read(path).with_context(|| format!("--restore {}", path.display()))?;
+    let text = text::read(path, text::DOCUMENT_BYTES_MAX)
+        .with_context(|| format!("--restore {}", path.display()))?;
     let lines: Vec<String> =
         (text.lines().map(|line| line.trim().to_owned())).filter(|line| !line.is_empty()).collect();
     for (number, line) in (1..).zip(&lines) {

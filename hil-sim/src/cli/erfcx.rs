@@ -1,6 +1,6 @@
 //! `hil-sim erfcx`: the firmware's kernel, one value a line.
 
-use std::io::{self, BufRead, BufWriter, Write};
+use std::io::{self, BufWriter, Write};
 
 use anyhow::{Context, anyhow};
 use contact_model::fixed_point::{Fraction, MantissaExponent, Ticks, erfcx};
@@ -12,8 +12,8 @@ use super::Failure;
 pub fn run() -> Result<(), Failure> {
     let mut out = BufWriter::new(io::stdout().lock());
     writeln!(out, "z,E_bits").map_err(Failure::run)?;
-    for (index, line) in io::stdin().lock().split(b'\n').enumerate() {
-        let line = line.and_then(text::decode).context("standard input").map_err(Failure::run)?;
+    for (index, line) in text::lines(io::stdin().lock()).enumerate() {
+        let line = line.context("standard input").map_err(Failure::run)?;
         let word = line.trim();
         if word.is_empty() {
             continue;

@@ -97,18 +97,39 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         })
         .collect::<Result<_, _>>()
         .map_err(Failure::input)?;
+    for (t_s, row) in arguments.times.iter().zip(&rows) {
+        if let Some((column, value)) = row.columns().into_iter().find(|(_, x)| !x.is_finite()) {
+            return Err(Failure::input(anyhow!(
+                "--times {t_s:?}: {column} is {value} of this material and load; allowed are those with which every column is finite"
+            )));
+        }
+    }
     print(&arguments.times, &rows).map_err(Failure::run)
+}
+
+impl ModelRow {
+    /// Names and values of the columns behind the time, in their order.
+    const fn columns(&self) -> [(&'static str, f64); 8] {
+        let Self { z, erfcx, t_skin_c, t_object_c, q_w_m2, t_display_c, r_m2k_w, ratio } = *self;
+        [
+            ("z", z),
+            ("erfcx", erfcx),
+            ("t_skin_c", t_skin_c),
+            ("t_object_c", t_object_c),
+            ("q_w_m2", q_w_m2),
+            ("t_display_c", t_display_c),
+            ("r_m2k_w", r_m2k_w),
+            ("ratio", ratio),
+        ]
+    }
 }
 
 fn print(times: &[f64], rows: &[ModelRow]) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "t_s,z,erfcx,t_skin_c,t_object_c,q_w_m2,t_display_c,r_m2k_w,ratio")?;
     for (t_s, row) in times.iter().zip(rows) {
-        let ModelRow { z, erfcx, t_skin_c, t_object_c, q_w_m2, t_display_c, r_m2k_w, ratio } = row;
-        writeln!(
-            out,
-            "{t_s},{z},{erfcx},{t_skin_c},{t_object_c},{q_w_m2},{t_display_c},{r_m2k_w},{ratio}"
-        )?;
+        let cells = row.columns().map(|(_, value)| value.to_string());
+        writeln!(out, "{t_s},{}", cells.join(","))?;
     }
     Ok(())
 }

@@ -1,5 +1,7 @@
 //! Observations by participant and level, as the cells of a repeated-measures design.
 
+use std::collections::BTreeMap;
+
 /// Means by participant and level. Participants without an observation in some cell are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cells {
@@ -22,12 +24,13 @@ impl Cells {
             participants: Vec::new(),
             partial: Vec::new(),
         };
-        for participant in distinct(observations.iter().map(|(participant, ..)| *participant)) {
+        let of_each =
+            observations.iter().map(|(participant, level, value)| (*participant, (level, *value)));
+        for (participant, observations) in grouped(of_each) {
             let mean_at = |level: &L| {
-                let of_cell = observations.iter().filter(|(one, at, value)| {
-                    *one == participant && at == level && value.is_finite()
-                });
-                mean(of_cell.map(|(.., value)| *value))
+                let of_cell =
+                    observations.iter().filter(|(at, value)| *at == level && value.is_finite());
+                mean(of_cell.map(|(_, value)| *value))
             };
             let own: Vec<Option<f64>> = levels.iter().map(mean_at).collect();
             cells.partial.push((participant, own.clone()));
@@ -66,15 +69,24 @@ pub fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
     known
 }
 
+/// Values by key, in the order in which the keys first occur.
+pub fn grouped<K: Ord + Clone, T>(values: impl IntoIterator<Item = (K, T)>) -> Vec<(K, Vec<T>)> {
+    let mut groups: Vec<(K, Vec<T>)> = Vec::new();
+    let mut places = BTreeMap::new();
+    for (key, value) in values {
+        let place = *places.entry(key.clone()).or_insert_with(|| {
+            groups.push((key, Vec::new()));
+            groups.len() - 1
+        });
+        groups[place].1.push(value);
+    }
+    groups
+}
+
 /// Participants' own means, from observations: participant, value.
 pub fn means_of_participants(observations: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
-    let observations: Vec<_> = observations.filter(|(_, value)| value.is_finite()).collect();
-    let participants = distinct(observations.iter().map(|(participant, _)| *participant));
-    let own = |participant: usize| {
-        let own = observations.iter().filter(move |(one, _)| *one == participant);
-        mean(own.map(|(_, value)| *value))
-    };
-    participants.into_iter().filter_map(own).collect()
+    let of_each = grouped(observations.filter(|(_, value)| value.is_finite()));
+    of_each.into_iter().filter_map(|(_, own)| mean(own.into_iter())).collect()
 }
 
 /// Number of participants, mean of their own means, and its standard error.

@@ -12,6 +12,7 @@ mod tests;
 
 use std::collections::BTreeMap;
 
+use serde::Deserialize;
 use thermal_session::dataset::DataSet;
 
 pub use input::Simulated;
@@ -53,10 +54,48 @@ impl Analysis {
     pub fn csv(&self) -> Vec<(String, String)> {
         let tables = self.tasks.iter().flat_map(|task| {
             let tables = task.sections.iter().flat_map(|section| &section.tables);
-            tables.map(|table| (format!("{}_{}.csv", task.task, table.name), table.csv()))
+            tables.map(|table| (csv_name(&task.task, &table.name), table.csv()))
         });
         tables.collect()
     }
+}
+
+/// Name of the file of a table of a task.
+fn csv_name(task: &str, table: &str) -> String {
+    format!("{task}_{table}.csv")
+}
+
+/// Names of the files that [`Analysis::csv`] has given for an analysis, from its JSON.
+///
+/// # Errors
+/// The text is no JSON of an analysis.
+pub fn csv_names(json: &str) -> Result<Vec<String>, serde_json::Error> {
+    #[derive(Deserialize)]
+    struct Named {
+        tasks: Vec<NamedTask>,
+    }
+    #[derive(Deserialize)]
+    struct NamedTask {
+        task: String,
+        sections: Vec<NamedSection>,
+    }
+    #[derive(Deserialize)]
+    struct NamedSection {
+        tables: Vec<NamedTable>,
+    }
+    #[derive(Deserialize)]
+    struct NamedTable {
+        name: String,
+    }
+    let is_part_of_a_name =
+        |name: &&str| name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-');
+    let Named { tasks } = serde_json::from_str(json)?;
+    let names = tasks.iter().flat_map(|NamedTask { task, sections }| {
+        let tables = sections.iter().flat_map(|section| &section.tables);
+        let names = tables.map(|table| &*table.name).filter(is_part_of_a_name);
+        names.filter(move |_| is_part_of_a_name(&&**task)).map(move |name| csv_name(task, name))
+    });
+    Ok(names.collect())
 }
 
 impl Table {

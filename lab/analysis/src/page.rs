@@ -1,6 +1,7 @@
 //! The analysis as one HTML page.
 
-use thermal_charts::{document, escape, svg_element};
+use thermal_charts::{document, svg_element};
+use thermal_client::text::escaped_text;
 
 use crate::report::{Analysis, Cell, Column, Section, Shown, Table, TaskAnalysis};
 
@@ -9,6 +10,11 @@ font-weight:600;padding:.3rem 0}td.n,th.n{text-align:right}td.n{font-variant-num
 figure{margin:1.2rem 0}figcaption{font-weight:600}.not{border-left:4px solid #b35900;padding-left:.8rem}\
 .simulated{border-left:4px solid #6639ba;padding-left:.8rem}nav ul{columns:2}th .u{font-weight:400;color:#666}\
 div.wide,details{overflow-x:auto}details{margin-bottom:1.2rem}td.w{white-space:nowrap}";
+
+/// A text as a page shows it.
+fn escape(text: &str) -> String {
+    thermal_charts::escape(&escaped_text(text))
+}
 
 /// Letters of a cell from which it is wrapped.
 const WRAPPED: usize = 48;
@@ -105,7 +111,7 @@ fn of_table(table: &Table) -> String {
         let mut cells = table.rows.iter().filter_map(|row| row.get(*index));
         cells.any(|cell| *cell != Cell::Nothing)
     };
-    let columns: Vec<usize> = (0..table.columns.len()).filter(has_value).collect();
+    let columns = (0..table.columns.len()).filter(has_value);
     let is_number = |index: usize| {
         table
             .rows
@@ -113,6 +119,7 @@ fn of_table(table: &Table) -> String {
             .any(|row| matches!(row.get(index), Some(Cell::Count(_) | Cell::Number(_))))
     };
     let class = |index: usize| if is_number(index) { " class=\"n\"" } else { "" };
+    let columns: Vec<(usize, &str)> = columns.map(|index| (index, class(index))).collect();
     let caption = escape(&table.caption);
     let (begin, end) = if table.is_folded {
         (format!("<details><summary>{caption}</summary><table><tr>"), "</table></details>")
@@ -120,21 +127,21 @@ fn of_table(table: &Table) -> String {
         (format!("<div class=\"wide\"><table><caption>{caption}</caption><tr>"), "</table></div>")
     };
     let mut text = begin;
-    for &index in &columns {
+    for &(index, class) in &columns {
         let column = &table.columns[index];
         let unit = match column.unit {
             "" => String::new(),
             unit => format!(" <span class=\"u\">/ {}</span>", escape(unit)),
         };
-        text += &format!("<th{}>{}{unit}</th>", class(index), escape(&column.name));
+        text += &format!("<th{class}>{}{unit}</th>", escape(&column.name));
     }
     text += "</tr>";
     for row in &table.rows {
         text += "<tr>";
-        for &index in &columns {
+        for &(index, class) in &columns {
             let cell = row.get(index).unwrap_or(&Cell::Nothing);
             let shown = shown(cell, &table.columns[index]);
-            let class = match class(index) {
+            let class = match class {
                 "" if shown.chars().count() < WRAPPED => " class=\"w\"",
                 class => class,
             };

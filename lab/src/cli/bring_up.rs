@@ -122,7 +122,8 @@ const RECORD: &str = "bring-up.json";
 fn first_report(arguments: &Arguments) -> anyhow::Result<Report> {
     let image = match &arguments.image {
         Some(path) => {
-            let bytes = fs::read(path).with_context(|| format!("--image {}", path.display()))?;
+            let bytes = text::read_bytes(path, text::TABLE_BYTES_MAX)
+                .with_context(|| format!("--image {}", path.display()))?;
             Some(format!("{:08x}", CRC_32.checksum(&bytes)))
         }
         None => None,
@@ -130,7 +131,7 @@ fn first_report(arguments: &Arguments) -> anyhow::Result<Report> {
     let mut report = Report::default();
     if let Some(from) = arguments.from {
         let path = arguments.out.join(RECORD);
-        let text = text::read(&path).with_context(|| {
+        let text = text::read(&path, text::DOCUMENT_BYTES_MAX).with_context(|| {
             format!("--from {}: {}: the results of the earlier stages", from.name, path.display())
         })?;
         report = serde_json::from_str(&text).with_context(|| path.display().to_string())?;

@@ -166,7 +166,7 @@ fn at_device<L: Link>(
 /// The person of a file, which must be this one.
 fn read(path: &Path, code: PersonCode) -> anyhow::Result<Person> {
     let context = || format!("--restore {}", path.display());
-    let text = text::read(path).with_context(context)?;
+    let text = text::read(path, text::DOCUMENT_BYTES_MAX).with_context(context)?;
     let file: PersonFile = toml::from_str(&text).with_context(context)?;
     if file.code != code.to_string() {
         anyhow::bail!("--restore {}: it is of {:?}, not of {code}", path.display(), file.code);

@@ -1,5 +1,6 @@
 //! Files that hold a measurement, and are replaced only if someone asks for it.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::anyhow;
@@ -17,11 +18,17 @@ pub struct KeptFiles {
 impl KeptFiles {
     /// Refuses a file of `--out` that is there, before anything is measured.
     pub fn check(&self, path: &Path) -> Result<(), Failure> {
-        // A link that leads nowhere is there, too.
-        let is_there = path.symlink_metadata().is_ok();
+        match path.symlink_metadata() {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+            Err(error) => {
+                let context = format!("--out {}", path.display());
+                return Err(Failure::input(anyhow::Error::new(error).context(context)));
+            }
+            // A link that leads nowhere is there, too.
+            Ok(_) => {}
+        }
         // What is no file, such as /dev/stdout, loses nothing.
-        let is_kept = is_there && !path.metadata().is_ok_and(|data| !data.is_file());
-        if !is_kept || self.force {
+        if self.force || path.metadata().is_ok_and(|data| !data.is_file()) {
             return Ok(());
         }
         Err(Failure::input(anyhow!(

@@ -22,10 +22,16 @@ mod window;
 use std::io::{Write, stdout};
 
 use anyhow::Context;
+use thermal_client::text::escaped_text;
 
 use kept_files::KeptFiles;
 pub use target::Target;
 pub use thermal_sim::Failure;
+
+/// Writes what somebody should know to standard error.
+fn notice(text: &str) {
+    eprintln!("thermal-lab: {}", escaped_text(text));
+}
 
 /// Writes a line to standard output.
 fn print(text: &str) -> Result<(), Failure> {

@@ -54,9 +54,24 @@ struct Line {
 fn read(file: &Path) -> anyhow::Result<Vec<RenderedTouch>> {
     let context = |problem: csv::Error| anyhow::anyhow!("{}: {problem}", file.display());
     let mut touches = Vec::new();
-    let text = text::open(file).map_err(|problem| context(problem.into()))?;
-    for line in csv::Reader::from_reader(text).deserialize() {
+    let text =
+        text::open(file, text::TABLE_BYTES_MAX).map_err(|problem| context(problem.into()))?;
+    let mut lines = csv::Reader::from_reader(text);
+    if let Some(name) = text::repeated_column(lines.headers().map_err(context)?) {
+        anyhow::bail!("{}:1: two columns {name:?}; allowed is each name once", file.display());
+    }
+    for (number, line) in (2..).zip(lines.deserialize()) {
         let line: Line = line.map_err(context)?;
+        for (column, error_mk) in [
+            ("skin_max_after_50ms_mk", line.skin_max_after_50ms_mk),
+            ("skin_max_after_500ms_mk", line.skin_max_after_500ms_mk),
+        ] {
+            anyhow::ensure!(
+                error_mk.is_finite(),
+                "{}:{number}: {column} = {error_mk}; allowed is a finite number",
+                file.display()
+            );
+        }
         if line.told == "as-it-is" {
             touches.push(RenderedTouch {
                 group: line.population,

@@ -13,7 +13,7 @@ use thermal_session::dataset::{RecordedSession, recorded_sessions};
 use thermal_window::{SessionView, StopFlag};
 
 use super::target::stop_on_signals;
-use super::{Failure, window};
+use super::{Failure, notice, window};
 
 /// Longest time for which nothing is looked at, so that a stop is seen.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn chosen(arguments: &Arguments) -> Result<RecordedSession, Failure> {
     let data = recorded_sessions(&arguments.folder).map_err(Failure::input)?;
     for left_out in &data.left_out {
-        eprintln!("thermal-lab: left out: {left_out}");
+        notice(&format!("left out: {left_out}"));
     }
     let mut all = data.sessions;
     let is_meant =

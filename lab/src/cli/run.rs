@@ -136,6 +136,7 @@ pub(super) fn refused(error: RecordingError) -> Failure {
         | RecordingError::OtherFile { .. }
         | RecordingError::OtherSession { .. } => Failure::input(error),
         RecordingError::File { .. }
+        | RecordingError::FileOfTrials { .. }
         | RecordingError::Unreadable { .. }
         | RecordingError::InUse(_)
         | RecordingError::Content { .. } => Failure::run(error),

@@ -17,7 +17,7 @@ use thermal_sim::engine::NativeEngine;
 use thermal_sim::scene::Scene;
 use thermal_window::StopFlag;
 
-use super::Failure;
+use super::{Failure, notice};
 
 /// Room of the simulated device, C, and the seed of its noise, unless a scene says them.
 const ROOM_C: f64 = 24.0;
@@ -162,7 +162,7 @@ fn with_link<L: Link, T>(
         match client.switch_off() {
             Ok(()) if was_driven => eprintln!("thermal-lab: the bridge is off"),
             Err(error) if was_driven || matches!(error, ClientError::NotOff { .. }) => {
-                eprintln!("thermal-lab: {error}");
+                notice(&error.to_string());
             }
             // The failure of the work is reported, and that of the link with it.
             _ => {}

@@ -60,6 +60,72 @@ fn a_course_is_loaded_and_waits_for_the_landing() {
     assert!(text(&wrong.stderr).contains("course.csv:2: celsius 99"), "{}", text(&wrong.stderr));
 }
 
+/// `play` with these arguments and this standard input.
+fn play(arguments: &[&str], input: &[u8]) -> Output {
+    let mut player = thermal_lab()
+        .args(["play", "--simulated", "--arm"])
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A program that refuses the file does not read it.
+    let _ignored = player.stdin.take().unwrap().write_all(input);
+    player.wait_with_output().unwrap()
+}
+
+/// Whoever opens a FIFO waits until another program writes into it, and a device may have no end.
+#[cfg(unix)]
+#[test]
+fn a_course_may_come_through_a_pipe_but_not_from_a_fifo_device_or_folder() {
+    let course = b"t_s,celsius\n0,30\n2,28\n";
+    let piped = play(&["/dev/stdin"], course);
+    assert!(piped.status.success(), "{}", text(&piped.stderr));
+    assert_eq!(piped.stdout, play(&["/dev/fd/0"], course).stdout);
+    let fifo = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("course.fifo");
+    let _ignored = std::fs::remove_file(&fifo);
+    assert!(Command::new("mkfifo").arg(&fifo).status().unwrap().success());
+    for (path, kind) in [
+        (fifo.to_str().unwrap(), "a FIFO"),
+        ("/dev/zero", "a device"),
+        (env!("CARGO_TARGET_TMPDIR"), "a folder"),
+    ] {
+        let refused = play(&[path], b"");
+        assert_eq!(refused.status.code(), Some(2), "{path}");
+        let said = format!("{path}: this is {kind}; allowed is a file");
+        assert!(text(&refused.stderr).contains(&said), "{}", text(&refused.stderr));
+    }
+}
+
+#[test]
+fn errors_of_touches_that_are_no_numbers_are_refused_with_their_line() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("touches.csv");
+    let columns = "population,case,told,skin_max_after_50ms_mk,skin_max_after_500ms_mk";
+    for (columns, rows, said) in [
+        (
+            columns,
+            "B,copper,as-it-is,20,NaN",
+            "touches.csv:2: skin_max_after_500ms_mk = NaN; allowed is a finite number",
+        ),
+        (
+            columns,
+            "B,copper,as-it-is,20,9\nB,copper,other,1e999,9",
+            "touches.csv:3: skin_max_after_50ms_mk = inf; allowed is a finite number",
+        ),
+        (
+            &format!("{columns},told"),
+            "B,copper,as-it-is,20,9,x",
+            "touches.csv:1: two columns \"told\"; allowed is each name once",
+        ),
+    ] {
+        std::fs::write(&path, format!("{columns}\n{rows}\n")).unwrap();
+        let refused = run(&format!("predict --touches {}", path.display()));
+        assert_eq!((refused.status.code(), text(&refused.stdout)), (Some(2), ""));
+        assert!(text(&refused.stderr).contains(said), "{}", text(&refused.stderr));
+    }
+}
+
 #[test]
 fn answers_are_printed_and_a_refusal_is_a_failure() {
     let sent = run("send --simulated law arm");

@@ -101,3 +101,46 @@ fn simulated_participants_are_pooled_with_real_ones_only_if_asked_for() {
     assert!(html.contains("1 simulated participant(s) were left out (01)"));
     assert_eq!(participants(" --pool-simulated"), serde_json::json!(["01", "02"]));
 }
+
+/// Beside the tables of this analysis those of an earlier one would look like its results.
+#[test]
+fn tables_of_an_earlier_analysis_are_removed_and_nothing_of_others() {
+    let (data, page) = recorded("analyse-again", &["01"]);
+    analysed(&data, &page, "");
+    let json = page.join("analysis.json");
+    let text = fs::read_to_string(&json).unwrap();
+    // As if the earlier analysis had been one of a data set with staircases; and a list that somebody has changed.
+    let table = |name: &str| format!("\"name\": \"{name}\"");
+    let text = text.replace(&table("trials"), &table("staircases"));
+    fs::write(&json, text.replace(&table("measures"), &table("../../data/outside"))).unwrap();
+    let outside = data.join("outside.csv");
+    let notes = page.join("p5_notes.csv");
+    let old = page.join("p5_staircases.csv");
+    for file in [&outside, &notes, &old] {
+        fs::write(file, "x").unwrap();
+    }
+    let (_, stderr) = analysed(&data, &page, "");
+    assert!(stderr.contains(&format!("removed {}", old.display())), "{stderr}");
+    assert!(!old.exists() && outside.exists() && notes.exists());
+    assert!(page.join("p5_trials.csv").exists());
+    fs::write(&json, "{}").unwrap();
+    fs::write(&old, "x").unwrap();
+    let (_, stderr) = analysed(&data, &page, "");
+    assert!(stderr.contains("analysis.json: this is not an analysis; tables"), "{stderr}");
+    assert!(old.exists());
+}
+
+/// They would change the title of a terminal, and write from right to left.
+#[test]
+fn control_characters_of_a_data_set_are_shown_by_their_numbers() {
+    let (data, page) = recorded("analyse-controls", &["01", "02"]);
+    let list =
+        "participant_id\texcluded\texclusion_reason\nsub-02\tyes\tmoved \u{1b}]0;x\u{202e}\n";
+    fs::write(data.join("participants.tsv"), list).unwrap();
+    let (_, stderr) = analysed(&data, &page, "");
+    let html = fs::read_to_string(page.join("analysis.html")).unwrap();
+    for shown in [&stderr, &html] {
+        assert!(shown.contains(r"moved \u{1b}]0;x\u{202e}"), "{stderr}");
+        assert!(!shown.contains(['\u{1b}', '\u{202e}']));
+    }
+}

@@ -590,6 +590,8 @@ class Connection:
         if not line:
             return
         content, right = wire.strip_checksum(line)
+        # Only now, because the checksum is that of the line as it was sent.
+        content, line = wire.escaped(content), wire.escaped(line)
         finger, rest = wire.split_finger(content)
         if rest.startswith("err busy: "):
             self._busy = rest.removeprefix("err busy: ")

@@ -13,6 +13,7 @@ import threading
 from pathlib import Path
 from typing import Literal
 
+from . import wire
 from .errors import SimulatorMissing
 
 HIL_SIM_VARIABLE = "THERMAL_DISPLAY_HIL_SIM"
@@ -126,7 +127,7 @@ class Simulator:
                     stream.flush()
                     answer = stream.readline().strip()
                     if answer.split(" ", 1)[0] != "ok":
-                        raise ValueError(f"hil-sim answers '{line}' with '{answer}'")
+                        raise ValueError(f"hil-sim answers '{line}' with '{wire.escaped(answer)}'")
                     answers.append(answer.removeprefix("ok").strip())
         return answers
 

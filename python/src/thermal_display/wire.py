@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import operator
+import re
 import zlib
 from collections.abc import Iterable
 
@@ -34,6 +35,14 @@ def strip_checksum(line: str) -> tuple[str, bool | None]:
         return line, False
     right = checksum(content.encode("latin-1", "replace")) == int(digits, 16)
     return (content, True) if right else (line, False)
+
+
+_CONTROL_CHARACTER = re.compile("[\x00-\x1f\x7f-\x9f]")
+
+
+def escaped(line: str) -> str:
+    r"""A line from the device as it is shown: control characters, with which a terminal would do something, as `\u{1b}`."""
+    return _CONTROL_CHARACTER.sub(lambda found: f"\\u{{{ord(found[0]):x}}}", line)
 
 
 def split_finger(line: str) -> tuple[int | None, str]:

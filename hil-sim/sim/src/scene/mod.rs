@@ -158,7 +158,8 @@ impl Scene {
     /// # Errors
     /// The first thing that is wrong, with file and line, and what is allowed.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let text = text::read(path).map_err(|error| SceneError::unreadable(path, &error))?;
+        let text = text::read(path, text::DOCUMENT_BYTES_MAX)
+            .map_err(|error| SceneError::unreadable(path, &error))?;
         Self::parse(&text, path)
     }
 

@@ -3,12 +3,14 @@
 use std::ops::Range;
 use std::path::Path;
 
+use thermal_client::text::control_in_toml;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::Setpoint;
 use thermal_plant::parameters::PlaceBeforeContact;
 use thermal_plant::{ConfigError, Params, Plant};
 use toml::Spanned;
+use toml::de::DeTable;
 
 use super::fault::faults;
 use super::file::{self, File};
@@ -26,6 +28,12 @@ const SETTLE_S: f64 = 8.0;
 pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let source = Source { file: path, text };
     nesting::check(&source)?;
+    // A text that is no TOML is reported below.
+    if let Ok(document) = DeTable::parse(text)
+        && let Some((at, problem)) = control_in_toml(document.get_ref())
+    {
+        return Err(source.error(Some(at..at), problem));
+    }
     let file: File = toml::from_str(text).map_err(|error| {
         // The reader names types of its own.
         let problem = (error.message().replace("expected f64", "expected a number"))

@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use thermal_client::text::escaped_text;
 use thermal_plant::Params;
 use thermal_plant::parameters;
 
@@ -23,7 +24,7 @@ impl fmt::Display for SceneError {
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
         }
-        write!(f, ": {}", self.problem)
+        write!(f, ": {}", escaped_text(&self.problem))
     }
 }
 

@@ -44,6 +44,12 @@ pub enum ProfileError {
         /// Columns of the file.
         found: String,
     },
+    /// Two columns have the same name.
+    #[error("line 1: two columns {name:?}; allowed is each name once")]
+    RepeatedColumn {
+        /// The name.
+        name: String,
+    },
     /// A cell is not a finite number.
     #[error("line {line}: {column} = {cell:?}; allowed is a finite number")]
     Cell {
@@ -134,7 +140,7 @@ impl Profile {
     /// # Errors
     /// The file cannot be read, or as [`Self::parse`].
     pub fn read(path: &Path) -> Result<Self, ProfileError> {
-        Self::parse(text::open(path)?)
+        Self::parse(text::open(path, text::RECORDING_BYTES_MAX)?)
     }
 
     /// Reads CSV with the columns `x_m` and `z_m`, in m; other columns and lines that start with `#` are
@@ -153,6 +159,9 @@ impl Profile {
             .flexible(true)
             .from_reader(text);
         let header = csv.headers()?.clone();
+        if let Some(name) = text::repeated_column(&header) {
+            return Err(ProfileError::RepeatedColumn { name: name.to_owned() });
+        }
         let column = |name: &str| {
             let found = header.iter().position(|column| column == name);
             found.ok_or_else(|| ProfileError::Columns {

@@ -300,6 +300,7 @@ fn invalid_profiles_are_refused_with_their_line() {
     for (text, expected) in [
         (with(1, "x,z"), "line 1: columns x, z; needed are x_m and z_m"),
         (with(1, "x_m"), "line 1: columns x_m; needed are x_m and z_m"),
+        (with(1, "x_m,z_m,z_m"), "line 1: two columns \"z_m\"; allowed is each name once"),
         (String::new(), "line 1: columns ; needed are x_m and z_m"),
         (with(9, "7,high"), "line 9: z_m = \"high\"; allowed is a finite number"),
         (with(9, "7,NaN"), "line 9: z_m = \"NaN\"; allowed is a finite number"),

@@ -155,8 +155,12 @@ fn add_telemetry(
     contacts: &[Contact],
     sums: &mut [Sums],
 ) -> anyhow::Result<LeftOut> {
-    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text::open(path)?);
+    let file = text::open(path, text::RECORDING_BYTES_MAX)?;
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(file);
     let headers = reader.headers()?.clone();
+    if let Some(name) = text::repeated_column(&headers) {
+        anyhow::bail!("it has two columns {name:?}; allowed is each name once");
+    }
     let place = |name: &str| headers.iter().position(|header| header == name);
     let (Some(time), Some(finger), Some(value)) = (place("t_s"), place("finger"), place(column))
     else {

@@ -1,9 +1,11 @@
 //! What every analysis has: participants, trials, void trials and why, response times, measures of the contacts.
 
+use std::collections::BTreeSet;
+
 use experiment_statistics::standard_deviation;
 use thermal_session::record::{StationRecord, TrialRecord};
 
-use crate::cells::{distinct, mean};
+use crate::cells::{distinct, grouped, mean};
 use crate::input::{Participant, Task, Trial, finite};
 use crate::report::{Cell, Section, Table, cells, numbers, words};
 
@@ -87,11 +89,11 @@ pub fn participants(task: &Task) -> Section {
 
 /// Trials all of whose attempts are void.
 fn only_void(participant: &Participant) -> Option<String> {
-    let counts =
-        |number: &u32| participant.trials.iter().any(|trial| trial.record.trial == *number);
-    let numbers = distinct(participant.records.iter().map(|record| record.trial));
+    let counted = participant.trials.iter().map(|trial| trial.record.trial);
+    let mut known: BTreeSet<u32> = counted.collect();
+    let numbers = participant.records.iter().map(|record| record.trial);
     let void: Vec<_> =
-        numbers.iter().filter(|number| !counts(number)).map(u32::to_string).collect();
+        numbers.filter(|number| known.insert(*number)).map(|number| number.to_string()).collect();
     (!void.is_empty()).then(|| {
         let (code, void) = (&participant.code, void.join(", "));
         format!("Left out: trials of {code} of which each attempt was void ({void}).")
@@ -118,8 +120,7 @@ fn voids(task: &Task) -> Table {
         });
         words.collect::<Vec<_>>().join(" ")
     };
-    for reason in distinct(records().map(|(_, reason)| kind(reason))) {
-        let own: Vec<_> = records().filter(|(_, other)| kind(other) == reason).collect();
+    for (reason, own) in grouped(records().map(|record| (kind(record.1), record))) {
         let participants = distinct(own.iter().map(|(code, _)| *code)).len();
         let example = own.first().map(|(_, example)| (*example).clone()).unwrap_or_default();
         table.row(cells![reason, own.len(), participants, example]);

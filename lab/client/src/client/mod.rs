@@ -16,6 +16,7 @@ mod streams;
 mod telemetry;
 mod telemetry_columns;
 
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::fmt;
 use std::hash::{BuildHasher, RandomState};
@@ -25,6 +26,7 @@ use thermal_device::TelemetryFields;
 use thermal_protocol::{LINE_MAX_BYTES, line_checksum, strip_checksum};
 
 use crate::link::{Link, LinkError, ReceivedLine};
+use crate::text::escaped_line;
 use streams::{Stream, TelemetryStreams};
 
 pub use clock::{DeviceClock, TickTime};
@@ -441,10 +443,14 @@ impl<L: Link> Client<L> {
             Ok(content) if content.len() < line.text.len() => line.text.truncate(content.len()),
             _ if self.checksums && !line.text.is_empty() => {
                 self.counts.damaged += 1;
-                return Some(Sorted::Damaged(line.text));
+                return Some(Sorted::Damaged(escaped_line(&line.text).into_owned()));
             }
             // A star that is no checksum's may be in a word that an error repeats.
             _ => {}
+        }
+        // Only now, because the checksum is that of the line as it was sent. Whoever shows the line shows no control characters.
+        if let Cow::Owned(escaped) = escaped_line(&line.text) {
+            line.text = escaped;
         }
         let (finger, content) = split_finger(&line.text);
         if content.is_empty() {

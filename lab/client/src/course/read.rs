@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use super::{Course, CoursePoint};
+use crate::text;
 
 /// Temperatures that may stand in a file, °C: those of the display's range, which the device checks as well.
 pub const ALLOWED_C: RangeInclusive<f64> = 15.0..=42.0;
@@ -86,7 +87,8 @@ impl CourseFile {
 /// The first thing that is wrong, with file and line, and what is allowed.
 pub fn read_course(path: &Path, selection: Selection<'_>) -> Result<CourseFile, CourseFileError> {
     let unreadable = |problem: String| CourseFileError::Unreadable { file: path.into(), problem };
-    let text = crate::text::read(path).map_err(|error| unreadable(error.to_string()))?;
+    let text =
+        text::read(path, text::TABLE_BYTES_MAX).map_err(|error| unreadable(error.to_string()))?;
     parse_course(&text, path, selection)
 }
 
@@ -219,6 +221,9 @@ impl Columns {
                 )),
             };
         }
+        if let Some(name) = text::repeated_column(names.iter().copied()) {
+            return Err(format!("two columns `{name}`; allowed is each name once"));
+        }
         let position = |name: &str| names.iter().position(|known| *known == name);
         let missing =
             |name: &str| format!("there is no column `{name}` among {}", names.join(", "));
@@ -321,6 +326,14 @@ mod tests {
             (
                 "time,celsius\n0,30\n",
                 "c.csv:1: there is no column `t_s` among time, celsius; a header with t_s and a temperature is allowed",
+            ),
+            (
+                "t_s,celsius,celsius\n0,30,31\n1,29,30\n",
+                "c.csv:1: two columns `celsius`; allowed is each name once",
+            ),
+            (
+                "t_s,t_s,celsius\n0,0,30\n1,1,30\n",
+                "c.csv:1: two columns `t_s`; allowed is each name once",
             ),
             (
                 "t_s,kelvin\n0,300\n",

@@ -156,6 +156,20 @@ fn what_is_no_answer_is_shown() {
     ));
 }
 
+/// A terminal that prints these would change its title, ring, or write from right to left.
+#[test]
+fn control_characters_of_a_device_are_shown_by_their_numbers() {
+    const HOSTILE: &str = "err \u{1b}]0;title\u{7} \u{9b}2J \u{202e}off\u{7f}";
+    let shown = r"err \u{1b}]0;title\u{7} \u{9b}2J \u{202e}off\u{7f}";
+    let mut client = knows(&[("arm", HOSTILE)]);
+    let error = client.ask(&PlainCommand::Arm).unwrap_err();
+    assert_eq!(error.to_string(), format!("the device answers 'arm' with '{shown}'"));
+    assert_eq!(client.query("arm").unwrap(), shown);
+    let garbage = |_: &str| answers("\u{1b}c");
+    let error = FakeDevice::client(garbage).ask(&PlainCommand::Arm).unwrap_err();
+    assert_eq!(error.to_string(), r"the answer to 'arm' is not understood: '\u{1b}c'");
+}
+
 #[test]
 fn garbage_before_an_answer_is_counted_and_skipped() {
     let mut client = FakeDevice::client(|_| {

@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use serde_json::json;
 
-use super::folder::{SharedFiles, write_whole};
+use super::folder::{SharedFiles, remove_parts, write_whole};
 use super::participants::ParticipantList;
 use super::recorder::{TELEMETRY, pretty};
-use super::{Folder, RecordingError, events, physio};
+use super::{Folder, RecordingError, events, is_there, physio};
 use crate::record::TrialRecord;
 use crate::{Plan, Session};
 
@@ -45,8 +45,9 @@ pub(super) fn describe(folder: &Folder, _shared: &SharedFiles) -> Result<(), Rec
         ("participants.json", pretty(&participants)),
         ("participants.tsv", b"participant_id\n".to_vec()),
     ] {
+        remove_parts(folder.root(), name)?;
         let path = folder.root().join(name);
-        if !path.exists() {
+        if !is_there(&path)? {
             write_whole(&path, &contents)?;
         }
     }

@@ -12,7 +12,7 @@ use super::folder::{SharedFiles, participant_folders, write_whole};
 use super::participants::{Exclusion, ParticipantList, describe_exclusions};
 use super::read::read_info;
 use super::recorder::{INFO, LOG, pretty, utc_now};
-use super::{Folder, RecordingError, error_at, unreadable};
+use super::{Folder, RecordingError, error_at, is_there, unreadable};
 use crate::{PlanError, check_participant};
 
 /// That a participant was given another code.
@@ -141,7 +141,8 @@ pub fn exclude(root: &Path, code: &str, reason: &str) -> Result<(), ChangeError>
 
 /// Keeps other programs from a data set that is there.
 fn lock(root: &Path) -> Result<SharedFiles, ChangeError> {
-    if !root.join("sourcedata").is_dir() {
+    let source = root.join("sourcedata");
+    if !is_there(&source)? || !source.is_dir() {
         return Err(ChangeError::NoDataSet(root.into()));
     }
     Ok(SharedFiles::lock(root)?)
@@ -167,11 +168,11 @@ fn rename_sessions(root: &Path, old: &str, new: &str) -> Result<(), ChangeError>
     let mut changed = Vec::new();
     for folder in Folder::all_of(root, old)? {
         let log = folder.source(LOG);
-        if log.exists() {
+        if is_there(&log)? {
             AppendFile::check_alone(&log)?;
         }
         let path = folder.source(INFO);
-        if !path.exists() {
+        if !is_there(&path)? {
             continue;
         }
         let mut info = read_info(&folder)?;
@@ -198,7 +199,7 @@ fn rename_sessions(root: &Path, old: &str, new: &str) -> Result<(), ChangeError>
 /// Whether a call with the same codes has moved the sessions, and may have been interrupted then.
 fn is_interrupted(root: &Path, old: &str, new: &str) -> Result<bool, ChangeError> {
     for folder in Folder::all_of(root, new)? {
-        if folder.source(INFO).exists() && read_info(&folder)?.was_renamed(old, new) {
+        if is_there(&folder.source(INFO))? && read_info(&folder)?.was_renamed(old, new) {
             return Ok(true);
         }
     }
@@ -216,7 +217,7 @@ fn mentions(root: &Path, old: &str, new: &str) -> Result<Vec<(PathBuf, String)>,
         if path.extension().is_none_or(|end| end != "tsv" && end != "json") {
             continue;
         }
-        let text = text::read(&path).map_err(unreadable(&path))?;
+        let text = text::read(&path, text::TABLE_BYTES_MAX).map_err(unreadable(&path))?;
         let changed = replaced(&text, &format!("sub-{old}"), &format!("sub-{new}"));
         if changed != text {
             mentions.push((path, changed));
@@ -264,7 +265,7 @@ fn all_files(folder: &Path) -> Result<Vec<PathBuf>, RecordingError> {
     let mut files = files_in(folder)?;
     for name in names_in(folder, "")? {
         let path = folder.join(name);
-        if path.symlink_metadata().is_ok_and(|data| data.is_dir()) {
+        if path.symlink_metadata().map_err(unreadable(&path))?.is_dir() {
             files.extend(all_files(&path)?);
         }
     }
@@ -273,6 +274,12 @@ fn all_files(folder: &Path) -> Result<Vec<PathBuf>, RecordingError> {
 
 /// The files of a folder; none if there is no folder.
 fn files_in(folder: &Path) -> Result<Vec<PathBuf>, RecordingError> {
-    let paths = names_in(folder, "")?.into_iter().map(|name| folder.join(name));
-    Ok(paths.filter(|path| path.is_file()).collect())
+    let mut files = Vec::new();
+    for path in names_in(folder, "")?.into_iter().map(|name| folder.join(name)) {
+        // A link that leads nowhere is no file.
+        if is_there(&path)? && path.is_file() {
+            files.push(path);
+        }
+    }
+    Ok(files)
 }

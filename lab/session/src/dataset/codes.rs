@@ -1,11 +1,13 @@
 //! Codes of participants that are taken, or look like ones that are.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use super::folder::participant_folders;
 use super::read::read_info;
-use super::{Folder, RecordingError, unreadable};
+use super::recorder::INFO;
+use super::{Folder, RecordingError, is_there, unreadable};
 
 /// A participant of a data set whose code looks like another one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -110,20 +112,20 @@ impl Folder {
 
     /// How the participant of a session was renamed; not at all if the session has no description.
     pub(super) fn renamings(&self) -> Result<Vec<super::Renaming>, RecordingError> {
-        if !self.source(super::recorder::INFO).exists() {
-            return Ok(Vec::new());
-        }
-        Ok(read_info(self)?.renamed)
+        Ok(if is_there(&self.source(INFO))? { read_info(self)?.renamed } else { Vec::new() })
     }
 }
 
 /// Names in a folder that begin with a word, without it; none if there is no folder.
 pub(super) fn names_in(folder: &Path, word: &str) -> Result<Vec<String>, RecordingError> {
-    if !folder.is_dir() {
-        return Ok(Vec::new());
-    }
+    let entries = match fs::read_dir(folder) {
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            return Ok(Vec::new());
+        }
+        entries => entries.map_err(unreadable(folder))?,
+    };
     let mut names = Vec::new();
-    for entry in fs::read_dir(folder).map_err(unreadable(folder))? {
+    for entry in entries {
         let name = entry.map_err(unreadable(folder))?.file_name();
         names.extend(name.to_str().and_then(|name| name.strip_prefix(word)).map(str::to_owned));
     }

@@ -1,6 +1,8 @@
 //! Reads all sessions of a data set.
 
+use std::collections::BTreeMap;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::participants::ParticipantList;
@@ -90,7 +92,8 @@ const TASK: &str = "task-";
 /// there is none.
 ///
 /// # Errors
-/// The folder is no data set, or a copied or renamed folder, or codes that differ in case only, would count a participant twice.
+/// The folder is no data set, or whoever runs the program may not enter a folder or read a file of it, or a copied or renamed
+/// folder, or codes that differ in case only, would count a participant twice.
 pub fn recorded_sessions(root: &Path) -> Result<DataSet, DataSetError> {
     let mut left_out = Vec::new();
     let mut known = Vec::new();
@@ -99,7 +102,7 @@ pub fn recorded_sessions(root: &Path) -> Result<DataSet, DataSetError> {
     for folder in folders {
         match read_info(&folder) {
             Ok(info) => known.push((folder, info)),
-            Err(error) => left_out.push(error.into()),
+            Err(error) => leave_out(error.into(), &mut left_out)?,
         }
     }
     check_identities(&known)?;
@@ -109,13 +112,29 @@ pub fn recorded_sessions(root: &Path) -> Result<DataSet, DataSetError> {
         let excluded = exclusions.get(folder.participant()).cloned();
         match RecordedSession::of(folder, info) {
             Ok(session) => sessions.push(RecordedSession { excluded, ..session }),
-            Err(error) => left_out.push(error),
+            Err(error) => leave_out(error, &mut left_out)?,
         }
     }
     Ok(DataSet { sessions, left_out })
 }
 
-/// The folders of sessions. What is none, or cannot be entered, is left out.
+/// Leaves a session out, unless it is only this user who may not read it: its data are sound, and results without them would be
+/// those of another data set.
+fn leave_out(error: DataSetError, left_out: &mut Vec<DataSetError>) -> Result<(), DataSetError> {
+    match &error {
+        DataSetError::File(RecordingError::Unreadable { error: why, .. })
+            if why.kind() == ErrorKind::PermissionDenied =>
+        {
+            Err(error)
+        }
+        _ => {
+            left_out.push(error);
+            Ok(())
+        }
+    }
+}
+
+/// The folders of sessions. What is none is left out.
 fn session_folders(
     root: &Path,
     left_out: &mut Vec<DataSetError>,
@@ -126,7 +145,7 @@ fn session_folders(
         let tasks = match folders_in(&path, TASK, left_out) {
             Ok(tasks) => tasks,
             Err(error) => {
-                left_out.push(error);
+                leave_out(error, left_out)?;
                 continue;
             }
         };
@@ -152,7 +171,7 @@ fn folders_in(
         let is_folder = match fs::metadata(&path) {
             Ok(metadata) => metadata.is_dir(),
             Err(error) => {
-                left_out.push(unreadable(&path)(error).into());
+                leave_out(unreadable(&path)(error).into(), left_out)?;
                 continue;
             }
         };
@@ -175,12 +194,10 @@ fn folders_in(
 
 /// Refuses codes that differ in case only: one person would count as two.
 fn check_codes(folders: &[Folder]) -> Result<(), DataSetError> {
-    for (index, one) in folders.iter().enumerate() {
-        let is_alike = |other: &&Folder| {
-            other.participant() != one.participant()
-                && other.participant().eq_ignore_ascii_case(one.participant())
-        };
-        if let Some(other) = folders[index + 1..].iter().find(is_alike) {
+    let mut known: BTreeMap<String, &Folder> = BTreeMap::new();
+    for other in folders {
+        let one = *known.entry(other.participant().to_ascii_lowercase()).or_insert(other);
+        if one.participant() != other.participant() {
             return Err(DataSetError::CodesDifferInCase { one: one.path(), other: other.path() });
         }
     }
@@ -189,18 +206,14 @@ fn check_codes(folders: &[Folder]) -> Result<(), DataSetError> {
 
 /// Refuses folders whose names are not those that the session was recorded with.
 fn check_identities(known: &[(Folder, SessionInfo)]) -> Result<(), DataSetError> {
-    let is_same = |one: &SessionInfo, other: &SessionInfo| {
-        (&one.participant, &one.task) == (&other.participant, &other.task)
-    };
-    for (index, (folder, info)) in known.iter().enumerate() {
-        let (participant, task) = (info.participant.clone(), info.task.clone());
-        let mut others = known.iter().enumerate().filter(|(other, _)| *other != index);
-        if let Some((_, (other, _))) = others.find(|(_, (_, other))| is_same(info, other)) {
+    let mut recorded: BTreeMap<(&str, &str), &Folder> = BTreeMap::new();
+    for (folder, info) in known {
+        if let Some(one) = recorded.insert((&info.participant, &info.task), folder) {
             return Err(DataSetError::Twice {
-                one: folder.path(),
-                other: other.path(),
-                participant,
-                task,
+                one: one.path(),
+                other: folder.path(),
+                participant: info.participant.clone(),
+                task: info.task.clone(),
             });
         }
     }

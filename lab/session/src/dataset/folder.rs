@@ -7,6 +7,9 @@ use std::path::{Path, PathBuf};
 use super::codes::names_in;
 use super::{RecordingError, error_at};
 
+/// End of the name of a file that is being written as a whole.
+const PART: &str = ".part";
+
 /// The folder of a data set, and in it the files of one participant and task.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Folder {
@@ -55,6 +58,15 @@ impl Folder {
         Ok(tasks.into_iter().map(|task| Self::new(root, participant, &task)).collect())
     }
 
+    /// Removes what programs that were killed have left of the files of this session that they wrote as a whole. No other program
+    /// may have it.
+    pub(super) fn remove_parts(&self) -> Result<(), RecordingError> {
+        remove_parts(&self.path(), "")?;
+        let files = self.behaviour("");
+        let begin = files.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        files.parent().map_or(Ok(()), |folder| remove_parts(folder, begin))
+    }
+
     /// A file of behavioural data, by the end of its name, such as `events.tsv`.
     pub fn behaviour(&self, end: &str) -> PathBuf {
         let Self { root, participant, task } = self;
@@ -89,6 +101,18 @@ impl SharedFiles {
     }
 }
 
+/// Removes the parts of files whose names begin so, which nobody writes any more.
+pub(super) fn remove_parts(folder: &Path, begin: &str) -> Result<(), RecordingError> {
+    for rest in names_in(folder, begin)? {
+        let process = rest.strip_suffix(PART).and_then(|rest| rest.rsplit_once('.'));
+        if process.is_some_and(|(_, id)| id.parse::<u32>().is_ok()) {
+            let path = folder.join(format!("{begin}{rest}"));
+            fs::remove_file(&path).map_err(error_at(&path))?;
+        }
+    }
+    Ok(())
+}
+
 /// Writes a file as a whole: whoever reads it, at whatever time, finds the old contents or the new ones.
 pub(super) fn write_whole(path: &Path, contents: &[u8]) -> Result<(), RecordingError> {
     if let Some(folder) = path.parent() {
@@ -96,7 +120,7 @@ pub(super) fn write_whole(path: &Path, contents: &[u8]) -> Result<(), RecordingE
     }
     let mut name = path.as_os_str().to_owned();
     // Of this program alone: several may write the same file.
-    name.push(format!(".{}.part", std::process::id()));
+    name.push(format!(".{}{PART}", std::process::id()));
     let part = PathBuf::from(name);
     let written = fs::File::create(&part).and_then(|mut file| {
         file.write_all(contents)?;

@@ -45,8 +45,20 @@ pub use recorder::{DeviceReport, ProgramVersion, Recorder, SessionInfo};
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The operating system does not let a file be written.
-    #[error("{}: {error}. What was recorded before is whole; --resume goes on when there is room", path.display())]
+    #[error("{}: {error}", path.display())]
     File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// The operating system does not let a file of a session be written of which trials are recorded.
+    #[error(
+        "{}: {error}. What was recorded before is whole; --resume goes on when {}",
+        path.display(),
+        if is_full(error) { "there is room" } else { "the file can be written" }
+    )]
+    FileOfTrials {
         /// The file.
         path: PathBuf,
         /// Why.
@@ -121,6 +133,17 @@ pub enum RecordingError {
         /// What is wrong.
         problem: String,
     },
+}
+
+/// Whether a file cannot be written because there is no room.
+fn is_full(error: &io::Error) -> bool {
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge)
+}
+
+/// Whether there is a file of this name. One that cannot be looked at is an error, not an absent one.
+fn is_there(path: &std::path::Path) -> Result<bool, RecordingError> {
+    path.try_exists().map_err(unreadable(path))
 }
 
 /// Names the file of an error of the operating system.

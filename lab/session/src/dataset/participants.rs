@@ -51,14 +51,16 @@ impl ParticipantList {
     /// The list of a data set; an empty one if there is none.
     pub(super) fn read(root: &Path) -> Result<Self, RecordingError> {
         let path = root.join(LIST);
-        let text = match path.exists() {
-            true => text::read(&path).map_err(unreadable(&path))?,
-            false => String::new(),
-        };
+        let text = text::read_if_there(&path, text::TABLE_BYTES_MAX).map_err(unreadable(&path))?;
+        let text = text.unwrap_or_default();
         let cells = |line: &str| line.split('\t').map(str::to_owned).collect::<Vec<_>>();
         let filled = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
         let mut rows = filled.map(|(number, line)| (number, cells(line)));
-        let header = rows.next().map_or_else(|| cells("participant_id"), |(_, header)| header);
+        let (line, header) = rows.next().unwrap_or_else(|| (1, cells("participant_id")));
+        if let Some(name) = text::repeated_column(header.iter().map(String::as_str)) {
+            let problem = format!("two columns {name:?}; allowed is each name once");
+            return Err(RecordingError::Content { path, line, problem });
+        }
         Ok(Self { path, header, rows: rows.collect() })
     }
 
@@ -148,16 +150,14 @@ fn is_of(cells: &[String], code: &str) -> bool {
 /// Describes the columns of an exclusion, beside what is described already.
 pub(super) fn describe_exclusions(root: &Path) -> Result<(), RecordingError> {
     let path = root.join(DESCRIPTION);
-    let mut all: Map<String, Value> = match path.exists() {
-        true => {
-            let text = text::read(&path).map_err(unreadable(&path))?;
-            serde_json::from_str(&text).map_err(|error| RecordingError::Content {
-                path: path.clone(),
-                line: error.line(),
-                problem: error.to_string(),
-            })?
-        }
-        false => Map::new(),
+    let text = text::read_if_there(&path, text::DOCUMENT_BYTES_MAX).map_err(unreadable(&path))?;
+    let mut all: Map<String, Value> = match text {
+        Some(text) => serde_json::from_str(&text).map_err(|error| RecordingError::Content {
+            path: path.clone(),
+            line: error.line(),
+            problem: error.to_string(),
+        })?,
+        None => Map::new(),
     };
     let known = all.len();
     for (column, about) in [

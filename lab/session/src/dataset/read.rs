@@ -1,6 +1,7 @@
 //! Reads what was recorded, also of a session that was interrupted.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use thermal_client::text;
@@ -11,6 +12,9 @@ use super::recorder::{INFO, LOG, SESSION, SessionInfo, TELEMETRY, sha256};
 use super::{DataSetError, Exclusion, Folder, RecordingError, telemetry, unreadable};
 use crate::record::TrialRecord;
 use crate::{Plan, Session, Update};
+
+/// Largest log, bytes: 1 GiB, a hundred times that of 10 000 trials.
+const LOG_BYTES_MAX: u64 = 1 << 30;
 
 /// A session of a participant as it was recorded.
 #[derive(Clone, Debug)]
@@ -40,7 +44,8 @@ impl RecordedSession {
     /// A file cannot be read or does not say what it should, or the files contradict each other.
     pub(super) fn of(folder: Folder, info: SessionInfo) -> Result<Self, DataSetError> {
         let session_path = folder.source(SESSION);
-        let text = text::read(&session_path).map_err(unreadable(&session_path))?;
+        let text =
+            text::read(&session_path, crate::file::BYTES_MAX).map_err(unreadable(&session_path))?;
         let session = Session::parse(&text, &session_path)
             .map_err(|error| content(&session_path, 1, &error))?;
         let plan = Plan::new(&session, info.plan_code(), info.seed)
@@ -54,7 +59,7 @@ impl RecordedSession {
         }
         let log_path = folder.source(LOG);
         let ReadLog { lines: log, damaged, .. } = read_log(&log_path)?;
-        let contradictions = contradictions(&plan, &log);
+        let contradictions = contradictions(&session, &plan, &log);
         if let Some((line, first)) = contradictions.first() {
             let problem = match contradictions.len() {
                 1 => first.clone(),
@@ -65,7 +70,16 @@ impl RecordedSession {
         let (records, telemetry_bytes) = records_of(&log);
         remarks.extend(damaged.map(|error| format!("{error}; what follows is left out")));
         let telemetry = folder.source(TELEMETRY);
-        let length = fs::metadata(&telemetry).map_or(0, |metadata| metadata.len());
+        let length = match fs::metadata(&telemetry) {
+            Err(error) if error.kind() == ErrorKind::NotFound => 0,
+            metadata => metadata.map_err(unreadable(&telemetry))?.len(),
+        };
+        // What else is wrong with it is said where it is analysed.
+        if let Err(error) = text::open(&telemetry, text::RECORDING_BYTES_MAX)
+            && error.kind() == ErrorKind::PermissionDenied
+        {
+            return Err(unreadable(&telemetry)(error).into());
+        }
         if let Some(bytes) = telemetry_bytes.filter(|bytes| length < *bytes) {
             remarks.push(format!(
                 "{}: it has {length} bytes; the log says that {bytes} were recorded",
@@ -105,7 +119,7 @@ impl RecordedSession {
 /// The description of a session.
 pub(super) fn read_info(folder: &Folder) -> Result<SessionInfo, RecordingError> {
     let path = folder.source(INFO);
-    let text = text::read(&path).map_err(unreadable(&path))?;
+    let text = text::read(&path, text::DOCUMENT_BYTES_MAX).map_err(unreadable(&path))?;
     serde_json::from_str(&text).map_err(|error| content(&path, error.line(), &error))
 }
 
@@ -119,7 +133,7 @@ pub(super) struct ReadLog {
 }
 
 pub(super) fn read_log(path: &Path) -> Result<ReadLog, RecordingError> {
-    let text = fs::read(path).map_err(unreadable(path))?;
+    let text = text::read_bytes(path, LOG_BYTES_MAX).map_err(unreadable(path))?;
     let mark = text::mark_length(&text).map_err(unreadable(path))?;
     let (mut lines, mut bytes) = (Vec::new(), mark as u64);
     let mut committed = (0, 0);

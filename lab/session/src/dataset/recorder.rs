@@ -1,7 +1,6 @@
 //! Records a session while it runs.
 
 use std::fmt;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -16,7 +15,7 @@ use super::change::Renaming;
 use super::folder::{SharedFiles, write_whole};
 use super::log::{Entry, LogLine};
 use super::read::{read_info, read_log, records_of};
-use super::{Folder, RecordingError, bids, telemetry, unreadable};
+use super::{Folder, RecordingError, bids, is_there, telemetry, unreadable};
 use crate::record::TrialRecord;
 use crate::{Plan, Session, Update};
 
@@ -195,7 +194,7 @@ impl Recorder {
     ) -> Result<Self, RecordingError> {
         let log_path = folder.source(LOG);
         // A session that has ended before its first trial leaves nothing that could be lost.
-        if log_path.exists() && !records_of(&read_log(&log_path)?.lines).0.is_empty() {
+        if is_there(&log_path)? && !records_of(&read_log(&log_path)?.lines).0.is_empty() {
             return Err(RecordingError::Exists(log_path));
         }
         let plan_csv = plan.csv();
@@ -215,6 +214,7 @@ impl Recorder {
         };
         write_whole(&folder.source(SESSION), session.text.as_bytes())?;
         let log = AppendFile::open(&log_path, 0, true)?;
+        folder.remove_parts()?;
         write_whole(&folder.source(PLAN), plan_csv.as_bytes())?;
         write_whole(&folder.source(INFO), &pretty(&info))?;
         bids::describe(&folder, shared)?;
@@ -247,7 +247,7 @@ impl Recorder {
     ) -> Result<Self, RecordingError> {
         let folder = Folder::new(root, participant, &session.task);
         let log_path = folder.source(LOG);
-        if !log_path.exists() {
+        if !is_there(&log_path)? {
             return Err(RecordingError::Missing(log_path));
         }
         let shared = SharedFiles::lock(root)?;
@@ -281,9 +281,10 @@ impl Recorder {
         check_line_ends(&folder.source(TELEMETRY), telemetry_bytes)?;
         let has_flux_columns = telemetry::has_flux_columns(&folder.source(TELEMETRY))?;
         let log = AppendFile::open(&log_path, recorded.bytes, true)?;
+        folder.remove_parts()?;
         let rows = AppendFile::open(&folder.source(TELEMETRY), telemetry_bytes, false)?;
         // A clock that cannot be read has nothing that the data need.
-        let clock = text::read(&folder.source(CLOCK)).unwrap_or_default();
+        let clock = text::read(&folder.source(CLOCK), text::DOCUMENT_BYTES_MAX).unwrap_or_default();
         Self {
             folder,
             session,
@@ -334,7 +335,21 @@ impl Recorder {
         } else if *self.info.resumed_by.last().unwrap_or(&self.info.program) != program {
             self.info.resumed_by.push(program);
         }
-        write_whole(&self.folder.source(INFO), &pretty(&self.info))
+        self.write_info()
+    }
+
+    fn write_info(&self) -> Result<(), RecordingError> {
+        self.of_trials(write_whole(&self.folder.source(INFO), &pretty(&self.info)))
+    }
+
+    /// An error of writing says what is safe, if anything is recorded.
+    fn of_trials<T>(&self, written: Result<T, RecordingError>) -> Result<T, RecordingError> {
+        written.map_err(|error| match error {
+            RecordingError::File { path, error } if !self.records.is_empty() => {
+                RecordingError::FileOfTrials { path, error }
+            }
+            other => other,
+        })
     }
 
     /// Takes note of what the device says of itself.
@@ -349,7 +364,7 @@ impl Recorder {
         if self.info.devices.last() != Some(&report) {
             self.info.devices.push(report);
         }
-        write_whole(&self.folder.source(INFO), &pretty(&self.info))
+        self.write_info()
     }
 
     /// Takes note of what participant and operator are told at a time of the session, s.
@@ -368,6 +383,17 @@ impl Recorder {
         record: &TrialRecord,
         lines: impl Iterator<Item = (f64, u8, &'t Telemetry)>,
     ) -> Result<(), RecordingError> {
+        let written = self.write_trial(record, lines);
+        self.of_trials(written)?;
+        self.records.push(record.clone());
+        Ok(())
+    }
+
+    fn write_trial<'t>(
+        &mut self,
+        record: &TrialRecord,
+        lines: impl Iterator<Item = (f64, u8, &'t Telemetry)>,
+    ) -> Result<(), RecordingError> {
         let has_flux = self.has_flux_columns;
         let header = (self.telemetry.bytes() == 0).then(|| telemetry::header(has_flux));
         let rows = lines.map(|line| telemetry::row(line, has_flux));
@@ -380,9 +406,7 @@ impl Recorder {
                 telemetry_bytes: self.telemetry.bytes(),
             },
         });
-        self.write_pending()?;
-        self.records.push(record.clone());
-        Ok(())
+        self.write_pending()
     }
 
     fn write_pending(&mut self) -> Result<(), RecordingError> {
@@ -400,10 +424,12 @@ impl Recorder {
     /// # Errors
     /// They cannot be written. What is recorded stays.
     pub fn finish(&mut self) -> Result<(), RecordingError> {
-        self.write_pending()?;
-        self.clock.ended = Some(utc_now());
-        self.write_clock()?;
-        bids::write(&self.folder, &self.session, &self.plan, &self.records)
+        let written = self.write_pending().and_then(|()| {
+            self.clock.ended = Some(utc_now());
+            self.write_clock()?;
+            bids::write(&self.folder, &self.session, &self.plan, &self.records)
+        });
+        self.of_trials(written)
     }
 
     /// The recorded session file, if its text is not that of the session that is given: comments were changed since.
@@ -439,7 +465,7 @@ fn recorded_session(
         return Ok(given.clone());
     }
     let path = folder.source(SESSION);
-    let text = fs::read_to_string(&path).map_err(unreadable(&path))?;
+    let text = text::read(&path, crate::file::BYTES_MAX).map_err(unreadable(&path))?;
     let is_as_recorded = sha256(text.as_bytes()) == info.session_sha256;
     let recorded = Session::parse(&text, &path).ok().filter(|_| is_as_recorded);
     recorded
@@ -450,7 +476,7 @@ fn recorded_session(
 /// Refuses a file whose first `recorded` bytes are not those that were recorded, because a text tool has changed its line ends:
 /// cut there, it would lose rows.
 fn check_line_ends(path: &Path, recorded: u64) -> Result<(), RecordingError> {
-    let bytes = fs::read(path).map_err(unreadable(path))?;
+    let bytes = text::read_bytes(path, text::RECORDING_BYTES_MAX).map_err(unreadable(path))?;
     let wrong = |line: usize, problem: &str| {
         let problem = format!(
             "{problem}; a file as it was recorded is allowed, with LF alone at each end of a line"

@@ -1,10 +1,11 @@
 //! `telemetry.csv`: all lines of telemetry.
 
-use std::io;
+use std::io::{self, Read};
 use std::path::Path;
 use std::time::Duration;
 
 use thermal_client::client::{ReceivedTelemetry, Telemetry, TelemetryColumn};
+use thermal_client::text;
 use thermal_device::TelemetryFields;
 
 use super::{RecordingError, unreadable};
@@ -38,9 +39,21 @@ pub(super) fn row((t_s, finger, line): (f64, u8, &Telemetry), has_flux_sensor: b
     cells.collect::<Vec<_>>().join(",") + "\n"
 }
 
+/// The rows of a file, whose header has each name once.
+fn rows(path: &Path) -> Result<csv::Reader<impl Read>, RecordingError> {
+    let file = text::open(path, text::RECORDING_BYTES_MAX).map_err(unreadable(path))?;
+    let mut rows = csv::Reader::from_reader(file);
+    let header = rows.headers().map_err(unreadable_csv(path))?;
+    if let Some(name) = text::repeated_column(header) {
+        let problem = format!("two columns {name:?}; allowed is each name once");
+        return Err(RecordingError::Content { path: path.into(), line: 1, problem });
+    }
+    Ok(rows)
+}
+
 /// Whether a file has the columns of a heat-flux sensor.
 pub(super) fn has_flux_columns(path: &Path) -> Result<bool, RecordingError> {
-    let mut rows = csv::Reader::from_path(path).map_err(unreadable_csv(path))?;
+    let mut rows = rows(path)?;
     let header = rows.headers().map_err(unreadable_csv(path))?;
     let mut columns = TelemetryColumn::of_flux(true).iter();
     Ok(columns.all(|column| header.iter().any(|name| name == column.name)))
@@ -48,7 +61,7 @@ pub(super) fn has_flux_columns(path: &Path) -> Result<bool, RecordingError> {
 
 /// All lines with their times, s.
 pub(super) fn read(path: &Path) -> Result<Vec<(f64, ReceivedTelemetry)>, RecordingError> {
-    let mut rows = csv::Reader::from_path(path).map_err(unreadable_csv(path))?;
+    let mut rows = rows(path)?;
     // A line on the wire has the remark last.
     let words = BEFORE.into_iter().skip(2);
     let words = words.chain(TelemetryColumn::ALL.iter().map(|column| column.name)).chain([REMARK]);

@@ -27,7 +27,7 @@ use crate::Session;
 /// Number of the form of session files.
 const FORMAT: Whole = Whole::new("format", 1, 1, None);
 /// Largest file, bytes.
-const BYTES_MAX: u64 = 1 << 20;
+pub(crate) const BYTES_MAX: u64 = 1 << 20;
 /// Longest text for people, characters.
 const TEXT_MAX: usize = 10_000;
 
@@ -53,20 +53,15 @@ const KEYS: [&str; 16] = [
 pub(crate) fn read(path: &Path) -> Result<Session, SessionError> {
     let unreadable =
         |error: std::io::Error| SessionError::of_file(path, format!("cannot be read: {error}"));
-    let bytes = std::fs::metadata(path).map_err(unreadable)?.len();
-    if bytes > BYTES_MAX {
-        let problem = format!("has {bytes} bytes; allowed is 0 to {BYTES_MAX}");
-        return Err(SessionError::of_file(path, problem));
-    }
-    parse(&text::read(path).map_err(unreadable)?, path)
+    parse(&text::read(path, BYTES_MAX).map_err(unreadable)?, path)
 }
 
 pub(crate) fn parse(file_text: &str, path: &Path) -> Result<Session, SessionError> {
     // Texts of several lines are the same whatever ends the lines of the file.
-    let text = &file_text.replace("\r\n", "\n");
-    let source = Source { file: path, text };
+    let with_lf = &file_text.replace("\r\n", "\n");
+    let source = Source { file: path, text: with_lf };
     nesting::check(&source)?;
-    let document = DeTable::parse(text).map_err(|error| {
+    let document = DeTable::parse(source.text).map_err(|error| {
         let span = error.span().unwrap_or_default();
         let problem = match error.message() {
             "duplicate key" => {
@@ -77,6 +72,9 @@ pub(crate) fn parse(file_text: &str, path: &Path) -> Result<Session, SessionErro
         };
         source.error(span.start, problem)
     })?;
+    if let Some((at, problem)) = text::control_in_toml(document.get_ref()) {
+        return Err(source.error(at, problem));
+    }
     let file = Table::new(&source, String::new(), 0, document.get_ref());
     file.only(&KEYS)?;
     let format = file.need(FORMAT.key, "1")?;

@@ -4,6 +4,8 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use thermal_client::text::escaped_text;
+
 /// An error in a session file: file, line and problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SessionError {
@@ -35,7 +37,7 @@ impl fmt::Display for SessionError {
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
         }
-        write!(f, ": {}", self.problem)
+        write!(f, ": {}", escaped_text(&self.problem))
     }
 }
 

@@ -764,6 +764,60 @@ fn a_file_that_cannot_be_read_is_named() {
     assert_eq!(error.line(), None);
 }
 
+#[test]
+fn control_characters_are_refused_with_key_and_line() {
+    let allowed = "; allowed are characters that are shown, line ends and tabs";
+    let control = |line: u32, what: &str| format!("s.toml:{line}: {what}{allowed}");
+    assert_errors(
+        example(),
+        &[
+            (
+                "title = \"Copper and",
+                "title = \"\\u001b]0;Copper and",
+                &control(2, "title has the control character U+001B"),
+            ),
+            (
+                "finger = \"right index\"",
+                "finger = \"right \u{202e}index\"",
+                &control(21, "stations.right.finger has the control character U+202E"),
+            ),
+            (
+                "title = \"Copper",
+                "\"ti\\u0007tle\" = \"Copper",
+                &control(2, r"ti\u{7}tle has the control character U+0007"),
+            ),
+            (
+                "format = 1\n",
+                "'k\u{9b}' = 1\n'k\u{9b}' = 1\n",
+                r"s.toml:2: 'k\u{9b}' again; allowed is each key once",
+            ),
+        ],
+    );
+    let text = example().replacen("title = \"Copper", "title = \"\tCopper, 23 °C, 冷,", 1);
+    Session::parse(&text, Path::new("s.toml")).expect("a title in other scripts");
+}
+
+#[test]
+fn answers_that_a_spreadsheet_would_compute_are_refused() {
+    let with = |word: &str| {
+        let text =
+            example().replacen("[\"left\", \"right\"]", &format!("[\"left\", \"{word}\"]"), 1);
+        let parsed = Session::parse(&text, Path::new("s.toml"));
+        parsed.map_err(|error| error.to_string()).err().unwrap_or_default()
+    };
+    for formula in ["=1+1", "=HYPERLINK('x')", "@SUM(A1)", "+1+1", "-2+cmd|' /C calc'!A0", "-cold"]
+    {
+        let expected = format!(
+            "s.toml:49: trial.answer.one_of = \"{formula}\"; allowed is a word that no spreadsheet takes for a formula"
+        );
+        assert!(with(formula).starts_with(&expected), "{}", with(formula));
+    }
+    for word in ["+", "-", "-1", "+0.5", "a=b", "1+1", "−2"] {
+        // The words of the answers are those of the correct ones.
+        assert!(!with(word).contains("spreadsheet"), "{word}: {}", with(word));
+    }
+}
+
 /// Lines left out, cut, or with another value: an answer, or a session with a plan, and no panic.
 #[test]
 fn no_change_of_a_file_makes_the_reader_panic() {

@@ -1,5 +1,7 @@
 //! The tables `[trial]` and `[void]`.
 
+use thermal_client::text::is_control;
+
 use super::design::Parts;
 use super::present::{Presentation, quantity};
 use super::setup::setpoints_c;
@@ -207,6 +209,14 @@ fn target_force(
     }
 }
 
+/// Whether a spreadsheet would compute a cell of this text; answers are cells of tables, and stay there as they are.
+fn is_formula(text: &str) -> bool {
+    match text.strip_prefix(['+', '-']) {
+        Some(rest) => !rest.is_empty() && text.parse::<f64>().is_err(),
+        None => text.starts_with(['=', '@']),
+    }
+}
+
 type Words<'a> = Vec<(String, Value<'a>)>;
 
 fn answer<'a>(
@@ -215,6 +225,7 @@ fn answer<'a>(
 ) -> Result<(Option<Answer>, Words<'a>), SessionError> {
     const NUMBERS: &str = "two numbers from -1000 to 1000, the smaller one first";
     const WORDS: &str = "2 to 10 different words";
+    const NO_FORMULA: &str = "a word that no spreadsheet takes for a formula: without = or @ at its begin, and + or - there only as a sign alone or of a number";
     let Some(value) = table.get("answer") else {
         table.without(&["answer_s", "feedback"], "beside trial.answer")?;
         if let Some(staircase) = parts.staircase_at.first() {
@@ -230,9 +241,10 @@ fn answer<'a>(
             let mut words: Words<'a> = Vec::new();
             for word in list.list(WORDS)? {
                 let text = word.text(40)?;
-                if text.contains(|c: char| c.is_control())
-                    || words.iter().any(|(known, _)| *known == text)
-                {
+                if is_formula(&text) {
+                    return Err(word.wrong(NO_FORMULA));
+                }
+                if text.contains(is_control) || words.iter().any(|(known, _)| *known == text) {
                     return Err(word.wrong(WORDS));
                 }
                 words.push((text, word));

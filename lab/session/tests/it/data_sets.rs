@@ -223,7 +223,7 @@ fn a_folder_that_cannot_be_entered_is_named() {
     allow(0o000);
     // The superuser enters every folder.
     if fs::read_dir(&folder).is_err() {
-        recorded.assert_left_out("sub-02: ");
+        assert!(recorded.refused().starts_with("sub-02: "), "{}", recorded.refused());
     }
     allow(0o755);
     fs::remove_dir_all(&folder).expect("a folder");
@@ -231,10 +231,110 @@ fn a_folder_that_cannot_be_entered_is_named() {
     recorded.assert_left_out("sub-02: ");
 }
 
+/// What a program leaves that is killed while it writes a file: its name with the process and `.part`.
+#[test]
+fn parts_of_files_that_a_killed_program_has_left_are_removed_by_the_next_run() {
+    let recorded = Recorded::new("parts", &["01"]);
+    let session = ready("p1-discrimination");
+    let plan = plan(&session, "01", 1);
+    let ours = [
+        "sourcedata/sub-01/task-p1/session.toml.4711.part",
+        "sourcedata/sub-01/task-p1/clock.json.4711.part",
+        "sub-01/beh/sub-01_task-p1_events.tsv.4711.part",
+    ];
+    let of_others = [
+        "sourcedata/sub-01/task-p1/notes.part",
+        "sub-01/beh/sub-01_task-p1_video.part",
+        "sub-01/beh/sub-01_task-p14_events.tsv.4711.part",
+    ];
+    for file in ours.iter().chain(&of_others) {
+        fs::write(recorded.root().join(file), "x").expect("a file");
+    }
+    let mut resumed =
+        Recorder::resume(recorded.root(), &session, &plan, ("01", 1), true).expect("a session");
+    resumed.finish().expect("a data set");
+    let is_there = |file: &&str| recorded.root().join(file).exists();
+    assert!(!ours.iter().any(is_there));
+    assert!(of_others.iter().all(is_there));
+}
+
+#[test]
+fn only_a_session_with_recorded_trials_is_said_to_go_on() {
+    let session = ready("p1-discrimination");
+    let plan = plan(&session, "01", 1);
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("file-in-place-of-a-data-set");
+    fs::write(&file, "").expect("a file");
+    let error = Recorder::create(&file.join("data"), &session, &plan, ("01", 1), true);
+    let error = error.expect_err("no folder").to_string();
+    assert!(
+        error.contains("file-in-place-of-a-data-set") && !error.contains("--resume"),
+        "{error}"
+    );
+    let recorded = Recorded::new("goes-on", &["01"]);
+    let mut resumed =
+        Recorder::resume(recorded.root(), &session, &plan, ("01", 1), true).expect("a session");
+    let folder = recorded.source("sub-01/task-p1");
+    fs::remove_dir_all(&folder).expect("a folder");
+    fs::write(&folder, "").expect("a file");
+    let error = resumed.program_of(None).expect_err("no folder").to_string();
+    let goes_on =
+        "What was recorded before is whole; --resume goes on when the file can be written";
+    assert!(error.ends_with(goes_on), "{error}");
+}
+
+/// Whoever opens a FIFO for reading waits until another program writes into it.
+#[cfg(unix)]
+#[test]
+fn a_fifo_or_folder_in_place_of_a_file_is_named_and_nothing_waits() {
+    for file in ["log.jsonl", "session.json", "session.toml"] {
+        let recorded = Recorded::new("fifo", &THREE);
+        let path = recorded.source("sub-02/task-p1").join(file);
+        fs::remove_file(&path).expect("a file");
+        let mkfifo = std::process::Command::new("mkfifo").arg(&path).status();
+        assert!(mkfifo.expect("mkfifo").success());
+        recorded.assert_left_out(&format!("{file}: this is a FIFO; allowed is a file"));
+        fs::remove_file(&path).expect("a FIFO");
+        fs::create_dir(&path).expect("a folder");
+        recorded.assert_left_out(&format!("{file}: this is a folder; allowed is a file"));
+    }
+}
+
+#[test]
+fn a_list_of_participants_with_a_column_twice_is_refused() {
+    let recorded = Recorded::new("column-twice", &["01"]);
+    let list = "participant_id\texcluded\texcluded\nsub-01\tno\tyes\n";
+    fs::write(recorded.root().join("participants.tsv"), list).expect("a list");
+    let words = recorded.refused();
+    assert!(
+        words.ends_with("participants.tsv:1: two columns \"excluded\"; allowed is each name once"),
+        "{words}"
+    );
+}
+
 #[test]
 fn records_that_contradict_each_other_or_the_plan_are_named_by_line() {
     type Change = fn(&mut Vec<String>);
-    let changes: [(Change, &str); 7] = [
+    let changes: [(Change, &str); 11] = [
+        (
+            |lines| {
+                lines.push(
+                    lines[5].replace("\"attempt\":1,", "\"attempt\":2,").replace("0.0,", "9.0,"),
+                )
+            },
+            "log.jsonl:7: trial 6, attempt 2: attempt 1, of line 6, counts already",
+        ),
+        (
+            |lines| lines[2] = lines[2].replace("\"attempt\":1,", "\"attempt\":3,"),
+            "log.jsonl:3: trial 3, attempt 3: it follows 0 attempt(s)",
+        ),
+        (
+            |lines| lines[0] = lines[0].replace("\"answer\":\"right\"", "\"answer\":\"upper\""),
+            "the answer is 'upper'; session.toml allows left, right",
+        ),
+        (
+            |lines| lines.reverse(),
+            "log.jsonl:2: trial 5, attempt 1: it begins at 150 s, before the trial of line 1 has ended, at 200 s; 5 contradictions in all",
+        ),
         (
             |lines| lines.push(lines[4].clone()),
             "log.jsonl:7: trial 5, attempt 1: it is recorded twice, first in line 5",
