@@ -57,7 +57,7 @@ def test_opening_switches_checksums_telemetry_and_events_on(fake: FakeDevice) ->
         assert display.guarded
         assert display.counts.damaged == 0
         assert display.state().state is State.OFF
-    assert fake.received[-4:] == ["abort", "stream 0", "state", "checksum off"]
+    assert fake.received[-4:] == ["abort", "state", "stream 0", "checksum off"]
     assert fake.closed
 
 

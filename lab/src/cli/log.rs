@@ -129,9 +129,18 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             counts.damaged,
             client.clock().restarts()
         );
-        logged?;
-        client.ask(&PlainCommand::stream(0)).map_err(Failure::run)
+        match logged? {
+            LogEnd::Time => client.ask(&PlainCommand::stream(0)).map_err(Failure::run),
+            // The bridge is switched off first.
+            LogEnd::Interrupted => Ok(()),
+        }
     })
+}
+
+/// What has ended a log.
+enum LogEnd {
+    Time,
+    Interrupted,
 }
 
 /// Writes rows until a time or Ctrl-C.
@@ -140,11 +149,11 @@ fn log(
     end: Option<Duration>,
     table: &Table,
     out: &mut csv::Writer<Box<dyn Write>>,
-) -> Result<(), Failure> {
+) -> Result<LogEnd, Failure> {
     while end.is_none_or(|end| client.link().now() < end) {
         let line = match client.next_telemetry(POLL_INTERVAL) {
             Ok(line) => line,
-            Err(LinkError::Interrupted) => break,
+            Err(LinkError::Interrupted) => return Ok(LogEnd::Interrupted),
             Err(error) => return Err(Failure::run(error)),
         };
         if let Some(line) = line {
@@ -153,7 +162,7 @@ fn log(
         }
         out.flush().context("--out").map_err(Failure::run)?;
     }
-    Ok(())
+    Ok(LogEnd::Time)
 }
 
 /// Whether any finger of the device has a heat-flux sensor.

@@ -3,7 +3,6 @@
 use std::io::{BufReader, stderr, stdin};
 
 use clap::Args;
-use thermal_client::client::Client;
 use thermal_client::link::{Interruptible, Link};
 use thermal_lab::bench_operator::lines;
 use thermal_lab::link::PacedLink;
@@ -12,7 +11,7 @@ use thermal_sim::engine::NativeEngine;
 use thermal_sim::simulated_link::SimulatedLink;
 use thermal_window::{MonitorPeople, StopFlag, monitor};
 
-use super::target::stop_on_signals;
+use super::target::{attach, stop_on_signals};
 use super::{Failure, Target, window};
 
 #[derive(Args)]
@@ -52,6 +51,6 @@ fn watch(
         target.open().map_err(Failure::input)?
     };
     let link = Interruptible::new(link, stop.interrupts_link());
-    let mut client = Client::attach(link).map_err(Failure::run)?;
+    let mut client = attach(link)?;
     monitor(&mut client, people, arguments.interval).map_err(Failure::run)
 }

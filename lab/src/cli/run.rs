@@ -20,7 +20,7 @@ use thermal_session::{
 use thermal_window::{SessionView, StopFlag, Tones};
 
 use super::participants::NewPerson;
-use super::target::stop_on_signals;
+use super::target::{attach, stop_on_signals};
 use super::{Failure, Target, print_text, window};
 
 /// Text after the options in the help.
@@ -192,7 +192,7 @@ impl Run<'_> {
         }
         let link = target.open().map_err(Failure::input)?;
         let link = Interruptible::new(link, stop.interrupts_link());
-        let client = Client::attach(link).map_err(Failure::run)?;
+        let client = attach(link)?;
         self.execute(client, people, false)
     }
 
@@ -206,7 +206,11 @@ impl Run<'_> {
         let Self { arguments, session, plan, .. } = *self;
         let who = (arguments.participant.as_str(), arguments.seed);
         if session.needs_device() {
-            check_device(&mut client, session, plan).map_err(ended_early)?;
+            let checked = check_device(&mut client, session, plan);
+            if let Err(SessionEnd::Stopped) = checked {
+                client.switch_off().map_err(Failure::run)?;
+            }
+            checked.map_err(ended_early)?;
         }
         let recorder = if arguments.resume {
             Recorder::resume(&arguments.out, session, plan, who, is_simulated)

@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use anyhow::{Context, anyhow};
 use clap::Args;
-use thermal_client::client::{Client, ClientError};
-use thermal_client::link::{Interruptible, Link};
+use thermal_client::client::{Client, ClientError, PlainCommand};
+use thermal_client::link::{Interruptible, Link, LinkError};
 use thermal_lab::link::{self, LazyLink, ServedLink, SimulatedLink};
 use thermal_plant::Params;
 use thermal_sim::World;
@@ -61,7 +61,7 @@ impl Target {
         } else {
             self.open().map_err(Failure::input)?
         };
-        with_link(link, Client::attach, work)
+        with_link(link, Client::discard_earlier, work)
     }
 
     /// As [`with_client`](Self::with_client), with the device that another program serves at `--tcp` with its surroundings at this
@@ -79,7 +79,7 @@ impl Target {
         let link = ServedLink::connect(device, surroundings)
             .with_context(|| format!("--tcp {device} --surroundings {surroundings}"))
             .map_err(Failure::input)?;
-        with_link(link, |link| Ok(Client::new(link)), work)
+        with_link(link, |_| Ok(()), work)
     }
 
     /// Does something with the simulated device of the scene, which has the scene's settings. `command` is the subcommand that
@@ -147,28 +147,47 @@ impl Target {
     }
 }
 
-/// Does something with a client of the device at the other end of a link. Ctrl-C interrupts it. The bridge is switched off then, and if the
-/// work fails after it has armed the device.
+/// Does something with a client of the device at the other end of a link, after its `begin`. Ctrl-C interrupts it. The bridge is switched
+/// off then, and if the work fails after it has armed the device.
 fn with_link<L: Link, T>(
     link: L,
-    attach: impl FnOnce(Interruptible<L>) -> Result<Client<Interruptible<L>>, ClientError>,
+    begin: impl FnOnce(&mut Client<Interruptible<L>>) -> Result<(), ClientError>,
     work: impl FnOnce(&mut Client<Interruptible<L>>) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     let (requested, interrupted) = interruptions()?;
-    let mut client = attach(Interruptible::new(link, requested)).map_err(Failure::run)?;
-    let done = work(&mut client);
+    let mut client = Client::new(Interruptible::new(link, requested));
+    let done = begin(&mut client).map_err(Failure::run).and_then(|()| work(&mut client));
     let was_driven = done.is_err() && client.may_be_driven();
     if was_driven || interrupted.load(Ordering::Relaxed) {
         match client.switch_off() {
-            Ok(()) if was_driven => eprintln!("thermal-lab: the bridge is off"),
-            Err(error) if was_driven || matches!(error, ClientError::NotOff { .. }) => {
-                notice(&error.to_string());
+            Ok(()) => {
+                if was_driven {
+                    eprintln!("thermal-lab: the bridge is off");
+                }
+                if client.is_streaming() {
+                    // Not before: a device that streams to nobody switches its bridge off by itself. That telemetry goes on harms nobody.
+                    let _ignored = client.ask(&PlainCommand::stream(0));
+                }
             }
+            Err(error) if was_driven => notice(&error.not_off().to_string()),
             // The failure of the work is reported, and that of the link with it.
-            _ => {}
+            Err(ClientError::Link(_)) if done.is_err() => {}
+            Err(error) if done.is_err() => notice(&error.to_string()),
+            Err(error) => return Err(Failure::run(error)),
         }
     }
     done
+}
+
+/// Attaches to a device that may be running. Whoever interrupts this wants its bridge off.
+pub fn attach<L: Link>(link: L) -> Result<Client<L>, Failure> {
+    let mut client = Client::new(link);
+    let attached = client.discard_earlier();
+    if attached == Err(ClientError::Link(LinkError::Interrupted)) {
+        client.switch_off().map_err(Failure::run)?;
+    }
+    attached.map_err(Failure::run)?;
+    Ok(client)
 }
 
 fn which_device() -> anyhow::Error {

@@ -81,6 +81,7 @@ pub fn monitor<L: Link>(
         }
         // Nothing is more important than a bridge that may be on.
         (_, Err(not_off @ ClientError::NotOff { .. })) => Err(not_off),
+        (_, Err(gone)) if client.may_be_driven() => Err(gone.not_off()),
         (failed, _) => failed,
     }
 }
@@ -120,7 +121,8 @@ fn watch<L: Link>(
             people.inform(&Update::Event(event));
             people.inform(&Update::Notice(event_text(&event)));
         }
-        if let Some(order) = people.order() {
+        // Whoever closes the monitor gets the bridge switched off at its end.
+        if let Some(order) = people.order().filter(|_| !people.is_closing()) {
             let text = carry_out(client, order)?;
             people.inform(&Update::Notice(text));
         }

@@ -52,8 +52,8 @@ second one: the answer overtakes up to eight waiting lines, which take 0.8 ms ea
 SILENT_INTERVALS = 5
 SILENT_S = 0.6
 """Telemetry that has not come for so many of its intervals, and for so long at least, s, is missing: the device is asked why."""
-LOCK_TIMEOUT_S = 5.0
-"""Longest wait of `close` for another thread's command, which ends within its own timeout."""
+OFF_WITHIN_S = 6.0
+"""Time in which `close` must have confirmed that the bridge is off, whatever the line does."""
 OFF_STREAM = Stream(0, TELEMETRY_FIELDS)
 
 _TRIPPED = re.compile(r"\btripped by ([a-z-]+)")
@@ -125,6 +125,8 @@ class Connection:
         self._busy: str | None = None
         self._closing = False
         self._ended = False
+        # Beyond this no answer is waited for.
+        self._deadline_s = math.inf
         self._last_sent_s = time.perf_counter()
         # When telemetry was last received, or began to be expected.
         self._heard_s = time.perf_counter()
@@ -157,12 +159,13 @@ class Connection:
 
     def close(self) -> None:
         """Switches the bridge off, ends telemetry and events, and releases the port. Whatever happens meanwhile, the port is
-        released; raises `BridgeNotOff` if it is not certain that the bridge is off, and a `KeyboardInterrupt` that came
-        meanwhile."""
+        released; raises `BridgeNotOff` if it is not certain within 6 s that the bridge is off, and a `KeyboardInterrupt` that
+        came meanwhile."""
         # A child of `os.fork` shares the line, which is not its own to switch off.
         if self._ended or os.getpid() != self._pid:
             return
         self._closing = True
+        self._deadline_s = time.perf_counter() + OFF_WITHIN_S
         interrupted: KeyboardInterrupt | None = None
         why = "interrupted"
         try:
@@ -175,8 +178,12 @@ class Connection:
                     interrupted = error
                 except DisplayError as error:
                     why = str(error)
-                    if self._broken:
+                    if self._broken or time.perf_counter() >= self._deadline_s:
                         break
+            if not why:
+                self._leave_silent()
+        except KeyboardInterrupt as error:
+            interrupted = error
         finally:
             self._ended = True
             self.callbacks.close()
@@ -205,22 +212,29 @@ class Connection:
     def _switch_off(self) -> None:
         """Sends `abort` at once, whoever waits for an answer, then confirms that the bridge is off."""
         self._send_abort_at_once("abort")
-        if not self._command_lock.acquire(timeout=LOCK_TIMEOUT_S):
+        if not self._command_lock.acquire(timeout=max(0.0, self._deadline_s - time.perf_counter())):
             raise DisplayError("another thread does not give the line free")
         try:
             self._repeat("abort")
-            self._repeat("stream 0")
             for answer, status in self._statuses():
                 if status.state.is_driven:
                     raise DisplayError(f"after 'abort' the device answers '{answer}'")
-            if self._checksums:
-                # The next program may be a terminal.
-                self._wants_checksums = False
-                self._repeat("checksum off")
         except ValueError as error:
             raise DisplayError(f"the answer to 'state' is not understood: {error}") from error
         finally:
             self._command_lock.release()
+
+    def _leave_silent(self) -> None:
+        """Ends telemetry and checksums for the next program, which may be a terminal. The bridge is off: a device that does not
+        answer to this harms nobody."""
+        with self._command_lock:
+            try:
+                self._repeat("stream 0")
+                if self._checksums:
+                    self._wants_checksums = False
+                    self._repeat("checksum off")
+            except DisplayError as error:
+                log.warning("%s: %s", self.link.name, error)
 
     def _repeat(self, line: str) -> str:
         """Exchanges a line that may be executed twice until it is accepted."""
@@ -235,7 +249,7 @@ class Connection:
             except _AbortSent:
                 failure = failure or Interrupted(line)
             except CommandError as error:
-                if isinstance(failure, type(error)):
+                if isinstance(failure, type(error)) or time.perf_counter() >= self._deadline_s:
                     raise
                 failure = error
             else:
@@ -490,7 +504,8 @@ class Connection:
 
     def _answer(self, line: str, timeout_s: float, aborts: int) -> tuple[_Kind, str]:
         """The next answer, intact or without a checksum."""
-        end_s = time.perf_counter() + timeout_s
+        begin_s = time.perf_counter()
+        end_s = min(begin_s + timeout_s, self._deadline_s)
         damaged: str | None = None
         with self._answered:
             while True:
@@ -507,7 +522,8 @@ class Connection:
                 self.raise_if_broken()
                 rest_s = end_s - time.perf_counter()
                 if rest_s <= 0:
-                    raise NoAnswer(line, timeout_s) if damaged is None else NotUnderstood(line, damaged)
+                    waited_s = round(max(end_s - begin_s, 0.0), 1)
+                    raise NoAnswer(line, waited_s) if damaged is None else NotUnderstood(line, damaged)
                 # In slices: on Windows a wait cannot be interrupted.
                 self._answered.wait(min(rest_s, 0.1))
 
@@ -525,13 +541,19 @@ class Connection:
             line = f"synchronize-{self._synchronization:08x}"
             self._transmit(line, after="\n")
             kind, text = _Kind.DAMAGED, ""
+            # One deadline for all answers: other machines may go on saying `ok` for ever.
+            end_s = time.perf_counter() + timeout_s
             try:
                 while f"'{line}'" not in text:
-                    kind, text = self._answer(line, timeout_s, aborts)
+                    kind, text = self._answer(line, end_s - time.perf_counter(), aborts)
             except NotUnderstood:
                 if attempt + 1 == ATTEMPTS:
                     raise
                 continue
+            except NoAnswer as error:
+                if text:
+                    raise NotUnderstood(line, text) from error
+                raise
             if kind is _Kind.ANSWER:
                 with self._answered:
                     if self._aborts_sent == aborts:

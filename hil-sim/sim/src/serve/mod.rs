@@ -9,18 +9,22 @@ mod client;
 mod clock;
 mod device;
 mod in_step;
+#[cfg(unix)]
+mod pty;
 mod set_up;
 mod tcp;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-pub use client::{IncomingBytes, OutgoingBytes};
+pub use client::OutgoingBytes;
 pub use clock::{Clock, Speed};
 pub use device::{
     FiveFingers, OneFinger, ServeError, ServedDevice, read_scene, scenes_of_five_fingers,
 };
 pub use in_step::serve_in_step;
+#[cfg(unix)]
+pub use pty::PtyLine;
 pub use set_up::set_up;
 pub use tcp::{TcpLine, TcpLineError};
 

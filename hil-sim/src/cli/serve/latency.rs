@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use crate::cli::{Failure, output};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use serde::Serialize;
@@ -18,10 +19,9 @@ use thermal_device::StateName;
 use thermal_sim::World;
 use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::scene::{Force, Scene};
-use thermal_sim::serve::{ClientLine, Clock, OneFinger, Speed, TcpLine, read_scene, serve};
-
-use super::pty::PtyLine;
-use crate::cli::{Failure, output};
+use thermal_sim::serve::{
+    ClientLine, Clock, OneFinger, PtyLine, Speed, TcpLine, read_scene, serve,
+};
 
 /// Interval of the landings and how long each lasts, ms.
 const INTERVAL_MS: u64 = 500;

@@ -2,8 +2,6 @@
 
 #[cfg(unix)]
 pub mod latency;
-#[cfg(unix)]
-mod pty;
 
 use std::io::{Write as _, stdout};
 use std::path::PathBuf;
@@ -182,7 +180,7 @@ type Place = (Box<dyn ClientLine>, String);
 fn open(line: &Line) -> Result<Place, Failure> {
     #[cfg(unix)]
     if line.pty {
-        let (line, path) = pty::PtyLine::open().context("--pty").map_err(Failure::run)?;
+        let (line, path) = serve::PtyLine::open().context("--pty").map_err(Failure::run)?;
         return Ok((Box::new(line), path.display().to_string()));
     }
     listen("--tcp", line.tcp.as_deref().unwrap_or_default())

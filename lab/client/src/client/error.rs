@@ -17,7 +17,7 @@ pub enum ClientError {
         answer: String,
     },
     /// The device did not answer.
-    #[error("the device does not answer '{line}' within {} s", timeout.as_secs_f64())]
+    #[error("the device does not answer '{line}' within {} s", tenths(*timeout))]
     TimedOut {
         /// The line.
         line: String,
@@ -65,7 +65,21 @@ pub enum ClientError {
     },
 }
 
+/// Seconds, rounded to tenths.
+fn tenths(time: Duration) -> f64 {
+    (time.as_secs_f64() * 10.0).round() / 10.0
+}
+
 impl ClientError {
+    /// [`Self::NotOff`] for this reason.
+    #[must_use]
+    pub fn not_off(self) -> Self {
+        match self {
+            Self::NotOff { .. } => self,
+            error => Self::NotOff { why: error.to_string() },
+        }
+    }
+
     /// The device's reason, without finger and `err`, if it refused the line.
     pub fn refusal(&self) -> Option<&str> {
         let Self::Refused { answer, .. } = self else {

@@ -104,6 +104,8 @@ pub struct Client<L> {
     may_be_driven: bool,
     /// Number in the last line that synchronized answers with lines.
     synchronization: u32,
+    /// Time by the link's clock beyond which no answer is waited for.
+    deadline: Duration,
 }
 
 impl<L: Link> Client<L> {
@@ -122,6 +124,7 @@ impl<L: Link> Client<L> {
             may_be_driven: false,
             // The standard library's hashers have random keys, others for each client and each process.
             synchronization: RandomState::new().hash_one(()) as u32,
+            deadline: Duration::MAX,
         }
     }
 
@@ -132,9 +135,17 @@ impl<L: Link> Client<L> {
     /// The device does not answer, or the link is gone.
     pub fn attach(link: L) -> Result<Self, ClientError> {
         let mut client = Self::new(link);
-        client.transmit("")?;
-        client.synchronize()?;
+        client.discard_earlier()?;
         Ok(client)
+    }
+
+    /// Ends a line that another program left unfinished, and discards the answers to earlier lines.
+    ///
+    /// # Errors
+    /// The device does not answer, or the link is gone.
+    pub fn discard_earlier(&mut self) -> Result<(), ClientError> {
+        self.transmit("")?;
+        self.synchronize()
     }
 
     /// The link.
@@ -151,6 +162,11 @@ impl<L: Link> Client<L> {
     /// `abort` of all fingers or a restart.
     pub const fn may_be_driven(&self) -> bool {
         self.may_be_driven
+    }
+
+    /// Whether the device streams telemetry of any finger.
+    pub fn is_streaming(&self) -> bool {
+        self.streams.is_on()
     }
 
     /// Lines that were lost, damaged or dropped so far.
@@ -184,11 +200,19 @@ impl<L: Link> Client<L> {
             Some(finger) => format!("@{finger} {command}"),
             None => command.to_string(),
         };
-        let (answered, reply) = self.accepted(&line)?;
-        let understood = finger.is_none() || finger == answered;
-        match command.read_reply(&Fields::new(&reply)).filter(|_| understood) {
-            Some(reply) => Ok(reply),
-            None => Err(ClientError::NotUnderstood { line, answer: format!("ok {reply}") }),
+        let mut attempt = 0;
+        loop {
+            attempt += 1;
+            let (answered, reply) = self.accepted(&line)?;
+            let understood = finger.is_none() || finger == answered;
+            if let Some(read) = command.read_reply(&Fields::new(&reply)).filter(|_| understood) {
+                return Ok(read);
+            }
+            // It may be that of another line, which came late or twice.
+            self.out_of_step = true;
+            if attempt == ATTEMPTS || !may_be_repeated(&line) {
+                return Err(ClientError::NotUnderstood { line, answer: format!("ok {reply}") });
+            }
         }
     }
 
@@ -226,7 +250,8 @@ impl<L: Link> Client<L> {
                     ClientError::TimedOut { .. } | ClientError::NotUnderstood { .. }
                 ),
             };
-            if !self.checksums || !lost || !may_be_repeated(line) {
+            let is_over = self.link.now() >= self.deadline;
+            if !self.checksums || !lost || !may_be_repeated(line) || is_over {
                 break;
             }
             answer = self.query_once(line);
@@ -388,11 +413,19 @@ impl<L: Link> Client<L> {
     /// The next answer.
     fn answer(&mut self, line: &str) -> Result<String, ClientError> {
         let end = self.link.now() + ANSWER_TIMEOUT;
-        self.answer_until(line, end)
+        loop {
+            let answer = self.answer_until(line, end)?;
+            // On a line that doubles, the word by which answers were synchronized has another answer.
+            if !answer.contains("'synchronize-") || line.starts_with("synchronize-") {
+                return Ok(answer);
+            }
+        }
     }
 
     /// The next answer until a time by the link's clock.
     fn answer_until(&mut self, line: &str, end: Duration) -> Result<String, ClientError> {
+        let end = end.min(self.deadline);
+        let timeout = end.saturating_sub(self.link.now());
         let mut damaged = None;
         loop {
             let mut received = self.receive_until(end).inspect_err(|_| self.out_of_step = true)?;
@@ -405,7 +438,7 @@ impl<L: Link> Client<L> {
                 let line = line.into();
                 return Err(match damaged {
                     Some(answer) => ClientError::NotUnderstood { line, answer },
-                    None => ClientError::TimedOut { line, timeout: ANSWER_TIMEOUT },
+                    None => ClientError::TimedOut { line, timeout },
                 });
             };
             match self.sort_line(received) {

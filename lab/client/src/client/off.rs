@@ -1,29 +1,41 @@
 //! Switching all bridges off, and making sure of it.
 
+use std::time::Duration;
+
 use super::{Client, ClientError, PlainCommand, QueryIdentity, QueryState};
 use crate::link::{Link, LinkError};
 
-/// Times that the bridges are ordered off until the device confirms it.
+/// Times that the bridges are ordered off until the device confirms it, and the time in which it must do so, altogether.
 const OFF_ATTEMPTS: u32 = 3;
+const OFF_WITHIN: Duration = Duration::from_secs(6);
 
 impl<L: Link> Client<L> {
     /// Switches the bridges of all fingers off. Only `abort` accepted, and then the state of each finger, mean that they are: an `ok`
     /// may be the answer of something else on the line.
     ///
     /// # Errors
-    /// [`ClientError::NotOff`] if the device does not confirm it, after three attempts; [`LinkError::Gone`] if it can no longer be
+    /// [`ClientError::NotOff`] if the device does not confirm it in three attempts or 6 s; [`LinkError::Gone`] if it can no longer be
     /// reached.
     pub fn switch_off(&mut self) -> Result<(), ClientError> {
-        let mut off = self.try_to_switch_off();
-        for _ in 1..OFF_ATTEMPTS {
-            if matches!(off, Ok(()) | Err(ClientError::Link(LinkError::Gone(_)))) {
-                break;
+        let end = self.link.now() + OFF_WITHIN;
+        self.deadline = end;
+        let mut attempts = 0;
+        let off = loop {
+            let off = self.try_to_switch_off();
+            match &off {
+                Ok(()) | Err(ClientError::Link(LinkError::Gone(_))) => break off,
+                // Whoever interrupts this wants the same once more.
+                Err(ClientError::Link(LinkError::Interrupted)) => {}
+                Err(_) => attempts += 1,
             }
-            off = self.try_to_switch_off();
-        }
+            if attempts == OFF_ATTEMPTS || self.link.now() >= end {
+                break off;
+            }
+        };
+        self.deadline = Duration::MAX;
         off.map_err(|error| match error {
             gone @ ClientError::Link(LinkError::Gone(_)) => gone,
-            error => ClientError::NotOff { why: error.to_string() },
+            error => error.not_off(),
         })
     }
 

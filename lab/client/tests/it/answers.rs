@@ -131,10 +131,47 @@ fn a_number_of_fingers_that_no_device_has_is_not_understood() {
     for fingers in ["0", "6", "255", "4000000000", "-1"] {
         let identity =
             format!("ok thermal-display 0.2.0 fingers={fingers} tick_hz=1000 scan_hz=16000");
-        let error =
-            FakeDevice::client(move |_| answers(&identity)).ask(&QueryIdentity).unwrap_err();
+        let mut client = FakeDevice::client(move |line| match line {
+            "id" => answers(&identity),
+            line => answers(&format!("err unknown command '{line}'")),
+        });
+        let error = client.ask(&QueryIdentity).unwrap_err();
         assert!(matches!(error, ClientError::NotUnderstood { .. }), "{fingers}: {error}");
     }
+}
+
+/// Every answer comes twice, also that to the word which synchronizes answers with lines.
+#[test]
+fn answers_that_come_twice_are_not_taken_for_those_of_later_questions() {
+    let mut client = FakeDevice::client(|line| {
+        let answer = match line {
+            "abort" | "checksum off*42" => "ok".into(),
+            "id" => "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000".into(),
+            "state" => "ok state=ready fault=- material=- object_c=room mode=contact setpoint_c=- body=half-space".into(),
+            line => format!("err unknown command '{line}'"),
+        };
+        [answers(&answer), answers(&answer)].concat()
+    });
+    for _ in 0..3 {
+        client.switch_off().unwrap();
+    }
+}
+
+/// Each answer takes 1.9 s, which is in time for one.
+#[test]
+fn a_bridge_that_is_not_confirmed_to_be_off_in_six_seconds_is_said() {
+    let mut client = FakeDevice::client(|line| match line {
+        "abort" => vec![(1900, "ok".into())],
+        "id" => {
+            vec![(1900, "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000".into())]
+        }
+        "state" => vec![(2500, "ok".into())],
+        line => vec![(1900, format!("err unknown command '{line}'"))],
+    });
+    let error = client.switch_off().unwrap_err();
+    assert!(matches!(error, ClientError::NotOff { .. }), "{error}");
+    let passed_s = client.link().now().as_secs_f64();
+    assert!((5.9..6.1).contains(&passed_s), "{passed_s}");
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Seek, SeekFrom, Write};
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::thread::{self, JoinHandle};
 
 use super::{RecordingError, error_at};
 
@@ -48,20 +50,72 @@ impl AppendFile {
         lock(&file, path)
     }
 
-    /// Appends, and waits until it is on the disk.
+    /// What appends this in another thread, in which a slow disk holds up nobody.
     ///
     /// # Errors
-    /// There is no room, or the disk does not work.
-    pub fn append(&mut self, contents: &[u8]) -> Result<(), RecordingError> {
-        let written = self.file.write_all(contents).and_then(|()| self.file.sync_data());
-        written.map_err(error_at(&self.path))?;
+    /// The operating system gives no second handle of the file.
+    pub fn append(&mut self, contents: Vec<u8>) -> Result<Append, RecordingError> {
+        let file = self.file.try_clone().map_err(error_at(&self.path))?;
         self.bytes += contents.len() as u64;
+        Ok(Append { path: self.path.clone(), file, contents })
+    }
+
+    /// Its length with what is still to be appended, bytes.
+    pub const fn bytes(&self) -> u64 {
+        self.bytes
+    }
+}
+
+/// A piece that is to be appended to a file.
+#[derive(Debug)]
+pub struct Append {
+    path: PathBuf,
+    file: File,
+    contents: Vec<u8>,
+}
+
+impl Append {
+    /// Appends it, and waits until it is on the disk.
+    fn execute(mut self) -> Result<(), RecordingError> {
+        let written = self.file.write_all(&self.contents).and_then(|()| self.file.sync_data());
+        written.map_err(error_at(&self.path))
+    }
+}
+
+/// Appends in a thread of its own. Whoever drops it waits for the disk.
+#[derive(Debug, Default)]
+pub struct Writing(Option<JoinHandle<Result<(), RecordingError>>>);
+
+impl Writing {
+    /// Begins to append these in this order, up to the first that fails, after those before are on the disk.
+    ///
+    /// # Errors
+    /// Those before could not be appended; nothing is appended then.
+    pub fn begin(&mut self, pieces: Vec<Append>) -> Result<(), RecordingError> {
+        self.wait()?;
+        self.0 = Some(thread::spawn(|| pieces.into_iter().try_for_each(Append::execute)));
         Ok(())
     }
 
-    /// Its length, bytes.
-    pub const fn bytes(&self) -> u64 {
-        self.bytes
+    /// Whether there is nothing to wait for.
+    pub fn is_done(&self) -> bool {
+        self.0.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
+    /// Waits until everything is on the disk.
+    ///
+    /// # Errors
+    /// There is no room, or the disk does not work. Said once.
+    pub fn wait(&mut self) -> Result<(), RecordingError> {
+        let thread = self.0.take();
+        thread.map_or(Ok(()), |thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)))
+    }
+}
+
+impl Drop for Writing {
+    fn drop(&mut self) {
+        // Whoever wants to know has waited for it.
+        let _ignored = self.wait();
     }
 }
 
@@ -71,5 +125,31 @@ fn lock(file: &File, path: &Path) -> Result<(), RecordingError> {
         Ok(()) => Ok(()),
         Err(TryLockError::WouldBlock) => Err(RecordingError::InUse(path.into())),
         Err(TryLockError::Error(error)) => Err(error_at(path)(error)),
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::io::Read;
+    use std::os::fd::OwnedFd;
+
+    use super::*;
+
+    /// A pipe takes 64 KiB, and the rest when somebody reads: a disk that is as slow as the test wants.
+    #[test]
+    fn nobody_waits_for_a_slow_disk_and_its_error_is_reported_once() {
+        const BYTES: usize = 1 << 20;
+        let (mut reader, writer) = std::io::pipe().unwrap();
+        let file = File::from(OwnedFd::from(writer));
+        let piece = Append { path: "slow".into(), file, contents: vec![7; BYTES] };
+        let mut writing = Writing::default();
+        writing.begin(vec![piece]).unwrap();
+        assert!(!writing.is_done());
+        let mut read = vec![0; BYTES];
+        reader.read_exact(&mut read).unwrap();
+        // A pipe is on no disk.
+        assert!(writing.wait().unwrap_err().to_string().starts_with("slow: "));
+        assert!(writing.wait().is_ok());
+        assert_eq!(read, vec![7; BYTES]);
     }
 }

@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 use thermal_client::client::{Identity, Telemetry};
 use thermal_client::text;
 
-use super::append::AppendFile;
+use super::append::{Append, AppendFile, Writing};
 use super::change::Renaming;
 use super::folder::{SharedFiles, write_whole};
 use super::log::{Entry, LogLine};
@@ -150,6 +150,7 @@ pub struct Recorder {
     clock: ClockReport,
     log: AppendFile,
     telemetry: AppendFile,
+    writing: Writing,
     /// Whether the telemetry has the columns of a heat-flux sensor: that of the device of the first trial decides.
     has_flux_columns: bool,
     /// Lines since the last trial ended.
@@ -227,6 +228,7 @@ impl Recorder {
             clock: ClockReport::default(),
             log,
             telemetry: rows,
+            writing: Writing::default(),
             has_flux_columns: false,
             pending: Vec::new(),
             records: Vec::new(),
@@ -293,6 +295,7 @@ impl Recorder {
             clock: serde_json::from_str(&clock).unwrap_or_default(),
             log,
             telemetry: rows,
+            writing: Writing::default(),
             has_flux_columns,
             pending: Vec::new(),
             records,
@@ -374,31 +377,33 @@ impl Recorder {
         }
     }
 
-    /// Records a trial that has ended, with its telemetry: times, s, fingers and lines.
+    /// Records a trial that has ended, with its telemetry: times, s, fingers and lines. It is written while the session goes on: a disk may
+    /// take seconds, in which a session that waited for it would see neither a stop nor telemetry.
     ///
     /// # Errors
-    /// The files cannot be written. The trials before are whole.
+    /// The trial before cannot be written, and is no longer recorded. The trials before that one are whole.
     pub fn trial_ended<'t>(
         &mut self,
         record: &TrialRecord,
         lines: impl Iterator<Item = (f64, u8, &'t Telemetry)>,
     ) -> Result<(), RecordingError> {
-        let written = self.write_trial(record, lines);
-        self.of_trials(written)?;
+        self.wait_for_disk()?;
+        let pieces = self.pieces_of_trial(record, lines);
+        self.writing.begin(self.of_trials(pieces)?)?;
         self.records.push(record.clone());
         Ok(())
     }
 
-    fn write_trial<'t>(
+    fn pieces_of_trial<'t>(
         &mut self,
         record: &TrialRecord,
         lines: impl Iterator<Item = (f64, u8, &'t Telemetry)>,
-    ) -> Result<(), RecordingError> {
+    ) -> Result<Vec<Append>, RecordingError> {
         let has_flux = self.has_flux_columns;
         let header = (self.telemetry.bytes() == 0).then(|| telemetry::header(has_flux));
         let rows = lines.map(|line| telemetry::row(line, has_flux));
         let rows: String = header.into_iter().chain(rows).collect();
-        self.telemetry.append(rows.as_bytes())?;
+        let rows = self.telemetry.append(rows.into_bytes())?;
         self.pending.push(LogLine {
             t_s: record.end_s,
             entry: Entry::Record {
@@ -406,17 +411,31 @@ impl Recorder {
                 telemetry_bytes: self.telemetry.bytes(),
             },
         });
-        self.write_pending()
+        Ok(vec![rows, self.append_pending()?])
     }
 
-    fn write_pending(&mut self) -> Result<(), RecordingError> {
+    /// Reports that the last trial cannot be written, if that is known by now.
+    ///
+    /// # Errors
+    /// As [`trial_ended`](Self::trial_ended).
+    pub(crate) fn check_disk(&mut self) -> Result<(), RecordingError> {
+        if self.writing.is_done() { self.wait_for_disk() } else { Ok(()) }
+    }
+
+    /// Waits until the last trial is on the disk.
+    fn wait_for_disk(&mut self) -> Result<(), RecordingError> {
+        let written = self.writing.wait().inspect_err(|_| drop(self.records.pop()));
+        self.of_trials(written)
+    }
+
+    fn append_pending(&mut self) -> Result<Append, RecordingError> {
         let mut log = Vec::new();
         for line in self.pending.drain(..) {
             // Maps have text keys and numbers are finite, so nothing fails.
             log.extend(serde_json::to_vec(&line).unwrap_or_default());
             log.push(b'\n');
         }
-        self.log.append(&log)
+        self.log.append(log)
     }
 
     /// Writes the files of the data set from what is recorded.
@@ -424,12 +443,18 @@ impl Recorder {
     /// # Errors
     /// They cannot be written. What is recorded stays.
     pub fn finish(&mut self) -> Result<(), RecordingError> {
-        let written = self.write_pending().and_then(|()| {
-            self.clock.ended = Some(utc_now());
-            self.write_clock()?;
-            bids::write(&self.folder, &self.session, &self.plan, &self.records)
-        });
+        self.wait_for_disk()?;
+        let written = self.write_data_set();
         self.of_trials(written)
+    }
+
+    fn write_data_set(&mut self) -> Result<(), RecordingError> {
+        let log = self.append_pending()?;
+        self.writing.begin(vec![log])?;
+        self.writing.wait()?;
+        self.clock.ended = Some(utc_now());
+        self.write_clock()?;
+        bids::write(&self.folder, &self.session, &self.plan, &self.records)
     }
 
     /// The recorded session file, if its text is not that of the session that is given: comments were changed since.

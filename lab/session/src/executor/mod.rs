@@ -146,6 +146,10 @@ impl<'a, L: Link> Executor<'a, L> {
         let ended = self.run_trials(plan, schedule);
         self.phase(Phase::End);
         let off = self.switch_off();
+        if off.is_ok() && self.session.needs_device() {
+            // The disk may take seconds.
+            self.inform(Update::Notice("bridge off; the data set is being written".into()));
+        }
         let written = self.recorder.finish().map_err(SessionEnd::from);
         let ended = match off {
             // Nothing is more important than a bridge that may be on.
@@ -189,6 +193,7 @@ impl<'a, L: Link> Executor<'a, L> {
 
     /// Runs a trial and records it.
     fn run_trial(&mut self, next: &Next<'_>, of: usize) -> Result<TrialRecord, SessionEnd> {
+        self.recorder.check_disk()?;
         self.drop_late_lines()?;
         self.trial = RunningTrial::new(next, self.now_s(), self.fingers.count());
         self.inform(Update::Trial { trial: next.trial.clone(), attempt: next.attempt, of });

@@ -182,7 +182,7 @@ impl<L: Link> Executor<'_, L> {
 
     /// Switches the bridge off, and then telemetry: a device that streams to nobody switches it off by itself.
     pub(super) fn switch_off(&mut self) -> Result<(), SessionEnd> {
-        if self.fingers.count() == 0 {
+        if !self.session.needs_device() {
             return Ok(());
         }
         self.client.switch_off().map_err(|error| match error {

@@ -1,16 +1,21 @@
 //! A served device's line as a pseudo-terminal, which programs open as a serial port.
 
+use std::ffi::OsStr;
 use std::fs::File;
+use std::io;
+use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use anyhow::{Context, Result};
 use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
-use thermal_sim::serve::{ClientLine, IncomingBytes, OutgoingBytes};
+
+use super::ClientLine;
+use super::client::{IncomingBytes, OutgoingBytes};
 
 /// The end of a pseudo-terminal that no program opens.
+#[derive(Debug)]
 pub struct PtyLine {
     file: File,
     incoming: IncomingBytes,
@@ -22,9 +27,11 @@ pub struct PtyLine {
 
 impl PtyLine {
     /// Opens a pseudo-terminal; also returns the path of the end for programs.
-    pub fn open() -> Result<(Self, PathBuf)> {
-        let file = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)
-            .context("the operating system has no pseudo-terminal")?;
+    ///
+    /// # Errors
+    /// The operating system has no pseudo-terminal.
+    pub fn open() -> io::Result<(Self, PathBuf)> {
+        let file = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         grantpt(&file)?;
         unlockpt(&file)?;
         let path = ptsname(&file, Vec::new())?;
@@ -42,7 +49,7 @@ impl PtyLine {
             connected: false,
             outgoing: OutgoingBytes::default(),
         };
-        Ok((line, PathBuf::from(path.into_string()?)))
+        Ok((line, PathBuf::from(OsStr::from_bytes(path.as_bytes()))))
     }
 }
 
