@@ -116,7 +116,7 @@ impl LineSplitter {
     }
 
     /// Removes and returns the complete lines, without line ends. A line without an end is returned in parts, so that a
-    /// device that sends none cannot fill the memory. Control characters, which a terminal would obey, are shown as `\u{1b}`.
+    /// device that sends none cannot fill the memory.
     pub fn complete(&mut self) -> Vec<String> {
         let end = self.0.iter().rposition(|byte| *byte == b'\n');
         let end = end.map_or(0, |end| end + 1);
@@ -127,19 +127,6 @@ impl LineSplitter {
         let rest = self.0.split_off(end);
         let complete = std::mem::replace(&mut self.0, rest);
         let lines = complete.strip_suffix(b"\n").unwrap_or(&complete).split(|byte| *byte == b'\n');
-        lines.map(|line| shown(&String::from_utf8_lossy(line.trim_ascii_end()))).collect()
+        lines.map(|line| String::from_utf8_lossy(line.trim_ascii_end()).into_owned()).collect()
     }
-}
-
-/// A text with its control characters as escapes.
-fn shown(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
-    for character in text.chars() {
-        if character.is_control() {
-            shown.extend(character.escape_default());
-        } else {
-            shown.push(character);
-        }
-    }
-    shown
 }
