@@ -60,7 +60,8 @@ fn main() {
     }
 }
 RUST
-cargo run --quiet --manifest-path "$folder/Cargo.toml" --target-dir "$folder/target"
+cd "$folder"
+cargo run --quiet
 python3 -m venv "$folder/env"
 "$folder/env/bin/pip" install --quiet --no-compile --disable-pip-version-check mcp9600==0.0.4 i2cdevice==1.0.0
 "$folder/env/bin/python" - <<'PYTHON'

@@ -53,4 +53,5 @@ fn main() {
     }
 }
 RUST
-cargo run --quiet --manifest-path "$folder/Cargo.toml" --target-dir "$folder/target"
+cd "$folder"
+cargo run --quiet
