@@ -348,7 +348,12 @@ mod tests {
             let about = "\n<!-- about figures -->\n<!-- /about -->";
             let filled = filled("docs/a.md", &(text.clone() + about)).expect("a known figure");
             assert!(filled.starts_with(&expected), "{filled}");
-            assert!(filled.contains("at most 1.3 times off unless a reason is given ([how](README.md#figures))"), "{filled}");
+            assert!(
+                filled.contains(
+                    "at most 1.3 times off unless a reason is given ([how](README.md#figures))"
+                ),
+                "{filled}"
+            );
         }
     }
 
