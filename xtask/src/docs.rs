@@ -265,8 +265,8 @@ fn about(page: &str, text: &str, history: &mut History) -> Result<String> {
         }
     }
     let mut about = format!(
-        "\nFigures on this page are as measured when they were last set; a test fails when one is more than {HEADROOM} times off \
-         ([how]({to_docs}README.md#figures))."
+        "\nFigures on this page are as measured when they were last set; a test fails when one is beyond its bound, at most \
+         {HEADROOM} times off unless a reason is given ([how]({to_docs}README.md#figures))."
     );
     let mut untested = Vec::new();
     for ((commit, command), mut groups) in recorded {
@@ -348,7 +348,12 @@ mod tests {
             let about = "\n<!-- about figures -->\n<!-- /about -->";
             let filled = filled("docs/a.md", &(text.clone() + about)).expect("a known figure");
             assert!(filled.starts_with(&expected), "{filled}");
-            assert!(filled.contains("1.3 times off ([how](README.md#figures))"), "{filled}");
+            assert!(
+                filled.contains(
+                    "at most 1.3 times off unless a reason is given ([how](README.md#figures))"
+                ),
+                "{filled}"
+            );
         }
     }
 
