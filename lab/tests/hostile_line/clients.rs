@@ -91,6 +91,17 @@ pub fn all() -> Vec<Client> {
         memory_max_mb: 50.0,
     };
     let stopped = |ms| Some(Duration::from_millis(ms));
+    let monitor = Client {
+        name: "monitor",
+        words: &["monitor", "--headless", "--tcp", "PLACE"],
+        input: Input::Once("arm\n"),
+        is_armed_before: false,
+        is_guarded: true,
+        interrupted_at: stopped(5000),
+        takes: Duration::from_secs(5),
+        leaves_driven: false,
+        ..lab
+    };
     vec![
         lab,
         Client {
@@ -109,28 +120,12 @@ pub fn all() -> Vec<Client> {
             takes: Duration::from_millis(1500),
             ..lab
         },
-        Client {
-            name: "monitor",
-            words: &["monitor", "--headless", "--tcp", "PLACE"],
-            input: Input::Once("arm\n"),
-            is_armed_before: false,
-            is_guarded: true,
-            interrupted_at: stopped(5000),
-            takes: Duration::from_secs(5),
-            leaves_driven: false,
-            ..lab
-        },
+        monitor,
         Client {
             name: "monitor at a PTY",
             transport: Transport::PseudoTerminal,
             words: &["monitor", "--headless", "--port", "PLACE"],
-            input: Input::Once("arm\n"),
-            is_armed_before: false,
-            is_guarded: true,
-            interrupted_at: stopped(5000),
-            takes: Duration::from_secs(5),
-            leaves_driven: false,
-            ..lab
+            ..monitor
         },
         Client {
             name: "run",
