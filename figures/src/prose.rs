@@ -150,7 +150,7 @@ fn starts_block(line: &str) -> bool {
     matches!(mark, "-" | "*") || mark.starts_with('#') || number.parse::<u8>().is_ok()
 }
 
-/// The text with blanks in place of all that is no prose; lines stay.
+/// The text without what is not prose; each omission leaves a mark, and lines keep their numbers.
 fn without_what_is_marked(text: &str) -> String {
     const PAIRS: [(&str, &str); 7] = [
         ("```", "```"),

@@ -116,7 +116,7 @@ impl MonitorPeople for Operator {
 }
 
 fn watch(link: ScriptedLink, orders: &[Order]) -> (Result<(), ClientError>, Vec<String>, Operator) {
-    // He closes the monitor after the last order is carried out, which asks twice an order.
+    // The monitor asks twice for each order whether it is being closed; so it is closed once all are carried out.
     let looks = Cell::new(2 * orders.len() as u32);
     let orders = orders.iter().copied().collect();
     let mut operator = Operator { orders, looks, ..Operator::default() };

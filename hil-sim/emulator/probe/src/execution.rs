@@ -17,7 +17,7 @@ const FPSCR: [[u32; 4]; GROUPS] = [
 pub const MEMORY: usize = 64;
 const MIDDLE: usize = 24;
 
-/// The block of memory that the code accesses, far below the stack: at this address whatever the compiler places elsewhere,
+/// The block of memory that the code accesses, far below the stack: at an address that does not depend on what the compiler places elsewhere,
 /// because the check sums contain addresses in it.
 const BLOCK: usize = 0x2000_1000;
 

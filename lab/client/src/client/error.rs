@@ -54,7 +54,7 @@ pub enum ClientError {
         "THE BRIDGE MAY STILL BE ON: 'abort' was not confirmed ({why}). PRESS THE EMERGENCY STOP"
     )]
     NotOff {
-        /// What happened in place of a confirmation.
+        /// What happened instead of a confirmation.
         why: String,
     },
     /// The line cannot be sent.
