@@ -16,11 +16,8 @@ mod tile_identification;
 
 pub use calibration_points::{POINTS_PER_THERMISTOR_MAX, PointError, REFERENCE_DIFFERENCE_MAX_K};
 pub use cholesky::solve_by_cholesky;
-pub use session::{CommissioningSession, ExecuteOnStation, SETTINGS_LINE_COUNT_MAX};
-pub use session_messages::{
-    CONVERTER_STEPS_PER_LINE_MAX, SessionError, SessionReply, SessionRequest, Setting,
-    THERMISTOR_WORDS,
-};
+pub use session::{CommissioningSession, ExecuteOnStation};
+pub use session_messages::{SessionError, SessionReply};
 pub use stability_margins::StabilityMargins;
 pub use storage_order::StorageOrder;
 pub use tile_identification::IdentificationError;

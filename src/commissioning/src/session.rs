@@ -4,10 +4,7 @@ use core::ops::Range;
 
 use super::calibration_fit::{DISPLAY_THERMISTOR_COUNT, calibrated_temperature_c, fit_calibration};
 use super::calibration_points::{CalibrationPoints, PointError};
-use super::session_messages::{
-    CONVERTER_STEPS_PER_LINE_MAX, SessionError, SessionReply, SessionRequest, Setting,
-    THERMISTOR_WORDS,
-};
+use super::session_messages::{SessionError, SessionReply};
 use super::stability_margins::StabilityMargins;
 use super::tile_identification::tile_from_normal_equations;
 use contact_model::material::MATERIALS;
@@ -15,22 +12,17 @@ use thermal_device::command::{self, ChosenMaterial, Command, Refused};
 use thermal_device::control::ControlParameters;
 use thermal_device::identification::{NORMAL_EQUATION_AND_STATISTICS_ROWS, NormalEquationRow};
 use thermal_device::learning::FluxParameters;
+use thermal_device::safety::ThermistorId;
 use thermal_device::sense::CalibrationTables;
 use thermal_settings::{
     CALIBRATED_ADC_BORDER_COUNT, Calibration, Correction, DisplaySurface,
     FIRST_CALIBRATED_ADC_BORDER_INDEX, FluxSensor, Settings, Tile,
 };
-
-/// Number of lines of the settings that hold the converter's steps at 13 borders of its segments, up to seven in each
-/// line: 2.
-const CONVERTER_STEPS_LINE_COUNT: usize =
-    CALIBRATED_ADC_BORDER_COUNT.div_ceil(CONVERTER_STEPS_PER_LINE_MAX);
-/// Number of lines that hold all commissioned settings of a finger without a heat-flux sensor whose display has the nominal
-/// surface, 8: two for the converter's 13 steps, one for the correction of each of the five thermistors, and one for the tile.
-const LINE_COUNT_ALWAYS: usize = CONVERTER_STEPS_LINE_COUNT + THERMISTOR_WORDS.len() + 1;
-/// Number of lines that hold all commissioned settings of a finger, with one for a heat-flux sensor and one for the surface of the
-/// display.
-pub const SETTINGS_LINE_COUNT_MAX: usize = LINE_COUNT_ALWAYS + 2;
+use thermal_wire::PointOrClear;
+use thermal_wire::request::SessionRequest;
+use thermal_wire::setting::{
+    CONVERTER_STEPS_LINES, CONVERTER_STEPS_PER_LINE_MAX, SETTING_LINES_ALWAYS, Setting,
+};
 
 /// A function that executes a command on the station of the session's finger, and returns the station's reply or
 /// refusal. The control tick may be locked out while it runs, so it must end after a bounded, short time.
@@ -78,13 +70,61 @@ impl CommissioningSession {
         mut execute: impl ExecuteOnStation,
     ) -> Result<SessionReply, SessionError> {
         match request {
-            SessionRequest::AddPoint { sensor, reference_c } => {
-                return self.add_point_and_refit(sensor, reference_c, &mut execute);
+            SessionRequest::Calibrate { thermistor, point: PointOrClear::Point(reference_c) } => {
+                let sensor = thermistor as usize;
+                return self.add_point_and_refit(sensor, reference_c.f64(), &mut execute);
             }
-            SessionRequest::ClearCalibration { sensor } => {
-                self.clear_thermistor_calibration(sensor, &mut execute)?;
+            SessionRequest::Calibrate { thermistor, point: PointOrClear::Clear } => {
+                self.clear_thermistor_calibration(thermistor as usize, &mut execute)?;
             }
-            SessionRequest::Set(Setting::Steps { first, counts }) => {
+            SessionRequest::Set { setting } => self.replace_setting(setting, &mut execute)?,
+            SessionRequest::SetFluxSensor { sensor } => {
+                self.set_flux_sensor(Some(sensor), &mut execute)?;
+            }
+            SessionRequest::NoFluxSensor => self.set_flux_sensor(None, &mut execute)?,
+            SessionRequest::SetDisplaySurface { surface } => {
+                self.set_display_surface(surface, &mut execute)?;
+            }
+            SessionRequest::NominalDisplaySurface => {
+                self.set_display_surface(DisplaySurface::NOMINAL, &mut execute)?;
+            }
+            SessionRequest::QueryFlux => {
+                let command::Reply::Flux(state) = execute(Command::Flux)? else {
+                    return Ok(SessionReply::Flux(None));
+                };
+                return Ok(SessionReply::Flux(self.settings.flux_sensor.zip(state)));
+            }
+            SessionRequest::QueryDisplaySurface => {
+                return Ok(SessionReply::DisplaySurface(self.settings.display));
+            }
+            SessionRequest::FluxZero => self.take_flux_zero(&mut execute)?,
+            SessionRequest::TuneResult => {
+                self.identify_and_set_tile(&mut execute)?;
+                return Ok(self.tile_and_margins_reply());
+            }
+            SessionRequest::Margins => return Ok(self.tile_and_margins_reply()),
+            SessionRequest::CountSettings => {
+                let flux_sensor = usize::from(self.settings.flux_sensor.is_some());
+                let display = usize::from(self.settings.display != DisplaySurface::NOMINAL);
+                let lines = SETTING_LINES_ALWAYS + flux_sensor + display;
+                return Ok(SessionReply::SettingsLines(lines));
+            }
+            SessionRequest::QuerySetting { number } => {
+                let index = number.get().saturating_sub(1);
+                return Ok(SessionReply::Setting(self.setting_at_line_index(index)));
+            }
+        }
+        Ok(SessionReply::Done)
+    }
+
+    /// Replaces the part of the settings that a line holds.
+    fn replace_setting(
+        &mut self,
+        setting: Setting,
+        execute: &mut impl ExecuteOnStation,
+    ) -> Result<(), SessionError> {
+        match setting {
+            Setting::Steps { first, counts } => {
                 let mut calibration = self.settings.calibration;
                 let steps = calibration.steps_counts.iter_mut();
                 for (step, count) in
@@ -96,52 +136,25 @@ impl CommissioningSession {
                     calibration,
                     calibration,
                     0..DISPLAY_THERMISTOR_COUNT,
-                    &mut execute,
+                    execute,
                 )?;
             }
-            SessionRequest::Set(Setting::Correction(sensor, correction)) => {
+            Setting::Correction(thermistor, correction) => {
+                let sensor = thermistor as usize;
                 let (calibration, prior) =
                     self.calibration_and_fit_prior_with_correction(sensor, correction);
                 self.replace_calibration_and_clear_points(
                     calibration,
                     prior,
                     sensor..sensor + 1,
-                    &mut execute,
+                    execute,
                 )?;
             }
-            SessionRequest::Set(Setting::Tile(tile)) => self.set_tile(tile, &mut execute)?,
-            SessionRequest::Set(Setting::FluxSensor(sensor)) => {
-                self.set_flux_sensor(sensor, &mut execute)?;
-            }
-            SessionRequest::Flux => {
-                let command::Reply::Flux(state) = execute(Command::Flux)? else {
-                    return Ok(SessionReply::Flux(None));
-                };
-                return Ok(SessionReply::Flux(self.settings.flux_sensor.zip(state)));
-            }
-            SessionRequest::Set(Setting::DisplaySurface(display)) => {
-                self.set_display_surface(display, &mut execute)?;
-            }
-            SessionRequest::DisplaySurface => {
-                return Ok(SessionReply::DisplaySurface(self.settings.display));
-            }
-            SessionRequest::FluxZero => self.take_flux_zero(&mut execute)?,
-            SessionRequest::TuneResult => {
-                self.identify_and_set_tile(&mut execute)?;
-                return Ok(self.tile_and_margins_reply());
-            }
-            SessionRequest::Margins => return Ok(self.tile_and_margins_reply()),
-            SessionRequest::CountSettingsLines => {
-                let flux_sensor = usize::from(self.settings.flux_sensor.is_some());
-                let display = usize::from(self.settings.display != DisplaySurface::NOMINAL);
-                let lines = LINE_COUNT_ALWAYS + flux_sensor + display;
-                return Ok(SessionReply::SettingsLines(lines));
-            }
-            SessionRequest::SettingsLine(index) => {
-                return Ok(SessionReply::Setting(self.setting_at_line_index(index)));
-            }
+            Setting::Tile(tile) => self.set_tile(tile, execute)?,
+            Setting::FluxSensor(sensor) => self.set_flux_sensor(sensor, execute)?,
+            Setting::DisplaySurface(display) => self.set_display_surface(display, execute)?,
         }
-        Ok(SessionReply::Done)
+        Ok(())
     }
 
     /// Computes the tile's parameters from the response that the station has recorded during `tune`, and makes them the
@@ -346,12 +359,13 @@ impl CommissioningSession {
                 counts: heapless::Vec::from_slice(steps).unwrap_or_default(),
             };
         }
-        let sensor = index - CONVERTER_STEPS_LINE_COUNT;
-        match calibration.corrections.get(sensor) {
-            Some(correction) => Setting::Correction(sensor, *correction),
-            None if index < LINE_COUNT_ALWAYS => Setting::Tile(self.settings.tile),
+        let sensor = index - CONVERTER_STEPS_LINES;
+        let mut thermistors = ThermistorId::ALL.iter().zip(&calibration.corrections);
+        match thermistors.nth(sensor) {
+            Some((thermistor, correction)) => Setting::Correction(*thermistor, *correction),
+            None if index < SETTING_LINES_ALWAYS => Setting::Tile(self.settings.tile),
             None => match self.settings.flux_sensor {
-                Some(sensor) if index == LINE_COUNT_ALWAYS => Setting::FluxSensor(Some(sensor)),
+                Some(sensor) if index == SETTING_LINES_ALWAYS => Setting::FluxSensor(Some(sensor)),
                 _ => Setting::DisplaySurface(self.settings.display),
             },
         }

@@ -4,23 +4,18 @@
 //! in memory that a reset preserves, restarts, writes the record to flash before anything else, and then replies to the
 //! order.
 
-/// An order of the host to write the settings of all fingers to flash, from where they are read at start-up. The device
-/// restarts to execute the order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StorageOrder {
-    /// `save`: stores the present calibration and tile parameters of all fingers, so that they still hold after a
-    /// restart.
-    Save,
-    /// `forget`: stores the factory defaults of all fingers in place of the stored settings; all calibration is lost.
-    Forget,
-}
+use thermal_settings::vocabulary;
 
-impl StorageOrder {
-    /// The order's word on the line from the host: `save` or `forget`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Save => "save",
-            Self::Forget => "forget",
-        }
+vocabulary! {
+    /// An order of the host to write the settings of all fingers to flash, from where they are read at start-up. The device
+    /// restarts to execute the order.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum StorageOrder: "order" {
+        /// `save`: stores the present calibration and tile parameters of all fingers, so that they still hold after a
+        /// restart.
+        Save = "save",
+        /// `forget`: stores the factory defaults of all fingers in place of the stored settings; all calibration is lost.
+        Forget = "forget",
     }
 }
+

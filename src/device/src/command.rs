@@ -3,6 +3,7 @@
 //! These are values: `thermal-protocol` reads commands from lines of text, and writes answers as lines.
 
 use core::fmt;
+use thermal_settings::vocabulary;
 
 use contact_model::contact_law::ContactLaw;
 use contact_model::fixed_point::{
@@ -92,32 +93,21 @@ impl ObjectBody {
     }
 }
 
-/// The finger that the device assumes for the unknown one that touches.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AssumedFinger {
-    /// The thesis's half-space of skin.
-    Thesis,
-    /// The mean layered finger, in air before contact: the device's default.
-    #[default]
-    Mean,
-    /// The mean layered finger, on an insulating pad before contact.
-    MeanOnPad,
+vocabulary! {
+    /// The finger that the device assumes for the unknown one that touches.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum AssumedFinger: "finger" {
+        /// The mean layered finger, in air before contact: the device's default.
+        #[default]
+        Mean = "mean",
+        /// The mean layered finger, on an insulating pad before contact.
+        MeanOnPad = "mean-on-pad",
+        /// The thesis's half-space of skin.
+        Thesis = "thesis",
+    }
 }
 
 impl AssumedFinger {
-    /// The fingers with their words in the protocol.
-    pub const PROTOCOL_WORDS: [(&str, Self); 3] =
-        [("mean", Self::Mean), ("mean-on-pad", Self::MeanOnPad), ("thesis", Self::Thesis)];
-
-    /// Its word in the protocol.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Thesis => "thesis",
-            Self::Mean => "mean",
-            Self::MeanOnPad => "mean-on-pad",
-        }
-    }
-
     /// Its tissue, and the film of air or pad before contact.
     pub const fn body(self) -> &'static FingerBody {
         match self {

@@ -1,5 +1,7 @@
 //! Events of a finger's station: what the host is told at once, and what the trigger output marks.
 
+use thermal_settings::vocabulary;
+
 use crate::command::WithSourceFinger;
 use crate::telemetry::Telemetry;
 
@@ -10,44 +12,22 @@ const EVENTS_KEPT_MAX: usize = 8;
 // The counts of the ring wrap at 256.
 const _: () = assert!(256 % EVENTS_KEPT_MAX == 0);
 
-/// What happened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DeviceEventKind {
-    /// A finger has landed.
-    Land,
-    /// The finger has lifted.
-    Lift,
-    /// A course has started.
-    CourseStarted,
-    /// A course has ended by itself, after its last repetition.
-    CourseEnded,
-    /// An edge at the trigger input.
-    Trigger,
-    /// What is known of the finger by its heat flux has changed.
-    FingerKnowledge,
-}
-
-impl DeviceEventKind {
-    /// All kinds with their words in the protocol.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 6] = [
-        ("land", Self::Land),
-        ("lift", Self::Lift),
-        ("start", Self::CourseStarted),
-        ("end", Self::CourseEnded),
-        ("trigger", Self::Trigger),
-        ("flux", Self::FingerKnowledge),
-    ];
-
-    /// Its word in the protocol.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Land => "land",
-            Self::Lift => "lift",
-            Self::CourseStarted => "start",
-            Self::CourseEnded => "end",
-            Self::Trigger => "trigger",
-            Self::FingerKnowledge => "flux",
-        }
+vocabulary! {
+    /// What happened.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum DeviceEventKind: "event" {
+        /// A finger has landed.
+        Land = "land",
+        /// The finger has lifted.
+        Lift = "lift",
+        /// A course has started.
+        CourseStarted = "start",
+        /// A course has ended by itself, after its last repetition.
+        CourseEnded = "end",
+        /// An edge at the trigger input.
+        Trigger = "trigger",
+        /// What is known of the finger by its heat flux has changed.
+        FingerKnowledge = "flux",
     }
 }
 

@@ -31,6 +31,17 @@ pub enum StateName {
 }
 
 impl StateName {
+    /// All states but tripped.
+    pub const WITHOUT_FAULT: [Self; 7] = [
+        Self::Off,
+        Self::SelfTest,
+        Self::Ready,
+        Self::Armed,
+        Self::Preset,
+        Self::Contact,
+        Self::Stimulus,
+    ];
+
     /// The state's word in lines to the host, such as `self-test`.
     pub const fn name(self) -> &'static str {
         match self {

@@ -5,50 +5,34 @@ use contact_model::fixed_point::{Celsius, Force};
 use crate::StateName;
 use crate::drive::Current;
 
-/// Fields of a telemetry line that the host may leave out. The tick, the state and the remark, which names a fault, are
-/// always there.
+/// Fields of a telemetry line that the host may leave out, by their places in a line, which `thermal-wire` declares. The tick,
+/// the state and the remark, which names a fault, are always there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TelemetryFields(u16);
 
 impl TelemetryFields {
-    /// The fields in the order of the line. The last [`NAMED_ONLY`](Self::NAMED_ONLY) are in a line only if the host names them.
-    pub const NAMES: [&'static str; 12] = [
-        "setpoint",
-        "display",
-        "sink",
-        "skin",
-        "room",
-        "force",
-        "demand",
-        "current",
-        "evaluations",
-        "flux",
-        "surface",
-        "finger",
-    ];
-    /// Number of fields that lines without chosen fields do not have: those of the heat-flux sensor.
-    pub const NAMED_ONLY: usize = 3;
     /// No field.
     pub const NONE: Self = Self(0);
-    /// The fields of a line for which the host has chosen none.
-    pub const DEFAULT: Self = Self((1 << (Self::NAMES.len() - Self::NAMED_ONLY)) - 1);
-    /// The fields that are in a line only if the host names them.
-    const NAMED: Self = Self(((1 << Self::NAMES.len()) - 1) & !Self::DEFAULT.0);
 
-    /// The set with the field of this index, too.
+    /// The first fields of a line, so many, up to 15.
+    pub const fn of_first(count: usize) -> Self {
+        Self((1 << count) - 1)
+    }
+
+    /// The set with the field at this place, 0 to 15, too.
     #[must_use]
-    pub const fn with(self, index: usize) -> Self {
-        Self(self.0 | (1 << index) & (Self::DEFAULT.0 | Self::NAMED.0))
+    pub const fn with(self, place: usize) -> Self {
+        Self(self.0 | 1 << place)
     }
 
-    /// Whether the field of this index is in the set.
-    pub const fn contains(self, index: usize) -> bool {
-        self.0 & 1 << index != 0
+    /// Whether the field at this place is in the set.
+    pub const fn contains(self, place: usize) -> bool {
+        self.0 & 1 << place != 0
     }
 
-    /// Whether a field of the heat-flux sensor is in the set.
-    pub const fn has_flux_fields(self) -> bool {
-        self.0 & Self::NAMED.0 != 0
+    /// Whether a field is in both sets.
+    pub const fn intersects(self, other: Self) -> bool {
+        self.0 & other.0 != 0
     }
 }
 

@@ -5,7 +5,7 @@ use core::{array, fmt, iter};
 use contact_model::fixed_point::Body;
 use contact_model::material::{Material, SKIN};
 use contact_model::slab::{Back, Slab};
-use thermal_commissioning::{CommissioningSession, SessionReply, SessionRequest, StorageOrder};
+use thermal_commissioning::{CommissioningSession, SessionReply, StorageOrder};
 use thermal_device::command::{
     self, ChosenMaterial, Command, ObjectBody, Refused, WithSourceFinger,
 };
@@ -13,15 +13,18 @@ use thermal_device::learning::PersonState;
 use thermal_device::{FingerIndex, StateName, TICK_S};
 use thermal_settings::{
     Person, PersonCode, Persons, Settings, SettingsRecord, StoredDevice, StoredSettings,
-    encode_settings_record,
+    WordList, encode_settings_record,
 };
+use thermal_wire::request::{DeviceRequest, PersonRequest, SessionRequest};
+use thermal_wire::words::{expect_end, read_word};
+use thermal_wire::{PersonData, PointOrClear, ReadError, Request};
 
-use crate::arguments::{expect_end, read_word};
 use crate::finger_address::{legible_address, split_address};
 use crate::line_checksum::{ChecksumError, line_checksum, strip_checksum, write_line};
-use crate::person::{ENROL_CONTACTS, PersonCodes, PersonReply, PersonRequest};
+use crate::person::{ENROL_CONTACTS, PersonCodes, PersonReply};
+use crate::station_command::{StationWork, station_work};
 use crate::upload::{Upload, UploadStep};
-use crate::{BoardStatus, Error, OutgoingLine, Reply, Request, UploadError};
+use crate::{BoardStatus, Error, OutgoingLine, Reply, UploadError};
 
 /// A function that executes a command in the station (the control) of the given finger, or in the stations of all
 /// fingers for `None`, and returns the reply or the refusal, in bounded and short time. [`CommandHandler::answer`]
@@ -143,35 +146,36 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         let addressed = |content| WithSourceFinger { finger: number, content };
         let rejected = |content| WithSourceFinger { finger: number, content };
         let owner = finger.map_or(0, FingerIndex::index);
-        let request = Request::parse(line, self.sessions[owner].settings()).map_err(rejected)?;
+        let request = Request::read(line).map_err(|error| rejected(error.into()))?;
         match request {
-            Request::Checksum(_) if finger.is_some() && FINGERS > 1 => {
-                Err(rejected(Error::WholeDevice("checksum")))
-            }
-            Request::Checksum(on) => {
-                self.checksums = on;
-                Ok(addressed(Reply::DONE))
-            }
-            Request::Identify => Ok(addressed(Reply::Identity { fingers: FINGERS as u8 })),
-            Request::Board => Ok(addressed(Reply::Board(self.board))),
-            Request::Station(Command::Material(chosen))
-                if finger.is_none() && self.displays_differ() =>
-            {
-                self.choose_material_on_each_display(&chosen, execute)
-            }
-            Request::Station(command) => Self::execute_in_stations(command, finger, execute),
-            Request::Slab { thickness_mm, back } => {
-                let material = Self::chosen_material(finger, &mut execute);
-                let body = material.and_then(|material| slab_body(&material, thickness_mm, back));
-                let command = Command::Body(body.map_err(rejected)?);
-                Self::execute_in_stations(command, finger, execute)
-            }
-            Request::Pulse(pulse) => {
-                (pulse.replace_course(self.upload.course_to_replace()))
-                    .map_err(|error| rejected(Error::Course(error)))?;
-                let (_, loaded) = self.load_course(finger, &mut execute);
-                let played = Self::execute_in_stations(Command::Play(pulse.order), finger, execute);
-                loaded.and(played)
+            Request::Device(request) => self.answer_of_device(&request, finger, execute),
+            Request::Station(request) => {
+                let display = self.sessions[owner].settings().display;
+                match station_work(&request, display.surface()).map_err(rejected)? {
+                    StationWork::Command(Command::Material(chosen))
+                        if finger.is_none() && self.displays_differ() =>
+                    {
+                        self.choose_material_on_each_display(&chosen, execute)
+                    }
+                    StationWork::Command(command) => {
+                        Self::execute_in_stations(command, finger, execute)
+                    }
+                    StationWork::Slab(thickness_mm, back) => {
+                        let material = Self::chosen_material(finger, &mut execute);
+                        let body =
+                            material.and_then(|material| slab_body(&material, thickness_mm, back));
+                        let command = Command::Body(body.map_err(rejected)?);
+                        Self::execute_in_stations(command, finger, execute)
+                    }
+                    StationWork::Pulse(pulse, order) => {
+                        (pulse.replace_course(self.upload.course_to_replace()))
+                            .map_err(|error| rejected(Error::Course(error)))?;
+                        let (_, loaded) = self.load_course(finger, &mut execute);
+                        let played =
+                            Self::execute_in_stations(Command::Play(order), finger, execute);
+                        loaded.and(played)
+                    }
+                }
             }
             Request::Upload => match self.continue_upload(finger, line).map_err(rejected)? {
                 UploadStep::Row => Ok(addressed(Reply::DONE)),
@@ -188,16 +192,38 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                     Self::execute_in_stations(command, finger, execute)
                 }
             },
-            Request::Commissioning(request) => {
+            Request::Session(request) => {
                 self.execute_in_commissioning_sessions(request, finger, execute)
             }
             Request::Person(request) => self.answer_about_persons(request, finger, execute),
-            Request::Storage(order) => match Self::save_or_forget_rejection(order, finger, execute)
-            {
-                None => Ok(addressed(Reply::Restart(order))),
-                Some(error) => Err(error),
-            },
         }
+    }
+
+    /// Executes a request that the device as a whole answers.
+    fn answer_of_device(
+        &mut self,
+        request: &DeviceRequest,
+        finger: Option<FingerIndex<FINGERS>>,
+        execute: impl ExecuteOnStations<FINGERS>,
+    ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
+        let number = finger.map(FingerIndex::index_u8);
+        let content = match request {
+            DeviceRequest::Identify => Reply::Identity { fingers: FINGERS as u8 },
+            DeviceRequest::Board => Reply::Board(self.board),
+            DeviceRequest::Checksum { .. } if finger.is_some() && FINGERS > 1 => {
+                let content = Error::WholeDevice("checksum");
+                return Err(WithSourceFinger { finger: number, content });
+            }
+            DeviceRequest::Checksum { switch } => {
+                self.checksums = switch.is_on();
+                Reply::DONE
+            }
+            DeviceRequest::Save => return Self::save_or_forget(StorageOrder::Save, finger, execute),
+            DeviceRequest::ForgetAll => {
+                return Self::save_or_forget(StorageOrder::Forget, finger, execute);
+            }
+        };
+        Ok(WithSourceFinger { finger: number, content })
     }
 
     /// Executes a command in the station of `finger`, or in all stations for `None`.
@@ -259,29 +285,33 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         let is_one = finger.is_some() || FINGERS == 1;
         let finger = match request {
-            PersonRequest::Query if FINGERS > 1 => finger.or(Some(FingerIndex::FIRST)),
+            PersonRequest::QueryPerson if FINGERS > 1 => finger.or(Some(FingerIndex::FIRST)),
             _ => finger,
         };
         let answer = match request {
-            PersonRequest::Choose(code) => match code.map(|code| (code, self.persons.get(code))) {
-                Some((code, None)) => Err(Error::UnknownPerson(code)),
-                known => {
-                    let person = known.and_then(|(_, person)| person.copied());
-                    let command = Command::ChoosePerson(person);
+            PersonRequest::ChooseNobody => {
+                return Self::execute_in_stations(Command::ChoosePerson(None), finger, execute);
+            }
+            PersonRequest::Person { code, data: None } => match self.persons.get(code) {
+                None => Err(Error::UnknownPerson(code)),
+                Some(person) => {
+                    let command = Command::ChoosePerson(Some(*person));
                     return Self::execute_in_stations(command, finger, execute);
                 }
             },
+            PersonRequest::Person { code, data: Some(PersonData(finger)) } => {
+                self.store_person(Person { code, finger })
+            }
             PersonRequest::List => Ok(Reply::Persons(PersonCodes::new(&self.persons))),
-            PersonRequest::Store(person) => self.store_person(person),
-            PersonRequest::Forget(code) if self.persons.remove(code) => Ok(Reply::DONE),
-            PersonRequest::Forget(code) => Err(Error::UnknownPerson(code)),
-            PersonRequest::Enrol(_) if !is_one => Err(Error::Missing("finger (as @0)")),
-            PersonRequest::Query => {
+            PersonRequest::Forget { code } if self.persons.remove(code) => Ok(Reply::DONE),
+            PersonRequest::Forget { code } => Err(Error::UnknownPerson(code)),
+            PersonRequest::Enrol { .. } if !is_one => Err(Error::NeedsFinger),
+            PersonRequest::QueryPerson => {
                 Self::person_state(Command::Person, finger, execute).map(|state| {
                     Reply::Person(PersonReply { person: state.chosen, contacts: state.contacts() })
                 })
             }
-            PersonRequest::Enrol(code) => {
+            PersonRequest::Enrol { code } => {
                 Self::person_state(Command::LearntPerson, finger, execute)
                     .and_then(|state| self.enrol(code, &state))
             }
@@ -369,7 +399,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         let material = material_of(finger.unwrap_or(FingerIndex::FIRST))?;
         for one in FingerIndex::all() {
             if finger.is_none() && material_of(one)? != material {
-                return Err(Error::Missing("finger (as @0)"));
+                return Err(Error::NeedsFinger);
             }
         }
         Ok(material)
@@ -405,7 +435,11 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 expect_end(&mut words)?;
                 return self.upload.commit(checksum);
             }
-            unknown => return Err(Error::UnknownUpload(unknown.into())),
+            unknown => {
+                const LINES: &WordList =
+                    &WordList { kind: "upload", words: &["begin", "row", "commit"] };
+                return Err(ReadError::UnknownWord(LINES, unknown.into()).into());
+            }
         }
         Ok(UploadStep::Row)
     }
@@ -420,21 +454,22 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         let finger = match request {
-            SessionRequest::CountSettingsLines
-            | SessionRequest::SettingsLine(_)
+            SessionRequest::CountSettings
+            | SessionRequest::QuerySetting { .. }
             | SessionRequest::Margins
-            | SessionRequest::Flux
-            | SessionRequest::DisplaySurface
+            | SessionRequest::QueryFlux
+            | SessionRequest::QueryDisplaySurface
                 if FINGERS > 1 =>
             {
                 finger.or(Some(FingerIndex::FIRST))
             }
             // Each of these requests takes milliseconds of `f64`; for all fingers this would exceed the watchdog's
             // period.
-            SessionRequest::AddPoint { .. } | SessionRequest::TuneResult
+            SessionRequest::Calibrate { point: PointOrClear::Point(_), .. }
+            | SessionRequest::TuneResult
                 if finger.is_none() && FINGERS > 1 =>
             {
-                return Err(WithSourceFinger::from_whole_device(Error::Missing("finger (as @0)")));
+                return Err(WithSourceFinger::from_whole_device(Error::NeedsFinger));
             }
             _ => finger,
         };
@@ -464,6 +499,17 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         let content = Reply::Commissioning(reply);
         let finger = finger.map(FingerIndex::index_u8);
         first_error.map_or(Ok(WithSourceFinger { finger, content }), Err)
+    }
+
+    /// Answers `save` or `forget`: the caller restarts the device, unless the order is rejected.
+    fn save_or_forget(
+        order: StorageOrder,
+        finger: Option<FingerIndex<FINGERS>>,
+        execute: impl ExecuteOnStations<FINGERS>,
+    ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
+        let number = finger.map(FingerIndex::index_u8);
+        let restart = WithSourceFinger { finger: number, content: Reply::Restart(order) };
+        Self::save_or_forget_rejection(order, finger, execute).map_or(Ok(restart), Err)
     }
 
     /// The error that rejects `save` or `forget`, or `None` if the command may be executed. Rejected are a line that

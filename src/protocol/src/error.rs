@@ -4,66 +4,27 @@ use core::fmt;
 
 use contact_model::decimal::{Rounded, Shortest};
 use contact_model::fixed_point::{BodyError, Celsius, ContactPairError, units_to_f64};
-use contact_model::material::MATERIALS;
-
 use thermal_commissioning::{
     IdentificationError, POINTS_PER_THERMISTOR_MAX, PointError, REFERENCE_DIFFERENCE_MAX_K,
-    SessionError, THERMISTOR_WORDS,
+    SessionError,
 };
-use thermal_device::TelemetryFields;
-use thermal_device::command::{AssumedFinger, Refused};
-use thermal_device::control::Law;
+use thermal_device::command::Refused;
 use thermal_device::safety::PredictedDose;
 use thermal_device::safety::limits::{
     SETPOINT_MAX_C, SETPOINT_MIN_C, UNTUNED_RATE_MAX_K_S, UNTUNED_SETPOINT_MAX,
     UNTUNED_SETPOINT_MIN,
 };
 use thermal_device::stimulus::{
-    COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, CourseEnd, CourseError,
-    CourseStart, TemperatureKind,
+    COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, CourseError,
 };
-use thermal_settings::{Person, PersonCode, Persons, Range};
+use thermal_settings::{PersonCode, Persons, Range};
+use thermal_wire::{QuotedWordExcerpt, ReadError};
 
-use crate::calibrate_settings_set_commands::{
-    FLUX_COMMAND_WORDS, SET_COMMAND_TARGET_WORDS, SURFACE_COMMAND_WORDS,
-};
-use crate::events::NO_EVENTS_WORD;
 use crate::line_checksum::TwoHexDigits;
-use crate::object::{BACK_WORDS, OBJECT_ARGUMENTS};
 use crate::person::ENROL_CONTACTS;
 use crate::reply::write_contact_law;
-use crate::request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, SWITCH_WORDS};
 use crate::upload::UploadError;
-use crate::{ChecksumError, LINE_MAX_BYTES, LineError, Request};
-
-/// The first 20 bytes of a word from the host; `Display` writes them in single quotes, as part of an error message.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct QuotedWordExcerpt(heapless::String<20>);
-
-impl From<&str> for QuotedWordExcerpt {
-    #[inline(never)]
-    fn from(word: &str) -> Self {
-        let mut excerpt = heapless::String::new();
-        for c in word.chars() {
-            if excerpt.push(c).is_err() {
-                break;
-            }
-        }
-        Self(excerpt)
-    }
-}
-
-impl QuotedWordExcerpt {
-    fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-}
-
-impl fmt::Display for QuotedWordExcerpt {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "'{}'", self.0)
-    }
-}
+use crate::{ChecksumError, LINE_MAX_BYTES, LineError};
 
 /// Why the settings could not be stored in flash, as text of at most 56 bytes for the answer to the host.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -88,73 +49,23 @@ pub enum Error {
     Line(LineError),
     /// The line is rejected for its checksum, for this reason.
     Checksum(ChecksumError),
-    /// The argument of the command named here, quoted here, is neither `on` nor `off`.
-    UnknownSwitch(&'static str, QuotedWordExcerpt),
-    /// The first word of the line, quoted here, is no command. In this and all other errors of unknown words the quoted
-    /// word is empty if it is missing.
-    UnknownCommand(QuotedWordExcerpt),
+    /// The line is no request, for this reason.
+    Read(ReadError),
     /// The word after `@`, quoted here, is not the index of a finger, which counts from 0; the second value is the
     /// number of fingers of the device.
     UnknownFinger(QuotedWordExcerpt, usize),
-    /// The argument of `material`, quoted here, is neither the name of a material nor `custom`.
-    UnknownMaterial(QuotedWordExcerpt),
-    /// The argument of `object`, quoted here, is none of `slab`, `half-space`, `room`, and no temperature.
-    UnknownObject(QuotedWordExcerpt),
-    /// The argument of `finger`, quoted here, is none of its words.
-    UnknownAssumedFinger(QuotedWordExcerpt),
-    /// The word after the thickness of a slab, quoted here, is none of `insulated`, `held` and `film`.
-    UnknownBack(QuotedWordExcerpt),
-    /// A word of a line `upload`, quoted here, is none of `begin`, `row`, `commit` and the kind `object`.
-    UnknownUpload(QuotedWordExcerpt),
     /// `object slab` was sent before a material was chosen; the slab would be of that material.
     SlabNeedsMaterial,
     /// A line of an upload is rejected, for this reason.
     Upload(UploadError),
     /// The device cannot follow the object, for this reason; the present object stays.
     Body(BodyError),
-    /// The argument of `mode`, quoted here, is neither `contact` nor `semi-infinite`.
-    UnknownMode(QuotedWordExcerpt),
-    /// The argument of `law`, quoted here, is none of the control laws `pi-10hz`, `pi` and `model`.
-    UnknownLaw(QuotedWordExcerpt),
-    /// The word after `calibrate` or `set correction`, quoted here, is none of the thermistors `display`, `check`,
-    /// `sink`, `skin` and `room`.
-    UnknownSensor(QuotedWordExcerpt),
-    /// A word of the argument of `trigger-out`, quoted here, is no event that the output can mark.
-    UnknownEventKind(QuotedWordExcerpt),
-    /// A word after the interval of `stream`, quoted here, is no field of telemetry.
-    UnknownTelemetryField(QuotedWordExcerpt),
-    /// The argument of `skin`, quoted here, is neither `sensor` nor a temperature.
-    UnknownSkin(&'static Range, QuotedWordExcerpt),
-    /// The word, quoted here, that says what starts a course is none of `now`, `trigger` and `landing`.
-    UnknownCourseStart(QuotedWordExcerpt),
-    /// The word after the times of a course, quoted here, is neither `hold` nor `neutral`.
-    UnknownCourseEnd(QuotedWordExcerpt),
-    /// The word after the number of points of a course, quoted here, is neither `absolute` nor `relative`.
-    UnknownTemperatureKind(QuotedWordExcerpt),
     /// A course is refused, for this reason.
     Course(CourseError),
     /// The point of a course in the row with this index is refused, for this reason; the upload goes on.
     CoursePoint(usize, CourseError),
-    /// The word after `set`, quoted here, is none of `steps`, `correction`, `tile`, `flux` and `surface`.
-    UnknownSetting(QuotedWordExcerpt),
-    /// The word after `flux`, quoted here, is none of `set`, `none` and `zero`.
-    UnknownFluxOrder(QuotedWordExcerpt),
-    /// The word after `surface`, quoted here, is neither `set` nor `nominal`.
-    UnknownSurfaceOrder(QuotedWordExcerpt),
-    /// The line lacks the word with this name. The name is `command` if the line has no command, and
-    /// `finger (as @0)` if the line must address a single finger but has no address.
-    Missing(&'static str),
-    /// The word quoted here follows the last argument of the command, where the line should end.
-    Extra(QuotedWordExcerpt),
-    /// The word quoted here is not a decimal number, but stands where the argument with this name and range is
-    /// expected. An empty one: the argument is missing.
-    NotANumber(&'static Range, QuotedWordExcerpt),
-    /// The word quoted here is not a number of mm, with or without the unit, but stands where the thickness with this
-    /// range is expected.
-    NotMillimetres(&'static Range, QuotedWordExcerpt),
-    /// The number quoted here is outside the range of its argument, or is not whole where only a whole number is
-    /// allowed.
-    OutOfRange(&'static Range, QuotedWordExcerpt),
+    /// The line must address a single finger of this device with several, but has no address.
+    NeedsFinger,
     /// The properties of a custom material are outside the domain in which the contact model can compute set-points,
     /// for this reason.
     ContactPair(ContactPairError),
@@ -173,10 +84,6 @@ pub enum Error {
     Identification(IdentificationError),
     /// The calibration point of a `calibrate` line is rejected, for this reason; the calibration is unchanged.
     Point(PointError),
-    /// The word quoted here stands where the code of a person is expected, but is none.
-    NotPersonCode(QuotedWordExcerpt),
-    /// The word quoted here stands where what was learnt of a finger is expected, but is not that.
-    NotPersonData(QuotedWordExcerpt),
     /// No person with this code is stored.
     UnknownPerson(PersonCode),
     /// As many persons are stored as there is room for.
@@ -188,6 +95,12 @@ pub enum Error {
 impl From<Refused> for Error {
     fn from(refused: Refused) -> Self {
         Self::Refused(refused)
+    }
+}
+
+impl From<ReadError> for Error {
+    fn from(error: ReadError) -> Self {
+        Self::Read(error)
     }
 }
 
@@ -214,104 +127,20 @@ impl fmt::Display for Error {
         match self {
             Self::Line(error) => write_line_error(f, *error),
             Self::Checksum(error) => write_checksum_error(f, error),
-            Self::UnknownSwitch(command, word) => {
-                let known = SWITCH_WORDS.map(|(name, _)| name);
-                write_word_not_in_list(f, command, word, &known)
-            }
-            Self::UnknownCommand(word) => {
-                write_unknown_word(f, "command", word, Request::KNOWN_COMMAND_WORDS.iter().copied())
-            }
+            Self::Read(error) => error.fmt(f),
             Self::UnknownFinger(word, fingers) => {
                 let last = fingers.saturating_sub(1);
                 write!(f, "unknown finger {word} after @; known: 0 to {last}")
             }
-            Self::UnknownMaterial(word) => {
-                let names = MATERIALS.iter().map(|(name, _)| *name);
-                write_unknown_word(f, "material", word, names.chain([CUSTOM_MATERIAL_WORD]))
-            }
-            Self::UnknownAssumedFinger(word) => write_unknown_word(
-                f,
-                "finger",
-                word,
-                AssumedFinger::PROTOCOL_WORDS.iter().map(|(name, _)| *name),
-            ),
-            Self::UnknownObject(word) if word.is_empty() => {
-                write!(f, "object missing; {OBJECT_ARGUMENTS}")
-            }
-            Self::UnknownObject(word) => write!(f, "object {word}: {OBJECT_ARGUMENTS}"),
-            Self::UnknownBack(word) => write_word_not_in_list(f, "back", word, &BACK_WORDS),
-            Self::UnknownUpload(word) => {
-                let known = ["begin", "row", "commit", "object", "course"];
-                write_word_not_in_list(f, "upload", word, &known)
-            }
             Self::SlabNeedsMaterial => f.write_str("a slab needs a material first"),
             Self::Upload(error) => write_upload_error(f, *error),
             Self::Body(error) => error.fmt(f),
-            Self::UnknownMode(word) => {
-                let known = CONTACT_MODEL_WORDS.map(|(name, _)| name);
-                write_word_not_in_list(f, "mode", word, &known)
-            }
-            Self::UnknownLaw(word) => {
-                let known = Law::PROTOCOL_WORDS.map(|(name, _)| name);
-                write_word_not_in_list(f, "law", word, &known)
-            }
-            Self::UnknownSensor(word) => {
-                write_word_not_in_list(f, "sensor", word, &THERMISTOR_WORDS)
-            }
-            Self::UnknownSetting(word) => {
-                write_word_not_in_list(f, "setting", word, &SET_COMMAND_TARGET_WORDS)
-            }
-            Self::UnknownFluxOrder(word) => {
-                write_word_not_in_list(f, "flux", word, &FLUX_COMMAND_WORDS)
-            }
-            Self::UnknownSurfaceOrder(word) => {
-                write_word_not_in_list(f, "surface", word, &SURFACE_COMMAND_WORDS)
-            }
-            Self::UnknownEventKind(word) => {
-                let known = ["land", "lift", "start", "end", "flux", NO_EVENTS_WORD];
-                write_word_not_in_list(f, "event", word, &known)
-            }
-            Self::UnknownTelemetryField(word) => {
-                write_word_not_in_list(f, "field", word, &TelemetryFields::NAMES)
-            }
-            Self::UnknownSkin(range, word) if word.is_empty() => {
-                write!(f, "skin missing; sensor or {range}")
-            }
-            Self::UnknownSkin(range, word) => write!(f, "skin {word}: sensor or {range}"),
-            Self::UnknownCourseStart(word) => {
-                let known = CourseStart::PROTOCOL_WORDS.map(|(name, _)| name);
-                write_word_not_in_list(f, "start of a course", word, &known)
-            }
-            Self::UnknownCourseEnd(word) => {
-                let known = CourseEnd::PROTOCOL_WORDS.map(|(name, _)| name);
-                write_word_not_in_list(f, "end of a course", word, &known)
-            }
-            Self::UnknownTemperatureKind(word) => {
-                let known = TemperatureKind::PROTOCOL_WORDS.map(|(name, _)| name);
-                write_word_not_in_list(f, "temperatures", word, &known)
-            }
             Self::Course(error) => write_course_error(f, error),
             Self::CoursePoint(row, error) => {
                 write!(f, "row {row}: ")?;
                 write_course_error(f, error)
             }
-            Self::Missing(argument) => write!(f, "{argument} missing"),
-            Self::Extra(word) => write!(f, "unexpected {word} after the command"),
-            Self::NotANumber(range, word) | Self::NotMillimetres(range, word)
-                if word.is_empty() =>
-            {
-                write!(f, "{} missing; {range}", range.name)
-            }
-            Self::NotMillimetres(range, word) => {
-                let (min, max) = (Shortest(range.min), Shortest(range.max));
-                write!(f, "{} {word}: a number of mm, such as 3 or 3mm; {min} to {max}", range.name)
-            }
-            Self::NotANumber(range, word) => {
-                write!(f, "{} {word} is not a decimal number; {range}", range.name)
-            }
-            Self::OutOfRange(range, word) => {
-                write!(f, "{} {word} out of range; {range}", range.name)
-            }
+            Self::NeedsFinger => f.write_str("finger (as @0) missing"),
             Self::ContactPair(error) => error.fmt(f),
             Self::NeedsOff(command) => write!(f, "{command} needs the bridge off: abort first"),
             Self::WholeDevice(command) => write!(f, "{command} is for all fingers at once"),
@@ -319,15 +148,6 @@ impl fmt::Display for Error {
             Self::Refused(refused) => write_station_refusal(f, refused),
             Self::Identification(error) => write_identification_error(f, error),
             Self::Point(error) => write_calibration_point_error(f, error),
-            Self::NotPersonCode(word) if word.is_empty() => {
-                f.write_str("person missing; a code of 1 to 8 of A-Z, 0-9")
-            }
-            Self::NotPersonCode(word) => {
-                write!(f, "person {word}: a code is 1 to 8 of A-Z, 0-9")
-            }
-            Self::NotPersonData(word) => {
-                write!(f, "data {word} is not {} hexadecimal digits", 2 * Person::FINGER_BYTES)
-            }
             Self::UnknownPerson(code) => {
                 write!(f, "no person {code} is stored; persons lists those who are")
             }
@@ -339,48 +159,6 @@ impl fmt::Display for Error {
                 "enrol needs {ENROL_CONTACTS} contacts of 8 s, trusted, since the last choice of finger or person; there are {contacts}"
             ),
         }
-    }
-}
-
-/// Writes that `word` is unknown, and which words are known, as in `unknown mode 'x'; known: contact semi-infinite`.
-/// There, `mode` is the `kind` of the word.
-#[inline(never)]
-fn write_word_not_in_list(
-    f: &mut fmt::Formatter<'_>,
-    kind: &str,
-    word: &QuotedWordExcerpt,
-    known: &[&str],
-) -> fmt::Result {
-    write_unknown_word(f, kind, word, known.iter().copied())
-}
-
-/// [`write_word_not_in_list`] for any table of words.
-fn write_unknown_word<'a>(
-    f: &mut fmt::Formatter<'_>,
-    kind: &str,
-    word: &QuotedWordExcerpt,
-    known: impl Iterator<Item = &'a str>,
-) -> fmt::Result {
-    write_unknown_word_prefix(f, kind, word)?;
-    for known in known {
-        f.write_str(" ")?;
-        f.write_str(known)?;
-    }
-    Ok(())
-}
-
-/// Writes the message of [`write_unknown_word`] up to its list of known words, as in `unknown mode 'x'; known:` or, for
-/// an empty word, `mode missing; known:`. Not part of that generic function, so that the program contains this code only once.
-#[inline(never)]
-fn write_unknown_word_prefix(
-    f: &mut fmt::Formatter<'_>,
-    kind: &str,
-    word: &QuotedWordExcerpt,
-) -> fmt::Result {
-    if word.is_empty() {
-        write!(f, "{kind} missing; known:")
-    } else {
-        write!(f, "unknown {kind} {word}; known:")
     }
 }
 

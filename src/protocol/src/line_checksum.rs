@@ -3,7 +3,9 @@
 use core::fmt::{self, Write as _};
 use core::ops::Deref;
 
-use crate::{ANSWER_MAX_BYTES, QuotedWordExcerpt};
+use thermal_wire::QuotedWordExcerpt;
+
+use crate::ANSWER_MAX_BYTES;
 
 /// Bytes of the longest line to the host: address of a finger, longest answer, checksum and line feed.
 const OUTGOING_LINE_MAX_BYTES: usize = "@0 ".len() + ANSWER_MAX_BYTES + "*00".len() + 1;

@@ -5,31 +5,23 @@ use core::fmt::{self, Display as _};
 use contact_model::contact_law::ContactLaw;
 use contact_model::decimal::Rounded;
 use contact_model::fixed_point::units_to_f64;
-use thermal_commissioning::{
-    CONVERTER_STEPS_PER_LINE_MAX, SessionReply, Setting, StorageOrder, THERMISTOR_WORDS,
-};
+use thermal_commissioning::{SessionReply, StorageOrder};
 use thermal_device::command::{self, FluxState, Status};
 use thermal_device::safety::{SelfTestReport, SideLine, TripCause};
 use thermal_device::sense::Samples;
 use thermal_device::{Flux, SCANS_PER_SECOND, TICK_HZ};
-use thermal_settings::{Calibration, DisplaySurface, FluxSensor, Tile};
+use thermal_settings::{DisplaySurface, FluxSensor};
+use thermal_wire::{Argument as _, LineBuffer};
+use thermal_wire::telemetry::{TUNED_WORD, UNTUNED_WORD};
 
 use crate::BoardStatus;
-use crate::calibrate_settings_set_commands::NOMINAL_SURFACE_WORD;
-use crate::line_buffer::LineBuffer;
 use crate::person::{PersonCodes, PersonReply};
-use crate::request::CONTACT_MODEL_WORDS;
 
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
 const PROTOCOL_VERSION: u32 = 1;
 /// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
 const CAPABILITIES: &str =
     "upload,checksum,board,self-test,raw,course,flux,contact,surface,person,untuned";
-
-/// Word in `state` for a tile that was identified or set.
-pub const TUNED_WORD: &str = "tuned";
-/// Word in `state` and telemetry for a tile that was never identified.
-pub const UNTUNED_WORD: &str = "untuned";
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
@@ -137,7 +129,11 @@ fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt:
             write_named_numbers(f, &DisplaySurface::NAMES, &values, &DisplaySurface::DECIMALS)
         }
         SessionReply::SettingsLines(lines) => write!(f, "ok lines={lines}"),
-        SessionReply::Setting(setting) => write_set_line(f, setting),
+        // The host can restore this part later by sending the line that follows `ok`.
+        SessionReply::Setting(setting) => {
+            f.write_str("ok set")?;
+            setting.write(f)
+        }
     }
 }
 
@@ -186,8 +182,7 @@ fn state_answer_line(status: &Status) -> LineBuffer {
         None => line.push_str_if_fits("room"),
     }
     line.push_str_if_fits(" mode=");
-    let mode = CONTACT_MODEL_WORDS.iter().find(|(_, mode)| *mode == status.mode);
-    line.push_str_if_fits(mode.map_or("-", |(name, _)| name));
+    line.push_str_if_fits(status.mode.name());
     line.push_str_if_fits(" setpoint_c=");
     line.push_celsius_or_dash(2, status.setpoint);
     line.push_str_if_fits(if status.limited { " limited" } else { "" });
@@ -288,45 +283,4 @@ fn raw_answer_line(samples: &Samples) -> LineBuffer {
         line.push_str_if_fits(if level { "1" } else { "0" });
     }
     line
-}
-
-/// Writes one part of the settings as the answer `ok set ...` to the command `settings N`. The host can restore this
-/// part later by sending the line that follows `ok`.
-fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result {
-    f.write_str("ok set ")?;
-    match setting {
-        Setting::Steps { first, counts } => {
-            write!(f, "steps {first}")?;
-            let decimals = [Calibration::ADC_ERROR_STEP_DECIMALS; CONVERTER_STEPS_PER_LINE_MAX];
-            write_numbers(f, counts, &decimals)
-        }
-        Setting::Correction(sensor, correction) => {
-            write!(f, "correction {}", THERMISTOR_WORDS[sensor % THERMISTOR_WORDS.len()])?;
-            write_numbers(f, &correction.to_array(), &Calibration::CORRECTION_DECIMALS)
-        }
-        Setting::FluxSensor(None) => f.write_str("flux none"),
-        Setting::FluxSensor(Some(sensor)) => {
-            f.write_str("flux")?;
-            write_numbers(f, &sensor.to_array(), &FluxSensor::DECIMALS)
-        }
-        Setting::DisplaySurface(DisplaySurface::NOMINAL) => {
-            write!(f, "surface {NOMINAL_SURFACE_WORD}")
-        }
-        Setting::DisplaySurface(display) => {
-            f.write_str("surface")?;
-            write_numbers(f, &display.to_array(), &DisplaySurface::DECIMALS)
-        }
-        Setting::Tile(tile) => {
-            f.write_str("tile")?;
-            let values = tile.to_array();
-            write_numbers(f, &values, &values.map(|_| Tile::DECIMALS))
-        }
-    }
-}
-
-/// Writes each number after a space, with its number of decimals.
-fn write_numbers(f: &mut fmt::Formatter<'_>, numbers: &[f64], decimals: &[i32]) -> fmt::Result {
-    let mut numbers = numbers.iter().zip(decimals);
-    numbers
-        .try_for_each(|(number, decimals)| write!(f, " {}", Rounded(*number, *decimals as usize)))
 }

@@ -3,34 +3,24 @@
 
 use core::fmt;
 
-use contact_model::fixed_point::{Body, FAST_MAX, SLOW_MAX};
+use contact_model::fixed_point::Body;
 use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::SKIN;
 use heapless::Vec;
 use thermal_device::TICK_S;
-use thermal_device::stimulus::{Course, TemperatureKind};
-use thermal_settings::{CRC_32, Crc32Digest, Range};
+use thermal_device::stimulus::{Course, CoursePoint, TemperatureKind};
+use thermal_settings::{CRC_32, Crc32Digest, WordList};
+use thermal_wire::quantity::{
+    Direct, PointAboveSkin, PointCount, PointIndex, PointTemperature, PointTime, RELAXATIONS_MAX,
+    RelaxationCount, RelaxationGain, RelaxationIndex, RelaxationRate,
+};
+use thermal_wire::words::{Words, expect_end, read_word};
+use thermal_wire::{Argument as _, Number, ReadError, Whole};
 
 use crate::Error;
-use crate::arguments::{
-    Words, expect_end, read_number_in_range, read_whole_number_in_range, read_word,
-};
-use crate::stimulus::{
-    COURSE_POINT_COUNT_RANGE, COURSE_POINT_INDEX_RANGE, read_course_point, read_temperature_kind,
-};
 
-/// Largest number of rows of an upload.
-const ROWS_MAX: usize = FAST_MAX + SLOW_MAX;
 /// Square metres per square millimetre, in which the lines count areas.
 const M2_PER_MM2: f64 = 1e-6;
-
-static ROW_COUNT_RANGE: Range =
-    Range { name: "number of rows", unit: "", min: 0.0, max: ROWS_MAX as f64 };
-static ROW_INDEX_RANGE: Range =
-    Range { name: "row", unit: "", min: 0.0, max: (ROWS_MAX - 1) as f64 };
-static DIRECT_RANGE: Range = Range { name: "direct", unit: "mm2K/W", min: 0.0, max: 27e3 };
-static RATE_RANGE: Range = Range { name: "rate", unit: "1/s", min: 0.0, max: 690.0 };
-static GAIN_RANGE: Range = Range { name: "gain", unit: "mm2K/J", min: 1e-6, max: 1.3e7 };
 
 /// Why a line of an upload is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,7 +71,7 @@ pub struct Upload {
     kind: Option<Kind>,
     count: usize,
     direct_m2k_w: f64,
-    rows: Vec<Relaxation, ROWS_MAX>,
+    rows: Vec<Relaxation, RELAXATIONS_MAX>,
     course: Course,
     /// Checksum of the lines so far, each followed by a line feed.
     digest: Crc32Digest,
@@ -115,18 +105,22 @@ impl Upload {
         self.kind = None;
         let kind = match read_word(words, "kind of upload")? {
             "object" => {
-                self.count = read_whole_number_in_range(words, &ROW_COUNT_RANGE)?;
-                let direct_mm2k_w = read_number_in_range(words, &DIRECT_RANGE)?;
+                self.count = Whole::<RelaxationCount>::read(words)?.get();
+                let direct_mm2k_w = Number::<Direct>::read(words)?.f64();
                 self.direct_m2k_w = M2_PER_MM2 * direct_mm2k_w;
                 self.rows.clear();
                 Kind::Object
             }
             "course" => {
-                self.count = read_whole_number_in_range(words, &COURSE_POINT_COUNT_RANGE)?;
-                self.course.clear(read_temperature_kind(words)?);
+                self.count = Whole::<PointCount>::read(words)?.get();
+                self.course.clear(TemperatureKind::read(words)?);
                 Kind::Course
             }
-            unknown => return Err(Error::UnknownUpload(unknown.into())),
+            unknown => {
+                const KINDS: &WordList =
+                    &WordList { kind: "kind of upload", words: &["object", "course"] };
+                return Err(ReadError::UnknownWord(KINDS, unknown.into()).into());
+            }
         };
         expect_end(words)?;
         self.kind = Some(kind);
@@ -184,11 +178,10 @@ impl Upload {
     /// An argument is missing, no number, or out of range, or it is not the next row; the upload is unchanged.
     pub fn add_row(&mut self, line: &str, words: &mut Words<'_>) -> Result<(), Error> {
         let kind = self.kind.ok_or(Error::Upload(UploadError::NotBegun))?;
-        let range = match kind {
-            Kind::Object => &ROW_INDEX_RANGE,
-            Kind::Course => &COURSE_POINT_INDEX_RANGE,
+        let index = match kind {
+            Kind::Object => Whole::<RelaxationIndex>::read(words)?.get(),
+            Kind::Course => Whole::<PointIndex>::read(words)?.get(),
         };
-        let index = read_whole_number_in_range(words, range)?;
         let received = self.received();
         let is_next = index == received && index < self.count;
         let may_be_repeated = index + 1 == received;
@@ -206,7 +199,6 @@ impl Upload {
             }
             Kind::Course => {
                 let point = read_course_point(words, self.course.temperature_kind())?;
-                expect_end(words)?;
                 if is_next {
                     (self.course.push(point)).map_err(|error| Error::CoursePoint(index, error))?;
                 }
@@ -257,9 +249,22 @@ impl Upload {
     }
 }
 
-fn read_relaxation(words: &mut Words<'_>) -> Result<Relaxation, Error> {
-    let rate_1_s = read_number_in_range(words, &RATE_RANGE)?;
-    let gain_m2k_j = M2_PER_MM2 * read_number_in_range(words, &GAIN_RANGE)?;
+fn read_relaxation(words: &mut Words<'_>) -> Result<Relaxation, ReadError> {
+    let rate_1_s = Number::<RelaxationRate>::read(words)?.f64();
+    let gain_m2k_j = M2_PER_MM2 * Number::<RelaxationGain>::read(words)?.f64();
     expect_end(words)?;
     Ok(Relaxation { rate_1_s, gain_m2k_j })
+}
+
+fn read_course_point(
+    words: &mut Words<'_>,
+    temperatures: TemperatureKind,
+) -> Result<CoursePoint, ReadError> {
+    let time_ms = Number::<PointTime>::read(words)?.milliseconds();
+    let temperature = match temperatures {
+        TemperatureKind::Absolute => Number::<PointTemperature>::read(words)?.celsius(),
+        TemperatureKind::AboveSkin => Number::<PointAboveSkin>::read(words)?.celsius(),
+    };
+    expect_end(words)?;
+    Ok(CoursePoint { time_ms, temperature })
 }

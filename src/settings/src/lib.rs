@@ -15,6 +15,7 @@ mod settings_record;
 mod settings_store;
 mod tile;
 mod triplicated_sealed_flash;
+mod vocabulary;
 
 pub use calibration::{
     CALIBRATED_ADC_BORDER_COUNT, CODES_PER_ADC_SEGMENT, CORRECTION_POLYNOMIAL_CENTER_C,
@@ -36,6 +37,7 @@ pub use settings_record::{
 pub use settings_store::{SettingsStore, StoreError};
 pub use tile::Tile;
 pub use triplicated_sealed_flash::{TriplicatedSealedFlash, TriplicatedSealedFlashError};
+pub use vocabulary::{Vocabulary, WordList};
 
 /// Control ticks per second of each finger: a tick is 1 ms.
 pub const TICK_HZ: u32 = 1000;

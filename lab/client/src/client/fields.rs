@@ -7,6 +7,7 @@ use thermal_device::StateName;
 use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
 use thermal_settings::FluxSensor;
+use thermal_wire::host::finite;
 
 /// The words of an answer after `ok`.
 #[derive(Clone, Copy, Debug)]
@@ -69,34 +70,6 @@ pub fn number_or_unknown(word: &str) -> Option<Option<f64>> {
     }
 }
 
-/// A finite number.
-pub fn finite(word: &str) -> Option<f64> {
-    word.parse().ok().filter(|number: &f64| number.is_finite())
-}
-
-/// The fault with this word.
-pub fn fault(word: &str) -> Option<Fault> {
-    Fault::ALL.iter().copied().find(|fault| fault.name() == word)
-}
-
-/// The state with this word; a tripped one needs the word of its fault.
-pub fn state(word: &str, fault_word: &str) -> Option<StateName> {
-    // Every line of telemetry comes here, and the faults are many: they are searched only for a word that no other state has.
-    let without_fault = [
-        StateName::Off,
-        StateName::SelfTest,
-        StateName::Ready,
-        StateName::Armed,
-        StateName::Preset,
-        StateName::Contact,
-        StateName::Stimulus,
-    ]
-    .into_iter()
-    .find(|state| state.name() == word);
-    without_fault
-        .or_else(|| fault(fault_word).map(StateName::Tripped).filter(|state| state.name() == word))
-}
-
 /// The value with this word in a table of the protocol.
 pub fn in_table<T: Copy>(table: &[(&str, T)], word: &str) -> Option<T> {
     let found = table.iter().find(|(known, _)| *known == word);
@@ -133,15 +106,4 @@ pub fn knowledge_word<S: Serializer>(
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(knowledge.name())
-}
-
-/// The same, or nothing.
-pub fn knowledge_word_if_known<S: Serializer>(
-    knowledge: &Option<FingerKnowledge>,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    match knowledge {
-        Some(knowledge) => knowledge_word(knowledge, serializer),
-        None => serializer.serialize_none(),
-    }
 }

@@ -14,7 +14,6 @@ mod query;
 mod reply;
 mod streams;
 mod telemetry;
-mod telemetry_columns;
 
 use std::borrow::Cow;
 use std::collections::VecDeque;
@@ -24,6 +23,7 @@ use std::time::Duration;
 
 use thermal_device::TelemetryFields;
 use thermal_protocol::{LINE_MAX_BYTES, line_checksum, strip_checksum};
+use thermal_wire::telemetry::{DEFAULT_FIELDS, NO_FIELDS, place_of_field};
 
 use crate::link::{Link, LinkError, ReceivedLine};
 use crate::text::escaped_line;
@@ -48,7 +48,7 @@ pub use reply::{
 };
 pub use streams::longest_gap;
 pub use telemetry::{ReceivedTelemetry, Telemetry};
-pub use telemetry_columns::TelemetryColumn;
+pub use thermal_wire::host::Column as TelemetryColumn;
 
 /// Timeout of an answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
@@ -543,14 +543,9 @@ impl<L: Link> Client<L> {
         match (words.next(), words.next()) {
             (Some("stream"), Some(interval)) => {
                 let interval_ms = interval.parse().map_or(0.0, f64::ceil);
-                let mut fields = TelemetryFields::NONE;
-                for word in words {
-                    let known = TelemetryFields::NAMES.iter();
-                    let index = known.clone().position(|name| *name == word);
-                    fields = index.map_or(fields, |index| fields.with(index));
-                }
-                if fields == TelemetryFields::NONE {
-                    fields = TelemetryFields::DEFAULT;
+                let mut fields = words.filter_map(place_of_field).fold(NO_FIELDS, TelemetryFields::with);
+                if fields == NO_FIELDS {
+                    fields = DEFAULT_FIELDS;
                 }
                 let stream = Stream { interval_ms: interval_ms as u32, fields };
                 self.streams.set(finger, stream, self.link.now());

@@ -15,6 +15,7 @@ use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_device::stimulus::{CourseEnd, PlayOrder, TemperatureKind};
 use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, NOMINAL_CONTACT_LAW_WORD};
+use thermal_wire::telemetry::{DEFAULT_FIELDS, NAMES, NO_FIELDS, place_of_field};
 use thermal_settings::{CRC_32, DisplaySurface, FluxSensor, Person, PersonCode};
 
 use super::person::person_data;
@@ -142,23 +143,20 @@ pub const fn thermistor_word(thermistor: ThermistorId) -> &'static str {
 impl PlainCommand {
     /// Telemetry at this interval, ms, with the default fields; 0 ends it.
     pub const fn stream(interval_ms: u32) -> Self {
-        Self::Stream(interval_ms, TelemetryFields::DEFAULT)
+        Self::Stream(interval_ms, DEFAULT_FIELDS)
     }
 
     /// The same of a finger with a heat-flux sensor, with the sensor's fields. A line to the device has no room for all names, so
     /// the count of evaluations is left out, which says nothing of the finger.
     pub fn stream_with_flux(interval_ms: u32) -> Self {
-        let names: Vec<_> =
-            TelemetryFields::NAMES.into_iter().filter(|name| *name != "evaluations").collect();
+        let names: Vec<_> = NAMES.into_iter().filter(|name| *name != "evaluations").collect();
         Self::stream_fields(interval_ms, &names)
     }
 
-    /// Telemetry at this interval, ms, with the fields of these names ([`TelemetryFields::NAMES`]).
+    /// Telemetry at this interval, ms, with the fields of these names ([`NAMES`]).
     pub fn stream_fields(interval_ms: u32, names: &[&str]) -> Self {
-        let known = TelemetryFields::NAMES.iter().enumerate();
-        let chosen = known.filter(|(_, name)| names.contains(name));
-        let none = TelemetryFields::NONE;
-        Self::Stream(interval_ms, chosen.fold(none, |set, (index, _)| set.with(index)))
+        let known = names.iter().filter_map(|name| place_of_field(name));
+        Self::Stream(interval_ms, known.fold(NO_FIELDS, TelemetryFields::with))
     }
 }
 
@@ -225,10 +223,10 @@ impl fmt::Display for PlainCommand {
             }
             Self::Stream(interval_ms, fields) => {
                 write!(f, "stream {interval_ms}")?;
-                if *fields == TelemetryFields::DEFAULT {
+                if *fields == DEFAULT_FIELDS {
                     return Ok(());
                 }
-                let names = TelemetryFields::NAMES.iter().enumerate();
+                let names = NAMES.iter().enumerate();
                 let mut chosen = names.filter(|(index, _)| fields.contains(*index));
                 chosen.try_for_each(|(_, name)| write!(f, " {name}"))
             }

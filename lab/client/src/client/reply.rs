@@ -9,13 +9,14 @@ use thermal_device::StateName;
 use thermal_device::learning::{FingerKnowledge, FluxSensorTest};
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
-use thermal_protocol::{CONTACT_MODEL_WORDS, Request, TUNED_WORD, UNTUNED_WORD};
+use thermal_protocol::{CONTACT_MODEL_WORDS, Request};
 use thermal_settings::{FluxSensor, Settings};
+use thermal_wire::host::{fault, finite, state};
+use thermal_wire::telemetry::{TUNED_WORD, UNTUNED_WORD};
 
 use super::Fields;
 use super::fields::{
-    fault, fault_word, finite, flux_sensor_numbers, in_table, knowledge, knowledge_word, state,
-    state_word,
+    fault_word, flux_sensor_numbers, in_table, knowledge, knowledge_word, state_word,
 };
 
 /// Largest number of fingers that a device can have. The answer to `id` may be damaged before checksums are on, and a client loops over

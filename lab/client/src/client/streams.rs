@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use thermal_device::TelemetryFields;
+use thermal_wire::telemetry::DEFAULT_FIELDS;
 
 /// Time without telemetry after which a device that streams has stopped: this many intervals, and at least this time.
 const SILENT_INTERVALS: u32 = 3;
@@ -39,7 +40,7 @@ pub struct TelemetryStreams {
 impl Default for TelemetryStreams {
     fn default() -> Self {
         Self {
-            all: Stream { interval_ms: 0, fields: TelemetryFields::DEFAULT },
+            all: Stream { interval_ms: 0, fields: DEFAULT_FIELDS },
             own: BTreeMap::new(),
             changed_at: BTreeMap::new(),
             last: BTreeMap::new(),

@@ -33,7 +33,7 @@ fn columns(has_flux: bool) -> Vec<Column> {
 impl Column {
     const fn name(&self) -> &'static str {
         match self {
-            Self::Field(field) => field.quantity,
+            Self::Field(field) => field.quantity(),
             Self::Limited => "limited",
             Self::State => "state",
         }

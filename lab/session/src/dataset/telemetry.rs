@@ -5,8 +5,9 @@ use std::path::Path;
 use std::time::Duration;
 
 use thermal_client::client::{ReceivedTelemetry, Telemetry, TelemetryColumn};
+use thermal_wire::host::COLUMNS;
 use thermal_client::text;
-use thermal_device::TelemetryFields;
+use thermal_wire::telemetry::ALL_FIELDS;
 
 use super::{RecordingError, unreadable};
 
@@ -64,7 +65,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<(f64, ReceivedTelemetry)>, Recordi
     let mut rows = rows(path)?;
     // A line on the wire has the remark last.
     let words = BEFORE.into_iter().skip(2);
-    let words = words.chain(TelemetryColumn::ALL.iter().map(|column| column.name)).chain([REMARK]);
+    let words = words.chain(COLUMNS.iter().map(|column| column.name)).chain([REMARK]);
     let header = rows.headers().map_err(unreadable_csv(path))?;
     let places: Vec<_> = words.map(|word| header.iter().position(|name| name == word)).collect();
     let mut lines = Vec::new();
@@ -85,11 +86,10 @@ fn line_of(row: &csv::StringRecord, places: &[Option<usize>]) -> Option<(f64, Re
     let cells = places.iter().map(|place| row.get((*place)?).filter(|cell| !cell.is_empty()));
     let words: Vec<_> =
         ["T"].into_iter().chain(cells.map(|cell| cell.unwrap_or(UNKNOWN))).collect();
-    let all = (0..TelemetryFields::NAMES.len()).fold(TelemetryFields::NONE, TelemetryFields::with);
     let t_s = row.get(0)?.parse().ok()?;
     let line = ReceivedTelemetry {
         finger: Some(row.get(1)?.parse().ok()?),
-        telemetry: Telemetry::parse_fields(&words.join(" "), all)?,
+        telemetry: Telemetry::parse_fields(&words.join(" "), ALL_FIELDS)?,
         at: Duration::try_from_secs_f64(t_s).ok()?,
         lost_before: 0,
     };

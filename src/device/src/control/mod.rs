@@ -7,6 +7,7 @@ pub use parameters::ControlParameters;
 pub use voltage_feedforward::VoltageFeedforward;
 
 use contact_model::fixed_point::{Celsius, product};
+use thermal_settings::vocabulary;
 
 use crate::drive::Current;
 use crate::estimate::PlateObserver;
@@ -26,36 +27,23 @@ const TAKE_OVER_WITHIN: Celsius = Celsius::lit("0.5");
 const TAKE_OVER_CURRENT_WITHIN: Current = Current::lit("0.5");
 const TAKE_OVER_TICKS: u16 = 256;
 
-/// Control law that chooses the module's current from the reference and the readings of the display's thermistor;
-/// selected by the host's command `law`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Law {
-    /// Proportional-integral control of the reading of the display's thermistor to the set-point, updated ten times a
-    /// second, as in the display of the thesis on which this project is based.
-    Pi10Hz,
-    /// Proportional-integral control of the reading of the display's thermistor to the set-point, updated at every tick
-    /// of 1 ms.
-    Pi,
-    /// Feed-forward: computes the current that brings the surface of the internal plate model to the target in 12 ms,
-    /// including the finger's estimated heat. A disturbance observer corrects the model by the display's reading.
-    /// During contact the target contains a correction that brings the skin on the display to the temperature that it
-    /// would have on the object; the other laws have no such correction. This law is the default.
-    #[default]
-    Model,
-}
-
-impl Law {
-    /// All laws, each with its word in the protocol with the host.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 3] =
-        [("pi-10hz", Self::Pi10Hz), ("pi", Self::Pi), ("model", Self::Model)];
-
-    /// Word for this law in the protocol with the host, as in [`Self::PROTOCOL_WORDS`].
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Pi10Hz => "pi-10hz",
-            Self::Pi => "pi",
-            Self::Model => "model",
-        }
+vocabulary! {
+    /// Control law that chooses the module's current from the reference and the readings of the display's thermistor;
+    /// selected by the host's command `law`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum Law: "law" {
+        /// Proportional-integral control of the reading of the display's thermistor to the set-point, updated ten times a
+        /// second, as in the display of the thesis on which this project is based.
+        Pi10Hz = "pi-10hz",
+        /// Proportional-integral control of the reading of the display's thermistor to the set-point, updated at every tick
+        /// of 1 ms.
+        Pi = "pi",
+        /// Feed-forward: computes the current that brings the surface of the internal plate model to the target in 12 ms,
+        /// including the finger's estimated heat. A disturbance observer corrects the model by the display's reading.
+        /// During contact the target contains a correction that brings the skin on the display to the temperature that it
+        /// would have on the object; the other laws have no such correction. This law is the default.
+        #[default]
+        Model = "model",
     }
 }
 

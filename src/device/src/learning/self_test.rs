@@ -3,6 +3,7 @@
 use contact_model::fixed_point::{Celsius, saturating_product};
 use fixed::types::U16F16;
 use thermal_learner::Flux;
+use thermal_settings::vocabulary;
 
 use super::FingerLearning;
 use super::code_faults::CodeFault;
@@ -12,35 +13,20 @@ const ZERO_ERROR_MAX: Flux = Flux::lit("50");
 /// Largest film coefficient of the air on the display, W/(m² K): twice the typical one.
 const AIR_FILM_MAX: U16F16 = U16F16::lit("20");
 
-/// What a self-test has shown of the heat-flux sensor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FluxSensorTest {
-    /// Its code changes, is at no rail and, without a finger, near its zero.
-    Passed,
-    /// Its converter has not converted.
-    NoCode,
-    /// Its code is at a rail or does not change.
-    Range,
-    /// Without a finger it reads more than air takes or gives.
-    Zero,
-    /// Its code changes and is at no rail; under a finger nothing shows its zero.
-    NotAtRest,
-}
-
-impl FluxSensorTest {
-    /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::Passed, Self::NoCode, Self::Range, Self::Zero, Self::NotAtRest];
-
-    /// Its word in lines to the host.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Passed => "ok",
-            Self::NoCode => "no-code",
-            Self::Range => "sensor-range",
-            Self::Zero => "zero",
-            Self::NotAtRest => "touched",
-        }
+vocabulary! {
+    /// What a self-test has shown of the heat-flux sensor.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum FluxSensorTest: "flux" {
+        /// Its code changes, is at no rail and, without a finger, near its zero.
+        Passed = "ok",
+        /// Its converter has not converted.
+        NoCode = "no-code",
+        /// Its code is at a rail or does not change.
+        Range = "sensor-range",
+        /// Without a finger it reads more than air takes or gives.
+        Zero = "zero",
+        /// Its code changes and is at no rail; under a finger nothing shows its zero.
+        NotAtRest = "touched",
     }
 }
 

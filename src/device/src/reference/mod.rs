@@ -10,6 +10,7 @@ mod setpoint_lead;
 mod skin_on_object;
 
 use core::ops::RangeInclusive;
+use thermal_settings::vocabulary;
 
 use contact_model::fixed_point::{
     Body, Celsius, ChordInterpolation, ContactPair, Force, Fraction, TissueStateFactors, preset,
@@ -41,18 +42,20 @@ const PRESET_TO_WAITING_RANGE_MARGIN: Celsius = Celsius::lit("0.1");
 /// 128.
 const WAITING_OFFSET_DIVISOR_LOG2: u32 = 7;
 
-/// Contact model that gives the set-point while an object is presented; chosen by the host's command `mode`. The
-/// equations are those of Ho's thesis (MIT 2006).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ContactModel {
-    /// Command `mode contact`: Eq. 6-12, two semi-infinite bodies with a thermal contact resistance between skin and
-    /// object. The set-point before contact, the preset, is Eq. 6-12 at `t = 0`; during contact the set-point changes
-    /// with time and force.
-    #[default]
-    ContactResistance,
-    /// Command `mode semi-infinite`: Eq. 3-1, two semi-infinite bodies in perfect contact. The set-point is their
-    /// constant interface temperature, before and during contact.
-    SemiInfinite,
+vocabulary! {
+    /// Contact model that gives the set-point while an object is presented; chosen by the host's command `mode`. The
+    /// equations are those of Ho's thesis (MIT 2006).
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum ContactModel: "mode" {
+        /// Command `mode contact`: Eq. 6-12, two semi-infinite bodies with a thermal contact resistance between skin and
+        /// object. The set-point before contact, the preset, is Eq. 6-12 at `t = 0`; during contact the set-point changes
+        /// with time and force.
+        #[default]
+        ContactResistance = "contact",
+        /// Command `mode semi-infinite`: Eq. 3-1, two semi-infinite bodies in perfect contact. The set-point is their
+        /// constant interface temperature, before and during contact.
+        SemiInfinite = "semi-infinite",
+    }
 }
 
 /// The object that the host has chosen to present, and the contact model. The reference generator computes the

@@ -1,6 +1,7 @@
 //! What a self-test has measured.
 
 use contact_model::fixed_point::Celsius;
+use thermal_settings::vocabulary;
 
 use super::Fault;
 use crate::drive::Current;
@@ -42,25 +43,16 @@ pub struct ComparatorSideReport {
     pub release_ms: Option<u8>,
 }
 
-/// What the tests of the comparator have shown of the line that selects their side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SideLine {
-    /// It has had the levels of the tests so far.
-    Follows,
-    /// It is low in a test of the cold side.
-    StuckLow,
-    /// It is high in a test of the hot side.
-    StuckHigh,
-}
-
-impl SideLine {
-    /// Its word in lines to the host.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Follows => "ok",
-            Self::StuckLow => "low",
-            Self::StuckHigh => "high",
-        }
+vocabulary! {
+    /// What the tests of the comparator have shown of the line that selects their side.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum SideLine: "side" {
+        /// It has had the levels of the tests so far.
+        Follows = "ok",
+        /// It is low in a test of the cold side.
+        StuckLow = "low",
+        /// It is high in a test of the hot side.
+        StuckHigh = "high",
     }
 }
 

@@ -179,7 +179,7 @@ impl Station {
             stimulus_has_reference: false,
             tick: 0,
             telemetry_ticks: 0,
-            telemetry_fields: TelemetryFields::DEFAULT,
+            telemetry_fields: TelemetryFields::NONE,
             events: EventReporter::default(),
             last: LastTickValues {
                 samples: Samples::default(),

@@ -2,6 +2,7 @@
 
 use contact_model::fixed_point::Celsius;
 use heapless::Vec;
+use thermal_settings::vocabulary;
 
 use super::dose_of_course::{EquivalentTime, time_equivalent_to_largest};
 use crate::safety::PredictedDose;
@@ -18,21 +19,19 @@ pub const COURSE_RATE_MAX_K_S: u32 = 100;
 /// Largest temperature of a relative course, K, above or below the skin: the width of the range of set-points.
 const RELATIVE_MAX: Celsius = SETPOINT_MAX.saturating_sub(SETPOINT_MIN);
 
-/// What the temperatures of a course are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TemperatureKind {
-    /// °C.
-    #[default]
-    Absolute,
-    /// K above the skin before contact.
-    AboveSkin,
+vocabulary! {
+    /// What the temperatures of a course are.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum TemperatureKind: "temperatures" {
+        /// °C.
+        #[default]
+        Absolute = "absolute",
+        /// K above the skin before contact.
+        AboveSkin = "relative",
+    }
 }
 
 impl TemperatureKind {
-    /// Both, with their words in the protocol.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 2] =
-        [("absolute", Self::Absolute), ("relative", Self::AboveSkin)];
-
     /// Smallest and largest temperature of a point, °C or K.
     pub const fn range(self) -> (Celsius, Celsius) {
         match self {

@@ -1,50 +1,34 @@
 //! A course that plays: its set-point now and when the control law will have reached its target.
 
 use contact_model::fixed_point::Celsius;
+use thermal_settings::vocabulary;
 
 use super::line::temperature_on_line;
 use super::{CoursePoint, STIMULUS_LEAD_TICKS, StimulusTemperatures};
 
-/// What starts a course.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CourseStart {
-    /// The tick after the command `play`.
-    Now,
-    /// The next edge at the trigger input; until then the display waits on the first point.
-    Trigger,
-    /// The next landing of a finger; until then the display waits on the first point.
-    Landing,
-}
-
-impl CourseStart {
-    /// All, with their words in the protocol.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 3] =
-        [("now", Self::Now), ("trigger", Self::Trigger), ("landing", Self::Landing)];
-
-    /// Its word in the protocol.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Now => "now",
-            Self::Trigger => "trigger",
-            Self::Landing => "landing",
-        }
+vocabulary! {
+    /// What starts a course.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum CourseStart: "start of a course" {
+        /// The tick after the command `play`.
+        Now = "now",
+        /// The next edge at the trigger input; until then the display waits on the first point.
+        Trigger = "trigger",
+        /// The next landing of a finger; until then the display waits on the first point.
+        Landing = "landing",
     }
 }
 
-/// What the display does after a course.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CourseEnd {
-    /// Stays on the last point.
-    #[default]
-    Hold,
-    /// Returns to skin temperature, in the state armed.
-    Neutral,
-}
-
-impl CourseEnd {
-    /// Both, with their words in the protocol.
-    pub const PROTOCOL_WORDS: [(&'static str, Self); 2] =
-        [("hold", Self::Hold), ("neutral", Self::Neutral)];
+vocabulary! {
+    /// What the display does after a course.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum CourseEnd: "end of a course" {
+        /// Stays on the last point.
+        #[default]
+        Hold = "hold",
+        /// Returns to skin temperature, in the state armed.
+        Neutral = "neutral",
+    }
 }
 
 /// The command `play`: when the loaded course starts, how often it is repeated, and what follows.

@@ -17,19 +17,21 @@ const LINE_CAPACITY_BYTES: usize = 160;
 
 /// A line to the host that is being written, of at most 160 ASCII characters. A word or number that does not fit is
 /// left out as a whole.
-pub(super) struct LineBuffer {
+pub struct LineBuffer {
     bytes: [u8; LINE_CAPACITY_BYTES],
     length: usize,
 }
 
 impl LineBuffer {
+    /// An empty line.
     #[inline]
-    pub(super) const fn new() -> Self {
+    pub const fn new() -> Self {
         Self { bytes: [0; LINE_CAPACITY_BYTES], length: 0 }
     }
 
+    /// Appends a text of ASCII characters.
     #[inline]
-    pub(super) fn push_str_if_fits(&mut self, ascii: &str) {
+    pub fn push_str_if_fits(&mut self, ascii: &str) {
         self.push_if_fits(ascii.as_bytes());
     }
 
@@ -47,7 +49,7 @@ impl LineBuffer {
 
     /// Appends a temperature in °C with so many decimals, or `-` for `None`.
     #[inline]
-    pub(super) fn push_celsius_or_dash(&mut self, digits: usize, value: Option<Celsius>) {
+    pub fn push_celsius_or_dash(&mut self, digits: usize, value: Option<Celsius>) {
         self.push_fixed_point_or_dash(
             value.map(|value| value.to_bits().into()),
             Celsius::FRAC_NBITS,
@@ -57,7 +59,7 @@ impl LineBuffer {
 
     /// Appends a force in N with three decimals, or `-` for `None`.
     #[inline]
-    pub(super) fn push_force_or_dash(&mut self, value: Option<Force>) {
+    pub fn push_force_or_dash(&mut self, value: Option<Force>) {
         self.push_fixed_point_or_dash(
             value.map(|value| value.to_bits().into()),
             Force::FRAC_NBITS,
@@ -67,7 +69,7 @@ impl LineBuffer {
 
     /// Appends a heat flux in W/m² with one decimal, or `-` for `None`.
     #[inline]
-    pub(super) fn push_flux_or_dash(&mut self, value: Option<Flux>) {
+    pub fn push_flux_or_dash(&mut self, value: Option<Flux>) {
         self.push_fixed_point_or_dash(
             value.map(|value| value.to_bits().into()),
             Flux::FRAC_NBITS,
@@ -77,13 +79,13 @@ impl LineBuffer {
 
     /// Appends a current in A with three decimals, after a `-` if it is negative.
     #[inline]
-    pub(super) fn push_current(&mut self, value: Current) {
+    pub fn push_current(&mut self, value: Current) {
         self.push_fixed_point_or_dash(Some(value.to_bits().into()), Current::FRAC_NBITS, 3);
     }
 
     /// Appends a current in A with two decimals, or `-` for `None`.
     #[inline]
-    pub(super) fn push_current_or_dash(&mut self, value: Option<Current>) {
+    pub fn push_current_or_dash(&mut self, value: Option<Current>) {
         self.push_fixed_point_or_dash(
             value.map(|value| value.to_bits().into()),
             Current::FRAC_NBITS,
@@ -93,7 +95,7 @@ impl LineBuffer {
 
     /// Appends the bridge's supply in V with one decimal, or `-` for `None`.
     #[inline]
-    pub(super) fn push_supply_or_dash(&mut self, value: Option<SupplyVoltage>) {
+    pub fn push_supply_or_dash(&mut self, value: Option<SupplyVoltage>) {
         match value {
             Some(value) => self.push_scaled_integer(value.decivolts(), 1),
             None => self.push_str_if_fits("-"),
@@ -102,7 +104,7 @@ impl LineBuffer {
 
     /// Appends a number, or `-` for `None`.
     #[inline]
-    pub(super) fn push_integer_or_dash(&mut self, value: Option<u8>) {
+    pub fn push_integer_or_dash(&mut self, value: Option<u8>) {
         match value {
             Some(value) => self.push_integer(value.into()),
             None => self.push_str_if_fits("-"),
@@ -111,12 +113,13 @@ impl LineBuffer {
 
     /// Appends a sum of 16 conversions as their mean with two decimals, 0.00 to 4095.94.
     #[inline]
-    pub(super) fn push_mean_of_16(&mut self, sum: u16) {
+    pub fn push_mean_of_16(&mut self, sum: u16) {
         self.push_fixed_point_or_dash(Some(sum.into()), 4, 2);
     }
 
+    /// Appends a number.
     #[inline]
-    pub(super) fn push_integer(&mut self, value: u32) {
+    pub fn push_integer(&mut self, value: u32) {
         self.push_scaled_integer(value, 0);
     }
 

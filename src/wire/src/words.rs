@@ -1,4 +1,4 @@
-//! Arguments of a command on a line from the host: words, and numbers within a range.
+//! Words of a line from the host, and numbers within a range.
 //!
 //! In this crate a text is split at `['x']`, not at `'x'`, whose search checks an index in code that is optimised for size.
 
@@ -8,7 +8,7 @@ use contact_model::fixed_point::{rounded_units, units_to_f64};
 use fixed::types::I32F32;
 use thermal_settings::Range;
 
-use crate::Error;
+use crate::ReadError;
 use crate::decimal_number::fixed_point_from_decimal;
 
 /// Iterator over the words of a line from the host that are not read yet, separated by white space.
@@ -17,9 +17,9 @@ pub type Words<'a> = SplitAsciiWhitespace<'a>;
 /// Returns the next word of a line.
 ///
 /// # Errors
-/// [`Error::Missing`] with `name`, the name of the argument that is expected: no word is left.
-pub fn read_word<'a>(words: &mut Words<'a>, name: &'static str) -> Result<&'a str, Error> {
-    words.next().ok_or(Error::Missing(name))
+/// [`ReadError::Missing`] with `name`, the name of the argument that is expected: no word is left.
+pub fn read_word<'a>(words: &mut Words<'a>, name: &'static str) -> Result<&'a str, ReadError> {
+    words.next().ok_or(ReadError::Missing(name))
 }
 
 /// Returns the next word of a line, and an empty one if none is left, for arguments whose error names what is known.
@@ -30,9 +30,9 @@ pub fn word_or_empty<'a>(words: &mut Words<'a>) -> &'a str {
 /// Checks that no word is left on a line.
 ///
 /// # Errors
-/// [`Error::Extra`] with the word that follows.
-pub fn expect_end(words: &mut Words<'_>) -> Result<(), Error> {
-    words.next().map_or(Ok(()), |extra| Err(Error::Extra(extra.into())))
+/// [`ReadError::Extra`] with the word that follows.
+pub fn expect_end(words: &mut Words<'_>) -> Result<(), ReadError> {
+    words.next().map_or(Ok(()), |extra| Err(ReadError::Extra(extra.into())))
 }
 
 /// Skips the next word of a line if it is `expected`, and returns whether it is. Otherwise the word stays the next one.
@@ -45,31 +45,22 @@ pub fn skip_if_next_is(words: &mut Words<'_>, expected: &str) -> bool {
     is_next
 }
 
-/// Returns the entry of `table` whose word is `word`: the word with its value, such as the name of a material with its
-/// properties. `None` if no entry has this word.
-pub fn table_entry_for_word_or_none<T: Copy>(
-    table: &[(&'static str, T)],
-    word: &str,
-) -> Option<(&'static str, T)> {
-    table.iter().find(|(known, _)| *known == word).copied()
-}
-
 /// Reads the next word of a line as a decimal number within `range`, both limits included.
 ///
 /// # Errors
-/// [`Error::NotANumber`]: the word is not a decimal number, or no word is left. [`Error::OutOfRange`]: the number lies
+/// [`ReadError::NotANumber`]: the word is not a decimal number, or no word is left. [`ReadError::OutOfRange`]: the number lies
 /// outside `range`.
 pub fn read_fixed_point_in_range(
     words: &mut Words<'_>,
     range: &'static Range,
-) -> Result<I32F32, Error> {
+) -> Result<I32F32, ReadError> {
     let word = word_or_empty(words);
-    let value = fixed_point_from_decimal(word).ok_or(Error::NotANumber(range, word.into()))?;
+    let value = fixed_point_from_decimal(word).ok_or(ReadError::NotANumber(range, word.into()))?;
     let limit = |limit: f64| I32F32::from_bits(rounded_units(limit, I32F32::FRAC_NBITS));
     if (limit(range.min)..=limit(range.max)).contains(&value) {
         Ok(value)
     } else {
-        Err(Error::OutOfRange(range, word.into()))
+        Err(ReadError::OutOfRange(range, word.into()))
     }
 }
 
@@ -78,7 +69,7 @@ pub fn read_fixed_point_in_range(
 /// # Errors
 /// Those of [`read_fixed_point_in_range`].
 #[inline(never)]
-pub fn read_number_in_range(words: &mut Words<'_>, range: &'static Range) -> Result<f64, Error> {
+pub fn read_number_in_range(words: &mut Words<'_>, range: &'static Range) -> Result<f64, ReadError> {
     let value = read_fixed_point_in_range(words, range)?;
     Ok(units_to_f64(value.to_bits(), I32F32::FRAC_NBITS))
 }
@@ -88,7 +79,7 @@ pub fn read_number_in_range(words: &mut Words<'_>, range: &'static Range) -> Res
 pub fn read_numbers_in_ranges<const N: usize>(
     words: &mut Words<'_>,
     ranges: &'static [Range; N],
-) -> Result<[f64; N], Error> {
+) -> Result<[f64; N], ReadError> {
     let mut values = [0.0; N];
     read_into(words, ranges, &mut values)?;
     Ok(values)
@@ -100,7 +91,7 @@ fn read_into(
     words: &mut Words<'_>,
     ranges: &'static [Range],
     values: &mut [f64],
-) -> Result<(), Error> {
+) -> Result<(), ReadError> {
     for (value, range) in values.iter_mut().zip(ranges) {
         *value = read_number_in_range(words, range)?;
     }
@@ -108,16 +99,16 @@ fn read_into(
 }
 
 /// Reads the next word of a line as a whole number within `range`, both limits included. The errors are those of
-/// [`read_fixed_point_in_range`]; a number that is not whole gives [`Error::OutOfRange`], too.
+/// [`read_fixed_point_in_range`]; a number that is not whole gives [`ReadError::OutOfRange`], too.
 pub fn read_whole_number_in_range(
     words: &mut Words<'_>,
     range: &'static Range,
-) -> Result<usize, Error> {
+) -> Result<usize, ReadError> {
     let word = words.clone().next().unwrap_or_default();
     let value = read_fixed_point_in_range(words, range)?;
     if value.frac() == 0 {
         Ok((value.to_bits() >> I32F32::FRAC_NBITS) as usize)
     } else {
-        Err(Error::OutOfRange(range, word.into()))
+        Err(ReadError::OutOfRange(range, word.into()))
     }
 }

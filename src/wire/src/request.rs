@@ -1,0 +1,340 @@
+//! Requests of a host: one row for each form of a line, from which the device's reader and the clients' writers are made.
+
+use core::fmt;
+use core::iter;
+
+use contact_model::slab::Back;
+use thermal_device::TelemetryFields;
+use thermal_device::command::AssumedFinger;
+use thermal_device::control::Law;
+use thermal_device::events::EventKinds;
+use thermal_device::reference::ContactModel;
+use thermal_device::safety::ThermistorId;
+use thermal_device::stimulus::PlayOrder;
+use thermal_settings::{DisplaySurface, FluxSensor, PersonCode};
+
+use crate::argument::{Argument, PersonData, Switch};
+use crate::number::{Number, Whole};
+use crate::quantity::*;
+use crate::setting::{Setting, SettingNumber};
+use crate::special_arguments::{KnownMaterial, Millimetres, PointOrClear};
+use crate::words::{Words, expect_end, read_word, word_or_empty};
+use crate::ReadError;
+
+/// Words with which a line of a form begins, and whether arguments follow.
+struct Form {
+    words: &'static [&'static str],
+    has_arguments: bool,
+}
+
+/// Declares requests from their rows: the words of the line, the name of the request, and its arguments. Who executes a request
+/// is its group.
+macro_rules! requests {
+    ($(
+        $(#[$group_doc:meta])+
+        $group:ident($requests:ident) {$(
+            $(#[$doc:meta])+
+            $($word:literal)+ => $request:ident $({ $($argument:ident: $kind:ty),+ $(,)? })?;
+        )+}
+    )+) => {
+        $(
+            $(#[$group_doc])+
+            #[derive(Clone, Debug, PartialEq)]
+            pub enum $requests {$(
+                $(#[$doc])+
+                #[allow(missing_docs, reason = "name and type say it")]
+                $request $({ $($argument: $kind),+ })?,
+            )+}
+
+            /// Writes the line without the address of a finger.
+            impl fmt::Display for $requests {
+                fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                    match self {$(
+                        Self::$request $({ $($argument),+ })? => {
+                            write_words(f, &[$($word),+])?;
+                            $($($argument.write(f)?;)+)?
+                            Ok(())
+                        }
+                    )+}
+                }
+            }
+        )+
+
+        /// A line from the host: its words and arguments, which are within their ranges.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Request {
+            $($(#[$group_doc])+ $group($requests),)+
+            /// A line `upload`, whose arguments depend on the upload so far.
+            Upload,
+        }
+
+        enum Place { $($($request,)+)+ }
+
+        const FORMS: &[Form] = &[$($(Form {
+            words: &[$($word),+],
+            has_arguments: [$($(has_argument(stringify!($argument)),)+)? false][0],
+        },)+)+];
+
+        fn read_arguments(place: usize, words: &mut Words<'_>) -> Result<Request, ReadError> {
+            $($(if place == Place::$request as usize {
+                return Ok(Request::$group($requests::$request $({
+                    $($argument: <$kind>::read(words)?),+
+                })?));
+            })+)+
+            Ok(Request::Upload)
+        }
+    };
+}
+
+const fn has_argument(_name: &str) -> bool {
+    true
+}
+
+fn write_words(f: &mut fmt::Formatter<'_>, words: &[&str]) -> fmt::Result {
+    let mut separator = "";
+    words.iter().try_for_each(|word| {
+        f.write_str(separator)?;
+        separator = " ";
+        f.write_str(word)
+    })
+}
+
+requests! {
+    /// Requests that the device as a whole answers.
+    Device(DeviceRequest) {
+        /// Name and version of the firmware, number of fingers, rates, version and capabilities of the protocol.
+        "id" => Identify;
+        /// State of microcontroller and serial line.
+        "board" => Board;
+        /// Whether lines end with a checksum from now on.
+        "checksum" => Checksum { switch: Switch };
+        /// Restart, and store the present settings of all fingers.
+        "save" => Save;
+        /// Restart, and store the factory defaults.
+        "forget" => ForgetAll;
+    }
+    /// Requests that the stations (the control) of the addressed fingers execute.
+    Station(StationRequest) {
+        /// State, object and set-point.
+        "state" => State;
+        /// Telemetry at this interval, with these fields; an interval of 0 ends it.
+        "stream" => Stream { interval_ms: Number<StreamInterval>, fields: TelemetryFields };
+        /// Report events, or none.
+        "events" => Events { switch: Switch };
+        /// Mark these events at the trigger output.
+        "trigger-out" => TriggerOutput { kinds: EventKinds };
+
+        /// The object's material by its properties.
+        "material" "custom" => CustomMaterial {
+            conductivity_w_mk: Number<Conductivity>,
+            density_kg_m3: Number<Density>,
+            specific_heat_j_kgk: Number<SpecificHeat>,
+            roughness_um: Number<Roughness>,
+            slope_rad: Number<Slope>,
+        };
+        /// The object's material by its name.
+        "material" => Material { material: KnownMaterial };
+        /// The object has the room's temperature before contact.
+        "object" "room" => ObjectAtRoomTemperature;
+        /// The object is an endless block of its material.
+        "object" "half-space" => HalfSpace;
+        /// The object is a slab of its material.
+        "object" "slab" => Slab { thickness_mm: Millimetres, back: Back };
+        /// Temperature of the object before contact.
+        "object" => ObjectAtTemperature { celsius: Number<ObjectTemperature> };
+        /// The finger that is assumed for the one that touches.
+        "finger" => QueryFinger;
+        /// Assume this finger for the one that touches.
+        "finger" => Finger { finger: AssumedFinger };
+        /// The contact law in use.
+        "contact" => QueryContactLaw;
+        /// Take Eq. 6-8 for the finger's contact law.
+        "contact" "nominal" => NominalContactLaw;
+        /// Take this for the finger's contact law.
+        "contact" => ContactLaw {
+            exponent: Number<Exponent>,
+            hardness_pa: Number<Microhardness>,
+            gap_w_m2k: Number<Gap>,
+        };
+        /// Contact model of the set-point: with contact resistance, or for perfect contact.
+        "mode" => Mode { model: ContactModel };
+        /// The control law in use.
+        "law" => QueryLaw;
+        /// Choose the control law.
+        "law" => Law { law: Law };
+
+        /// Run the self-test if it has not been passed, then drive the display to skin temperature.
+        "arm" => Arm;
+        /// Move the set-point to this temperature, at this rate or at 1 K/s, and hold it.
+        "hold" => Hold { celsius: Number<Temperature>, rate_k_s: Option<Number<Rate>> };
+        /// Play the loaded course.
+        "play" => Play { order: PlayOrder };
+        /// Load and play a course of four points: base, target, target, base.
+        "pulse" => Pulse {
+            base_c: Number<Temperature>,
+            target_c: Number<Temperature>,
+            rise_k_s: Number<Rate>,
+            hold_s: Number<Seconds>,
+            return_k_s: Number<Rate>,
+            order: Option<PlayOrder>,
+        };
+        /// Set-points assume the skin of the sensor.
+        "skin" "sensor" => SkinOfSensor;
+        /// Set-points assume this temperature of the skin before contact.
+        "skin" => AssumedSkin { celsius: Number<Skin> };
+        /// Present the object.
+        "start" => Start;
+        /// Switch the bridge off.
+        "abort" => Abort;
+        /// Clear a fault that is no longer present.
+        "clear" => Clear;
+
+        /// Why the device tripped, now or the last time.
+        "cause" => Cause;
+        /// What the last self-test measured.
+        "self-test" => SelfTest;
+        /// The converter's counts and the fault inputs in the last tick.
+        "raw" => Raw;
+        /// Begin to identify the tile.
+        "tune" => Tune;
+    }
+    /// Requests that the commissioning sessions of the addressed fingers execute: a session is a finger's settings and calibration
+    /// points.
+    Session(SessionRequest) {
+        /// Add a calibration point: the mean of the thermistor's converter sums over half a second, and the temperature that the
+        /// reference thermometer shows at it. The calibration that fits all points is used from then on. Or clear the
+        /// thermistor's points and correction; if the corrections of both display thermistors are zero then, the converter's
+        /// steps are set to zero, too.
+        "calibrate" => Calibrate { thermistor: ThermistorId, point: PointOrClear };
+        /// Compute the tile's parameters from the response that the station has recorded during a complete `tune`, and use them
+        /// in place of the present ones.
+        "tune" "result" => TuneResult;
+        /// The tile in use, and the stability margins of the loop that the law `pi` closes.
+        "margins" => Margins;
+        /// Number of lines that hold the settings.
+        "settings" => CountSettings;
+        /// One line of the settings, by its number.
+        "settings" => QuerySetting { number: Whole<SettingNumber> };
+        /// Replace the part of the settings that the line holds, from the next tick on. A line with a correction also removes
+        /// the calibration points of its thermistor; a line with steps those of both display thermistors.
+        "set" => Set { setting: Setting };
+        /// The heat-flux sensor, its flux, and what is known of the finger by it.
+        "flux" => QueryFlux;
+        /// Use this heat-flux sensor.
+        "flux" "set" => SetFluxSensor { sensor: FluxSensor };
+        /// Use no heat-flux sensor.
+        "flux" "none" => NoFluxSensor;
+        /// Take the mean of the heat-flux sensor's code over the last half second as its zero.
+        "flux" "zero" => FluxZero;
+        /// The surface of the display.
+        "surface" => QueryDisplaySurface;
+        /// The display has this surface.
+        "surface" "set" => SetDisplaySurface { surface: DisplaySurface };
+        /// The display has the surface of the reference design.
+        "surface" "nominal" => NominalDisplaySurface;
+    }
+    /// Requests about persons, who are those of the whole device; who is chosen, and what was learnt, is a finger's.
+    Person(PersonRequest) {
+        /// The chosen person, and from how many contacts the finger is learnt.
+        "person" => QueryPerson;
+        /// Begin to learn with an unknown person.
+        "person" "none" => ChooseNobody;
+        /// Store what was learnt as that of a person.
+        "person" "enrol" => Enrol { code: PersonCode };
+        /// Begin to learn with a stored person; with data, store the person.
+        "person" => Person { code: PersonCode, data: Option<PersonData> };
+        /// Codes of all stored persons.
+        "persons" => List;
+        /// Forget a stored person.
+        "forget" "person" => Forget { code: PersonCode };
+    }
+}
+
+/// First word of the lines of an upload.
+pub const UPLOAD_WORD: &str = "upload";
+
+/// First words of all requests.
+pub fn command_words() -> impl Iterator<Item = &'static str> {
+    let first = |form: &'static Form| form.words.first().copied();
+    let is_new = move |(place, word): &(usize, &'static str)| {
+        !FORMS.iter().take(*place).filter_map(first).any(|other| other == *word)
+    };
+    let words = FORMS.iter().filter_map(first).enumerate().filter(is_new).map(|(_, word)| word);
+    words.chain(iter::once(UPLOAD_WORD))
+}
+
+/// Words that may follow this command.
+pub fn second_words(command: &str) -> impl Iterator<Item = &'static str> {
+    let of_command = FORMS.iter().filter(move |form| form.words.first() == Some(&command));
+    of_command.filter_map(|form| form.words.get(1).copied())
+}
+
+impl Request {
+    /// Reads a line from the host without its address.
+    ///
+    /// # Errors
+    /// The line is no valid request; the error says what is wrong with it and what is allowed.
+    #[inline(never)]
+    pub fn read(line: &str) -> Result<Self, ReadError> {
+        let mut words = line.split_ascii_whitespace();
+        let command = read_word(&mut words, "command")?;
+        if command == UPLOAD_WORD {
+            return Ok(Self::Upload);
+        }
+        let place = place_of_form(command, &mut words)?;
+        let arguments = words.clone();
+        let request = read_arguments(place, &mut words)
+            .map_err(|error| with_second_words(command, &arguments, error))?;
+        expect_end(&mut words)?;
+        Ok(request)
+    }
+}
+
+/// Finds the form of a line, and skips the form's words. A form without arguments, as a query, is that of a line that ends there;
+/// in the table it stands before the one with arguments.
+#[inline(never)]
+fn place_of_form(command: &str, words: &mut Words<'_>) -> Result<usize, ReadError> {
+    let (mut known, mut too_long, mut has_second_words) = (None, None, false);
+    for (place, form) in FORMS.iter().enumerate() {
+        let [first, others @ ..] = form.words else { continue };
+        if *first != command {
+            continue;
+        }
+        known = Some(*first);
+        let mut rest = words.clone();
+        if others.iter().all(|word| rest.next() == Some(word)) {
+            if form.has_arguments || rest.clone().next().is_none() {
+                *words = rest;
+                return Ok(place);
+            }
+            too_long = too_long.or(Some((place, rest)));
+        } else {
+            has_second_words = true;
+        }
+    }
+    match (known, too_long) {
+        (None, _) => Err(ReadError::UnknownCommand(command.into())),
+        // What is too much is reported after the arguments.
+        (Some(_), Some((place, rest))) if !has_second_words => {
+            *words = rest;
+            Ok(place)
+        }
+        (Some(known), _) => {
+            Err(ReadError::UnknownSecondWord(known, word_or_empty(words).into()))
+        }
+    }
+}
+
+/// An error in the word after a command, where other words may stand, too.
+fn with_second_words(command: &str, words: &Words<'_>, error: ReadError) -> ReadError {
+    let form = FORMS.iter().find(|form| form.words.len() > 1 && form.words.first() == Some(&command));
+    let first = form.and_then(|form| form.words.first());
+    match (error, first) {
+        (ReadError::NotANumber(range, word), Some(command))
+            if word == words.clone().next().unwrap_or_default().into() =>
+        {
+            ReadError::NotANumberOrWord(range, command, word)
+        }
+        (error, _) => error,
+    }
+}
