@@ -5,7 +5,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, TryRecvError};
 use std::thread;
 use std::time::Duration;
 
-use thermal_client::client::{Client, ClientError, PlainCommand, thermistor_word};
+use thermal_client::client::{Client, ClientError, StationRequest};
 use thermal_client::commissioning::{
     CommissioningEvent, PhantomPlace, Surroundings, SurroundingsError,
 };
@@ -131,9 +131,9 @@ fn device_reads_c<L: Link>(
     thermistor: ThermistorId,
 ) -> Result<Option<f64>, ClientError> {
     while client.next_telemetry(Duration::ZERO)?.is_some() {}
-    client.ask_finger(finger, &PlainCommand::stream(TELEMETRY_MS))?;
+    client.ask_finger(finger, &StationRequest::stream(TELEMETRY_MS))?;
     let line = client.next_telemetry_of(finger, TELEMETRY_TIMEOUT)?;
-    client.ask_finger(finger, &PlainCommand::stream(WATCHED_STREAM_MS))?;
+    client.ask_finger(finger, &StationRequest::stream(WATCHED_STREAM_MS))?;
     Ok(line.and_then(|line| match thermistor {
         ThermistorId::Display | ThermistorId::Check => line.telemetry.display_c,
         ThermistorId::Sink => line.telemetry.sink_c,
@@ -235,7 +235,7 @@ impl<L: Link> Surroundings<L> for BenchOperator<'_> {
                 "Bring the sink to about {} C, with the reference thermometer on it".to_owned()
             }
             other => {
-                let word = thermistor_word(other);
+                let word = other.name();
                 format!(
                     "Put the {word} thermistor and the reference thermometer into a bath of about {{}} C"
                 )

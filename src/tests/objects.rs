@@ -265,7 +265,7 @@ fn another_contact_law_is_another_set_point() {
 
 #[test]
 fn fingers_have_the_same_tissue_if_both_or_neither_have_layers() {
-    let fingers = AssumedFinger::PROTOCOL_WORDS.map(|(_, finger)| finger);
+    let fingers = AssumedFinger::ALL;
     for (a, b) in fingers.iter().flat_map(|a| fingers.iter().map(move |b| (a, b))) {
         let equal = a.body().tissue == b.body().tissue;
         assert_eq!(equal, a.is_layered() == b.is_layered(), "{a:?} {b:?}");

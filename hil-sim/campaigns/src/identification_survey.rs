@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::bail;
 use serde::Serialize;
-use thermal_client::client::{Client, IdentifiedTile, PlainCommand, TuneResult};
+use thermal_client::client::{Client, IdentifiedTile, StationRequest, TuneResult};
 use thermal_client::commissioning::arm;
 use thermal_plant::Params;
 use thermal_plant::parameters;
@@ -132,8 +132,8 @@ fn tune(plants: &CommissioningSetup, settings: &[String]) -> anyhow::Result<(Ide
         client.command(line)?;
     }
     arm(&mut client, None)?;
-    client.ask(&PlainCommand::Tune)?;
-    client.ask(&PlainCommand::stream(1))?;
+    client.ask(&StationRequest::Tune)?;
+    client.ask(&StationRequest::stream(1))?;
     let (mut demand_a, mut pairs) = (0.0f64, Vec::new());
     for ms in 1..TUNE_MS {
         // An answer comes in the millisecond in which its line is sent.

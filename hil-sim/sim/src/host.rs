@@ -127,7 +127,7 @@ impl Host {
         let law = scene.law.map(|law| format!("law {}", law.name()));
         let set_up = material_and_temperature(scene).into_iter();
         let set_up = set_up.chain([mode.into()]).chain(law);
-        let upload = (scene.course.as_ref()).map_or_else(Vec::new, Course::upload_commands);
+        let upload = (scene.course.as_ref()).map_or_else(Vec::new, Course::upload_lines);
         // What the device assumes follows the command that arms it, which so is sent at the same time for all scenes.
         let finger = format!("finger {}", scene.assumed_finger.name());
         let set_up = set_up

@@ -17,6 +17,7 @@ use thermal_sim::{NativeRunner, SceneRunner};
 
 use super::engine::{self, EngineKind};
 use super::{Failure, output};
+use thermal_device::Vocabulary as _;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -142,10 +143,7 @@ fn removals() -> impl TypedValueParser<Value = Removed> {
 }
 
 fn laws() -> impl TypedValueParser<Value = Law> {
-    PossibleValuesParser::new(Law::PROTOCOL_WORDS.map(|(word, _)| word)).map(|word| {
-        let known = Law::PROTOCOL_WORDS.iter().find(|(known, _)| *known == word);
-        known.map_or(Law::default(), |(_, law)| *law)
-    })
+    PossibleValuesParser::new(Law::WORDS.words).map(|word| Law::of_word(&word).unwrap_or_default())
 }
 
 /// The chosen values, or all if `all` is among them.
@@ -171,7 +169,7 @@ struct Report<'a> {
 /// Runs, prints, writes.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let laws = match arguments.law.as_slice() {
-        [] => Law::PROTOCOL_WORDS.map(|(_, law)| law).to_vec(),
+        [] => Law::ALL.to_vec(),
         chosen => chosen.to_vec(),
     };
     let (cases, populations) = cases(arguments)?;

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use thermal_client::client::{
-    Client, ClientError, PlainCommand, QueryDisplaySurface, QueryState, ReceivedTelemetry,
+    Client, ClientError, SessionRequest, StationRequest, QueryDisplaySurface, QueryState, ReceivedTelemetry,
 };
 use thermal_client::commissioning::{CommissionError, arm};
 use thermal_client::link::{Link, LinkError};
@@ -174,7 +174,7 @@ pub fn measure<L: Link>(
         Session { client, finger: options.finger, guide, recent: VecDeque::new() }.record(options);
     // Also after a failure: the bridge may be driven.
     let ended = client.abort_and_end_stream(options.finger);
-    let no_events = client.ask_finger(options.finger, &PlainCommand::Events(false));
+    let no_events = client.ask_finger(options.finger, &StationRequest::events(false));
     let recording = recorded?;
     ended.and(no_events)?;
     recording.check()?;
@@ -200,14 +200,14 @@ impl<L: Link> Session<'_, L> {
         if let Some(fault) = state.fault() {
             return Err(MeasurementError::Tripped(fault.name()));
         }
-        self.client.ask_finger(finger, &PlainCommand::stream_fields(STREAM_MS, &FIELDS))?;
-        self.client.ask_finger(finger, &PlainCommand::Events(true))?;
+        self.client.ask_finger(finger, &StationRequest::stream_fields(STREAM_MS, &FIELDS))?;
+        self.client.ask_finger(finger, &StationRequest::events(true))?;
         self.wait_for_lifting()?;
         if options.takes_zero {
-            self.client.ask_finger(finger, &PlainCommand::FluxZero)?;
+            self.client.ask_finger(finger, &SessionRequest::FluxZero)?;
         }
         arm(self.client, finger)?;
-        self.client.ask_finger(finger, &PlainCommand::Hold(HELD_C, None))?;
+        self.client.ask_finger(finger, &StationRequest::hold(HELD_C, None))?;
         self.settle()?;
         let ([skin_c, room_c], samples) = self.follow()?;
         Ok(Recording {
@@ -259,7 +259,7 @@ impl<L: Link> Session<'_, L> {
             ("the finger was not lifted", WAIT_MAX),
             || Step::Lift,
             |_, line| {
-                if line.telemetry.finger == Some(FingerKnowledge::SensorFault) {
+                if line.telemetry.known == Some(FingerKnowledge::SensorFault) {
                     return Err(MeasurementError::SensorFault(None));
                 }
                 let is_lifted = line.telemetry.is_lifted() == Some(true);

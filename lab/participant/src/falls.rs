@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use contact_model::material::Material;
-use thermal_client::client::{Client, ClientError, PlainCommand, QueryState};
+use thermal_client::client::{Client, ClientError, StationRequest, QueryState};
 use thermal_client::link::LinkError;
 use thermal_device::StateName;
 use thermal_device::command::AssumedFinger;
@@ -108,15 +108,15 @@ impl Exploration {
         let gone = |error: LinkError| BenchError::Device(error.to_string());
         client.wait(SETTLES).map_err(gone)?;
         for command in [
-            PlainCommand::Law(law),
-            PlainCommand::Mode(mode),
-            PlainCommand::AssumedFinger(setup.assumed_finger),
-            PlainCommand::Material(material.into()),
-            PlainCommand::ObjectTemperature(None),
+            StationRequest::Law { law: law },
+            StationRequest::Mode { model: mode },
+            StationRequest::Finger { finger: setup.assumed_finger },
+            StationRequest::material(material.into()),
+            StationRequest::object_temperature(None),
         ] {
             client.ask(&command).map_err(refused)?;
         }
-        for command in [PlainCommand::Arm, PlainCommand::Start] {
+        for command in [StationRequest::Arm, StationRequest::Start] {
             client.ask(&command).map_err(refused)?;
             client.wait(SETTLES).map_err(gone)?;
         }

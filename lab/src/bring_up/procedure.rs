@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use thermal_client::client::{
-    Client, ClientError, PlainCommand, QueryBoard, QueryRaw, QuerySelfTest, QueryState,
+    Client, ClientError, StationRequest, QueryBoard, QueryRaw, QuerySelfTest, QueryState,
     SelfTestReport,
 };
 use thermal_client::commissioning::{CommissionError, SurroundingsError};
@@ -118,7 +118,7 @@ pub fn bring_up<L: Link, B: Bench<L>>(
         if let Err(why) = procedure.stage(stage, resumed) {
             if let Interruption::OtherDevice(refusal) = why {
                 // An answer is of no more use.
-                let _ignored = procedure.client.ask(&PlainCommand::Abort);
+                let _ignored = procedure.client.ask(&StationRequest::Abort);
                 return Err(refusal);
             }
             let reason = procedure.interrupted(stage, &why);
@@ -130,7 +130,7 @@ pub fn bring_up<L: Link, B: Bench<L>>(
     procedure.resume_at_first_failure();
     let Procedure { client, report, .. } = procedure;
     // Why the procedure ended is in the report; a device that cannot be reached cannot be told either.
-    let _ignored = client.ask(&PlainCommand::Abort);
+    let _ignored = client.ask(&StationRequest::Abort);
     saved(&report);
     Ok(report)
 }
@@ -170,7 +170,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         }
         // Before a person connects something for the next stage.
         if stage.id >= StageId::Latch {
-            self.client.ask(&PlainCommand::Abort)?;
+            self.client.ask(&StationRequest::Abort)?;
         }
         Ok(())
     }
@@ -329,10 +329,10 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         (self.self_test, self.self_test_failed) = (None, false);
         let tripped = self.client.ask(&QueryState)?.state.fault();
         let started = match tripped {
-            Some(_) => self.client.ask(&PlainCommand::Clear),
+            Some(_) => self.client.ask(&StationRequest::Clear),
             None => Ok(()),
         };
-        let started = started.and_then(|()| self.client.ask(&PlainCommand::Arm));
+        let started = started.and_then(|()| self.client.ask(&StationRequest::Arm));
         if let Err(error) = started {
             let Some(why) = error.refusal() else {
                 return Err(error.into());
@@ -353,7 +353,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
                 break;
             }
         }
-        Ok(self.client.ask(&PlainCommand::Abort)?)
+        Ok(self.client.ask(&StationRequest::Abort)?)
     }
 }
 

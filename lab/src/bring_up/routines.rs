@@ -3,8 +3,7 @@
 use std::time::Duration;
 
 use thermal_client::client::{
-    Identity, PlainCommand, QueryBoard, QueryIdentity, QueryRaw, QueryState, RawReadings,
-    thermistor_word,
+    Identity, DeviceRequest, StationRequest, QueryBoard, QueryIdentity, QueryRaw, QueryState, RawReadings
 };
 use thermal_client::commissioning::{CommissioningEvent, arm, commission};
 use thermal_client::link::Link;
@@ -197,7 +196,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             );
             let record = Record {
                 stage: stage.name.into(),
-                check: format!("known-{}", thermistor_word(*thermistor)),
+                check: format!("known-{}", thermistor.name()),
                 what: format!("{name} input with {}", Unit::Ohm.text(ohm)),
                 expected: range.to_string(),
                 found: Unit::Count.text(counts),
@@ -211,10 +210,10 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     }
 
     fn serial_line(&mut self, ms: u64) -> Result<(), Interruption> {
-        self.client.ask(&PlainCommand::Checksum(true))?;
+        self.client.ask(&DeviceRequest::Checksum { switch: true.into() })?;
         self.discard_telemetry()?;
         let before = self.client.counts();
-        self.client.ask(&PlainCommand::stream(1))?;
+        self.client.ask(&StationRequest::stream(1))?;
         let end = self.client.link().now() + Duration::from_millis(ms);
         let mut lines = 0;
         loop {
@@ -224,9 +223,9 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             }
             lines += 1;
         }
-        self.client.ask(&PlainCommand::stream(0))?;
+        self.client.ask(&StationRequest::stream(0))?;
         let after = self.client.counts();
-        self.client.ask(&PlainCommand::Checksum(false))?;
+        self.client.ask(&DeviceRequest::Checksum { switch: false.into() })?;
         self.keep("lines", f64::from(lines));
         self.keep("lines-lost", (after.lost - before.lost) as f64);
         self.keep("lines-damaged", (after.damaged - before.damaged) as f64);
@@ -244,7 +243,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
             self.bench.notice(&CommissioningEvent::StepStarted("read the reference thermometer"));
             let reference_c = self.reference_c(*thermistor)?;
             let found_c = class_c(counts(&self.client.ask(&QueryRaw)?)[index]);
-            let name = format!("{}-at-rest", thermistor_word(*thermistor));
+            let name = format!("{}-at-rest", thermistor.name());
             self.keep(name, found_c - reference_c);
         }
         Ok(())
@@ -253,10 +252,10 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     /// Holds the display at a temperature, and compares its thermistors with the reference thermometer.
     fn hold(&mut self, keep: &'static str, celsius: f64) -> Result<(), Interruption> {
         arm(self.client, None)?;
-        self.client.ask(&PlainCommand::Hold(celsius, None))?;
+        self.client.ask(&StationRequest::hold(celsius, None))?;
         self.bench.notice(&CommissioningEvent::HoldStarted(celsius));
         self.discard_telemetry()?;
-        self.client.ask(&PlainCommand::stream(HOLD_STREAM_MS))?;
+        self.client.ask(&StationRequest::stream(HOLD_STREAM_MS))?;
         let start = self.client.next_telemetry(Duration::from_secs(1))?;
         let start_c = start.and_then(|line| line.telemetry.display_c);
         let distance_k = start_c.map_or(DISTANCE_MAX_K, |start_c| (celsius - start_c).abs());
@@ -273,7 +272,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
                 let fault = fault.name();
                 let why = super::fault_words::explanation(fault);
                 let why = why.as_deref().unwrap_or("see docs/safety.md");
-                self.client.ask(&PlainCommand::stream(0))?;
+                self.client.ask(&StationRequest::stream(0))?;
                 return Err(Interruption::Bench(format!(
                     "the device has tripped by `{fault}` while it held {celsius} °C: {why}"
                 )));
@@ -284,7 +283,7 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         // The stream goes on while the person reads: the device trips if this program or its computer stops.
         let reference_c = self.reference_c(ThermistorId::Display)?;
         let check_c = class_c(self.client.ask(&QueryRaw)?.check);
-        self.client.ask(&PlainCommand::stream(0))?;
+        self.client.ask(&StationRequest::stream(0))?;
         self.keep(format!("{keep}-check"), check_c - reference_c);
         self.keep(format!("{keep}-highest"), highest_c);
         let Some(last) = last else { return Ok(()) };

@@ -5,7 +5,7 @@ use std::io::{BufReader, Write, stderr, stdin};
 use anyhow::anyhow;
 use clap::Args;
 use serde::Serialize;
-use thermal_client::client::{Client, PlainCommand};
+use thermal_client::client::{Client, SessionRequest, StationRequest};
 use thermal_client::commissioning::{
     CommissionError, CommissioningEvent, CommissioningRecord, FluxCalibration, Surroundings,
 };
@@ -96,7 +96,7 @@ fn by_a_person(target: &Target, arguments: &Arguments) -> Result<Record, Failure
         if !arguments.only_flux_sensor {
             clear_calibration(client, arguments.finger).map_err(Failure::run)?;
         }
-        (client.ask_finger(arguments.finger, &PlainCommand::stream(WATCHED_STREAM_MS)))
+        (client.ask_finger(arguments.finger, &StationRequest::stream(WATCHED_STREAM_MS)))
             .map_err(Failure::run)?;
         (arguments.commission(client, &mut person)).map_err(Failure::run)
     })
@@ -116,7 +116,7 @@ fn simulated(target: &Target, arguments: &Arguments) -> Result<Record, Failure> 
     let mut engine = NativeEngine::new(setup.in_use().map_err(Failure::input)?);
     let mut client = Client::new(SimulatedLink::new(&mut engine));
     if setup.params().flux.is_some() {
-        let sensor = PlainCommand::FluxSensor(Some(FluxSensor::DESIGNED));
+        let sensor = SessionRequest::flux_sensor(Some(FluxSensor::DESIGNED));
         client.ask(&sensor).map_err(Failure::run)?;
     }
     let mut operator = SimulatedOperator {

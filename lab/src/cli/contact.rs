@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use clap::Args;
 use contact_law_fit::{Measurement, MeasurementOptions, Sample, Step, fit, force_n, measure};
-use thermal_client::client::{Client, PlainCommand};
+use thermal_client::client::{Client, StationRequest};
 use thermal_client::link::Link;
 use thermal_lab::contact::Report;
 use thermal_lab::step_screen::StepScreen;
@@ -84,7 +84,7 @@ fn at_device<L: Link>(
     write(&picture, &chart.map_err(Failure::run)?)?;
     print_text(&report.text())?;
     if arguments.tell {
-        let command = PlainCommand::ContactLaw(fit.law);
+        let command = StationRequest::contact_law(fit.law);
         (client.ask_finger(arguments.finger, &command)).map_err(Failure::run)?;
     }
     Ok(())

@@ -8,7 +8,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use serde::{Deserialize, Serialize};
-use thermal_client::client::{Client, PlainCommand, QueryBoard, QueryDisplaySurface, person_data};
+use thermal_client::client::{Client, PersonRequest, QueryBoard, QueryDisplaySurface, person_data};
 use thermal_client::link::Link;
 use thermal_client::text;
 use thermal_lab::enrolment::{EnrolmentOptions, Step, enrol};
@@ -112,14 +112,14 @@ fn at_device<L: Link>(
 ) -> Result<(), Failure> {
     let (code, finger) = (arguments.code, arguments.finger);
     if arguments.forget {
-        let forget = PlainCommand::ForgetPerson(code);
+        let forget = PersonRequest::Forget { code: code };
         return client.ask(&forget).map_err(Failure::run);
     }
     if let Some(file) = &arguments.restore {
         let person = read(file, code).map_err(Failure::input)?;
         let commands = [
-            (None, PlainCommand::StorePerson(person)),
-            (finger, PlainCommand::ChoosePerson(Some(code))),
+            (None, PersonRequest::store(&person)),
+            (finger, PersonRequest::Person { code: code, data: None }),
         ];
         for (finger, command) in commands {
             client.ask_finger(finger, &command).map_err(Failure::run)?;

@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use anyhow::Context;
 use clap::Args;
 use thermal_client::client::{
-    ClientError, PlainCommand, QueryIdentity, ReceivedTelemetry, TelemetryColumn, TickTime,
+    ClientError, StationRequest, QueryIdentity, ReceivedTelemetry, TelemetryColumn, TickTime,
 };
 use thermal_client::link::{Link, LinkError};
 use thermal_sim::commissioning::flux_sensor_line;
@@ -115,9 +115,9 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
         let table = Table { zero_s, has_flux_sensor };
         out.write_record(table.header()).map_err(Failure::run)?;
         let stream = if has_flux_sensor {
-            PlainCommand::stream_with_flux(arguments.interval)
+            StationRequest::stream_with_flux(arguments.interval)
         } else {
-            PlainCommand::stream(arguments.interval)
+            StationRequest::stream(arguments.interval)
         };
         client.ask(&stream).map_err(Failure::run)?;
         let end = arguments.duration.map(|time| client.link().now() + time);
@@ -130,7 +130,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             client.clock().restarts()
         );
         match logged? {
-            LogEnd::Time => client.ask(&PlainCommand::stream(0)).map_err(Failure::run),
+            LogEnd::Time => client.ask(&StationRequest::stream(0)).map_err(Failure::run),
             // The bridge is switched off first.
             LogEnd::Interrupted => Ok(()),
         }

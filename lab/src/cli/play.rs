@@ -6,13 +6,14 @@ use std::time::Duration;
 use anyhow::anyhow;
 use clap::Args;
 use serde_json::json;
-use thermal_client::client::{PlainCommand, QueryState};
+use thermal_client::client::{StationRequest, QueryState};
 use thermal_client::course::{Prepared, Selection, read_course};
 use thermal_device::StateName;
 use thermal_device::stimulus::{CourseEnd, CourseStart, PlayOrder};
 
 use super::target::AnyClient;
 use super::{Failure, Target, print};
+use thermal_device::Vocabulary as _;
 
 /// Interval at which the state is asked for while the self-test runs, and how many times it is at most: 5 s.
 const STATE_POLL_INTERVAL: Duration = Duration::from_millis(100);
@@ -49,12 +50,8 @@ pub struct Arguments {
 
 /// What begins a course, by its word in the protocol.
 fn start(word: &str) -> Result<CourseStart, String> {
-    let all = CourseStart::PROTOCOL_WORDS;
-    let found = all.iter().find(|(known, _)| *known == word);
-    found.map(|(_, start)| *start).ok_or_else(|| {
-        let words = all.map(|(known, _)| known).join(", ");
-        format!("one of {words} is allowed")
-    })
+    CourseStart::of_word(word)
+        .ok_or_else(|| format!("one of {} is allowed", CourseStart::WORDS.words.join(", ")))
 }
 
 /// Uploads the course to a device that is armed, and starts it.
@@ -63,24 +60,22 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
     let file = read_course(&arguments.course, selection).map_err(Failure::input)?;
     let played =
         Prepared::new(file, arguments.coarse, arguments.repeats).map_err(Failure::input)?;
-    let mut commands = played.points.upload_commands();
-    commands.push(PlainCommand::Play(PlayOrder {
-        start: arguments.at,
-        play_count: arguments.repeats,
-        end: CourseEnd::Hold,
-    }));
+    let order =
+        PlayOrder { start: arguments.at, play_count: arguments.repeats, end: CourseEnd::Hold };
     target.with_client(|client| {
         if arguments.arm {
             // A stream makes the device trip if this program vanishes before the course has begun.
-            let guard = PlainCommand::stream(GUARD_STREAM_MS);
+            let guard = StationRequest::stream(GUARD_STREAM_MS);
             (client.ask_finger(arguments.finger, &guard)).map_err(Failure::run)?;
             arm(client, arguments.finger)?;
         }
-        for command in &commands {
-            (client.ask_finger(arguments.finger, command)).map_err(Failure::run)?;
+        for line in &played.points.upload_lines() {
+            (client.ask_finger(arguments.finger, line)).map_err(Failure::run)?;
         }
+        let play = StationRequest::Play { order };
+        (client.ask_finger(arguments.finger, &play)).map_err(Failure::run)?;
         if arguments.arm {
-            let no_stream = PlainCommand::stream(0);
+            let no_stream = StationRequest::stream(0);
             (client.ask_finger(arguments.finger, &no_stream)).map_err(Failure::run)?;
         }
         let points = played.points.points().len();
@@ -98,7 +93,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
 
 /// Arms the device, and waits for the end of its self-test.
 fn arm(client: &mut AnyClient<'_>, finger: Option<u8>) -> Result<(), Failure> {
-    (client.ask_finger(finger, &PlainCommand::Arm)).map_err(Failure::run)?;
+    (client.ask_finger(finger, &StationRequest::Arm)).map_err(Failure::run)?;
     for _ in 0..STATE_POLLS_MAX {
         let status = client.ask_finger(finger, &QueryState).map_err(Failure::run)?;
         match status.state {

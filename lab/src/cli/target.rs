@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use anyhow::{Context, anyhow};
 use clap::Args;
-use thermal_client::client::{Client, ClientError, PlainCommand};
+use thermal_client::client::{Client, ClientError, StationRequest};
 use thermal_client::link::{Interruptible, Link, LinkError};
 use thermal_lab::link::{self, LazyLink, ServedLink, SimulatedLink};
 use thermal_plant::Params;
@@ -166,7 +166,7 @@ fn with_link<L: Link, T>(
                 }
                 if client.is_streaming() {
                     // Not before: a device that streams to nobody switches its bridge off by itself. That telemetry goes on harms nobody.
-                    let _ignored = client.ask(&PlainCommand::stream(0));
+                    let _ignored = client.ask(&StationRequest::stream(0));
                 }
             }
             Err(error) if was_driven => notice(&error.not_off().to_string()),

@@ -6,7 +6,7 @@ use contact_model::material::SKIN;
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::conductance_at_hardness;
 use serde::Serialize;
-use thermal_client::client::PlainCommand;
+use thermal_client::client::StationRequest;
 
 /// The contact law of a person, as it is printed and written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -70,7 +70,7 @@ impl Report {
         };
         Self {
             code: code.into(),
-            line: PlainCommand::ContactLaw(fit.law).to_string(),
+            line: StationRequest::contact_law(fit.law).to_string(),
             exponent: fit.law.exponent,
             exponent_95: ends(&fit.exponent_interval),
             hardness_pa: fit.law.hardness_pa,

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use contact_model::contact_law::ContactLaw;
 use thermal_client::client::{
-    Client, ClientError, EnrolPerson, PersonReport, PlainCommand, QueryContactLaw,
+    Client, ClientError, Command, EnrolPerson, PersonReport, PersonRequest, SessionRequest, StationRequest, QueryContactLaw,
     ReceivedTelemetry,
 };
 use thermal_client::commissioning::{CommissionError, arm};
@@ -135,7 +135,7 @@ struct Session<'a, L> {
 }
 
 impl<L: Link> Session<'_, L> {
-    fn send(&mut self, command: &PlainCommand) -> Result<(), EnrolmentError> {
+    fn send(&mut self, command: &impl Command<Reply = ()>) -> Result<(), EnrolmentError> {
         Ok(self.client.ask_finger(self.finger, command)?)
     }
 
@@ -145,17 +145,17 @@ impl<L: Link> Session<'_, L> {
         if self.client.ask_finger(self.finger, &QueryContactLaw)? != ContactLaw::NOMINAL {
             return Err(EnrolmentError::OtherContactLaw);
         }
-        self.send(&PlainCommand::stream_fields(STREAM_MS, &FIELDS))?;
+        self.send(&StationRequest::stream_fields(STREAM_MS, &FIELDS))?;
         self.rest()?;
         if options.takes_zero {
-            self.send(&PlainCommand::FluxZero)?;
+            self.send(&SessionRequest::FluxZero)?;
         }
-        self.send(&PlainCommand::ChoosePerson(None))?;
+        self.send(&PersonRequest::ChooseNobody)?;
         for (number, object) in options.objects.iter().enumerate() {
-            self.send(&PlainCommand::Material(object.clone()))?;
+            self.send(&StationRequest::material(object))?;
             if number == 0 {
                 arm(self.client, self.finger)?;
-                self.send(&PlainCommand::Start)?;
+                self.send(&StationRequest::Start)?;
             }
             self.touch(object)?;
             self.rest()?;
@@ -214,7 +214,7 @@ impl<L: Link> Session<'_, L> {
                 return Err(EnrolmentError::Lifted { object, since_s });
             }
             if since_s >= CONTACT_S {
-                let word = (line.telemetry.finger).map_or("not known", FingerKnowledge::name);
+                let word = (line.telemetry.known).map_or("not known", FingerKnowledge::name);
                 if word == TRUSTED {
                     return Ok(());
                 }

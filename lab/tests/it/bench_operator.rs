@@ -10,7 +10,7 @@ use std::sync::mpsc::{self, Sender};
 use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
 use thermal_lab::bench_operator::BenchOperator;
-use thermal_lab::client::{Client, PlainCommand, QueryState, SettingsLine};
+use thermal_lab::client::{Client, SessionRequest, QueryState, SettingsLine};
 use thermal_lab::commissioning::{
     CommissionError, CommissioningEvent, CommissioningRecord, PhantomPlace, Surroundings,
     SurroundingsError, commission,
@@ -121,7 +121,7 @@ fn commissioned(
     let mut engine = NativeEngine::new(setup.in_use().unwrap());
     let mut client = Client::new(SimulatedLink::new(&mut engine));
     if setup.params().flux.is_some() {
-        let sensor = PlainCommand::FluxSensor(Some(FluxSensor::DESIGNED));
+        let sensor = SessionRequest::flux_sensor(Some(FluxSensor::DESIGNED));
         client.ask(&sensor).unwrap();
     }
     let (keys, lines) = mpsc::channel();

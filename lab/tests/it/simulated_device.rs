@@ -12,7 +12,7 @@ use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_lab::client::{
-    Calibrate, Client, CountSettings, PlainCommand, QueryAssumedFinger, QueryBoard, QueryCause,
+    Calibrate, Client, CountSettings, DeviceRequest, SessionRequest, StationRequest, QueryAssumedFinger, QueryBoard, QueryCause,
     QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings,
     QueryState, upload,
 };
@@ -38,26 +38,26 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     let relaxations = [Relaxation { rate_1_s: 2.0, gain_m2k_j: 4e-5 }];
     let object = Impedance { direct_m2k_w: 5e-7, relaxations: &relaxations };
     let mut orders = vec![
-        PlainCommand::Material("oak".into()),
-        PlainCommand::Material("granite".into()),
-        PlainCommand::CustomMaterial(copper),
-        PlainCommand::ObjectTemperature(Some(-3.25)),
-        PlainCommand::ObjectTemperature(None),
-        PlainCommand::HalfSpace,
-        PlainCommand::Slab { thickness_mm: 2.5, back: Back::Film(12.5) },
-        PlainCommand::Slab { thickness_mm: 3.0, back: Back::Held },
-        PlainCommand::Slab { thickness_mm: 4.0, back: Back::Insulated },
-        PlainCommand::AssumedFinger(AssumedFinger::MeanOnPad),
-        PlainCommand::Mode(ContactModel::SemiInfinite),
-        PlainCommand::Law(Law::Pi10Hz),
-        PlainCommand::Checksum(true),
-        PlainCommand::stream(7),
-        PlainCommand::stream(0),
-        PlainCommand::Checksum(false),
-        PlainCommand::Set(setting),
-        PlainCommand::ClearCalibration(ThermistorId::Check),
-        PlainCommand::FluxSensor(None),
-        PlainCommand::FluxSensor(Some(FluxSensor::DESIGNED)),
+        StationRequest::material("oak".into()),
+        StationRequest::material("granite".into()),
+        StationRequest::custom_material(copper),
+        StationRequest::object_temperature(Some(-3.25)),
+        StationRequest::object_temperature(None),
+        StationRequest::HalfSpace,
+        StationRequest::slab(2.5, Back::Film(12.5)),
+        StationRequest::slab(3.0, Back::Held),
+        StationRequest::slab(4.0, Back::Insulated),
+        StationRequest::Finger { finger: AssumedFinger::MeanOnPad },
+        StationRequest::Mode { model: ContactModel::SemiInfinite },
+        StationRequest::Law { law: Law::Pi10Hz },
+        DeviceRequest::Checksum { switch: true.into() },
+        StationRequest::stream(7),
+        StationRequest::stream(0),
+        DeviceRequest::Checksum { switch: false.into() },
+        setting,
+        SessionRequest::Calibrate { thermistor: ThermistorId::Check, point: PointOrClear::Clear },
+        SessionRequest::flux_sensor(None),
+        SessionRequest::flux_sensor(Some(FluxSensor::DESIGNED)),
     ];
     orders.extend(upload(&object));
     let refused: Vec<_> = (orders.iter())
@@ -75,18 +75,18 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     assert_eq!(client.ask(&QueryCause).unwrap(), None);
     // The board has no sensor.
     client.wait(Duration::from_millis(600)).unwrap();
-    let refused = client.ask(&PlainCommand::FluxZero).unwrap_err();
+    let refused = client.ask(&SessionRequest::FluxZero).unwrap_err();
     assert!(refused.refusal().unwrap().contains("look at its wires"));
     let flux = client.ask(&QueryFlux).unwrap().unwrap();
     let json = r#"{"counts_per_w_m2":0.1192,"zero_counts":2048.0,"lag_ms":5.0,"resistance_mm2k_w":30.0,"w_m2":null,"finger":"sensor-range"}"#;
     assert_eq!(serde_json::to_string(&flux).unwrap(), json);
     arm(&mut client, None).unwrap();
-    client.ask(&PlainCommand::Start).unwrap();
-    client.ask(&PlainCommand::Arm).unwrap();
-    client.ask(&PlainCommand::Hold(30.0, None)).unwrap();
-    client.ask(&PlainCommand::Tune).unwrap();
-    client.ask(&PlainCommand::Abort).unwrap();
-    let refused = client.ask(&PlainCommand::Clear).unwrap_err();
+    client.ask(&StationRequest::Start).unwrap();
+    client.ask(&StationRequest::Arm).unwrap();
+    client.ask(&StationRequest::hold(30.0, None)).unwrap();
+    client.ask(&StationRequest::Tune).unwrap();
+    client.ask(&StationRequest::Abort).unwrap();
+    let refused = client.ask(&StationRequest::Clear).unwrap_err();
     assert_eq!(refused.refusal(), Some("no fault to clear"));
     let point = Calibrate { thermistor: ThermistorId::Room, reference_c: 24.0 };
     client.wait(Duration::from_millis(600)).unwrap();
@@ -96,10 +96,10 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     assert_eq!(client.ask(&point).unwrap().points, 1);
     let lines = client.ask(&CountSettings).unwrap();
     let before: Vec<_> = (1..=lines).map(|n| client.ask(&QuerySettings(n)).unwrap()).collect();
-    client.ask(&PlainCommand::Store(StorageOrder::Save)).unwrap();
+    client.ask(&DeviceRequest::Save).unwrap();
     let after: Vec<_> = (1..=lines).map(|n| client.ask(&QuerySettings(n)).unwrap()).collect();
     assert_eq!(before, after);
-    client.ask(&PlainCommand::Store(StorageOrder::Forget)).unwrap();
+    client.ask(&DeviceRequest::ForgetAll).unwrap();
     assert!((client.ask(&QueryMargins).unwrap().gain_k_s_a - 2.957).abs() < 1e-9);
 }
 
@@ -131,7 +131,7 @@ fn telemetry_comes_at_its_interval_and_a_device_that_restarts_is_noticed() {
     let mut engine = device();
     let mut client = Client::new(SimulatedLink::new(&mut engine));
     client.wait(Duration::from_millis(100)).unwrap();
-    client.ask(&PlainCommand::stream(5)).unwrap();
+    client.ask(&StationRequest::stream(5)).unwrap();
     client.wait(Duration::from_secs(3)).unwrap();
     let mut last = None;
     while let Some(line) = client.next_telemetry(Duration::ZERO).unwrap() {
@@ -142,8 +142,8 @@ fn telemetry_comes_at_its_interval_and_a_device_that_restarts_is_noticed() {
     let time = client.clock().time_of(last.unwrap()).unwrap();
     assert!((time.at_s - client.link().now().as_secs_f64()).abs() < 0.01, "{time:?}");
     assert!(time.error_s < 1.1e-3 && time.drift_ppm.abs() < 1.0, "{time:?}");
-    client.ask(&PlainCommand::Store(StorageOrder::Forget)).unwrap();
-    client.ask(&PlainCommand::stream(5)).unwrap();
+    client.ask(&DeviceRequest::ForgetAll).unwrap();
+    client.ask(&StationRequest::stream(5)).unwrap();
     client.wait(Duration::from_millis(50)).unwrap();
     let line = client.next_telemetry(Duration::ZERO).unwrap().unwrap();
     assert!(line.telemetry.tick < 100, "{line:?}");
@@ -157,7 +157,7 @@ fn a_driven_device_whose_host_only_listens_does_not_trip() {
     let mut client = Client::new(SimulatedLink::new(&mut engine));
     client.wait(Duration::from_millis(500)).unwrap();
     arm(&mut client, None).unwrap();
-    client.ask(&PlainCommand::stream(1000)).unwrap();
+    client.ask(&StationRequest::stream(1000)).unwrap();
     client.wait(Duration::from_secs(120)).unwrap();
     assert_eq!(client.ask(&QueryState).unwrap().state, StateName::Armed);
 }

@@ -5,7 +5,7 @@ use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use thermal_lab::client::{Client, ClientError, PlainCommand};
+use thermal_lab::client::{Client, ClientError, StationRequest};
 use thermal_lab::link::{Link, LinkError, tcp};
 
 /// A server for one client.
@@ -48,13 +48,13 @@ fn a_link_that_vanishes_ends_a_wait_at_once() {
         stream.write_all(b"ok\nT 1 ar").unwrap();
     });
     let mut client = Client::new(tcp(address).unwrap());
-    client.ask(&PlainCommand::Arm).unwrap();
+    client.ask(&StationRequest::Arm).unwrap();
     server.join().unwrap();
     let began = Instant::now();
     let gone = client.wait(Duration::from_secs(30)).unwrap_err();
     assert!(matches!(gone, LinkError::Gone(_)), "{gone}");
     assert!(began.elapsed() < Duration::from_secs(5));
-    let error = client.ask(&PlainCommand::Abort).unwrap_err();
+    let error = client.ask(&StationRequest::Abort).unwrap_err();
     assert!(matches!(error, ClientError::Link(LinkError::Gone(_))), "{error}");
 }
 
@@ -82,7 +82,7 @@ fn a_silent_device_is_given_up_after_two_seconds_of_real_time() {
     });
     let mut client = Client::new(tcp(address).unwrap());
     let began = client.link().now();
-    assert!(matches!(client.ask(&PlainCommand::Arm).unwrap_err(), ClientError::TimedOut { .. }));
+    assert!(matches!(client.ask(&StationRequest::Arm).unwrap_err(), ClientError::TimedOut { .. }));
     let waited = client.link().now() - began;
     assert!((1.9..2.4).contains(&waited.as_secs_f64()), "{waited:?}");
     server.join().unwrap();

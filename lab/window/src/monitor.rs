@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{Client, ClientError, PlainCommand, QueryIdentity, ReceivedEvent};
+use thermal_client::client::{Client, ClientError, StationRequest, QueryIdentity, ReceivedEvent};
 use thermal_client::link::{Link, LinkError};
 use thermal_session::{People, Update};
 
@@ -77,7 +77,7 @@ pub fn monitor<L: Link>(
         (Ok(()) | Err(ClientError::Link(LinkError::Interrupted)), off) => {
             // Only after a confirmed `abort`: a device that streams to nobody switches its bridge off by itself.
             off?;
-            client.ask(&PlainCommand::stream(0))
+            client.ask(&StationRequest::stream(0))
         }
         // Nothing is more important than a bridge that may be on.
         (_, Err(not_off @ ClientError::NotOff { .. })) => Err(not_off),
@@ -96,13 +96,13 @@ fn watch<L: Link>(
         "connected: {} {}, {} finger(s)",
         identity.name, identity.version, identity.fingers
     )));
-    match client.ask(&PlainCommand::Events(true)) {
+    match client.ask(&StationRequest::events(true)) {
         Ok(()) => {}
         // Firmware from before there were events.
         Err(error) if error.refusal().is_some() => {}
         Err(error) => return Err(error),
     }
-    client.ask(&PlainCommand::stream(interval_ms))?;
+    client.ask(&StationRequest::stream(interval_ms))?;
     let mut silence = Silence::new(interval_ms, client);
     while !people.is_closing() {
         let notice = match client.next_telemetry(POLL_INTERVAL) {
@@ -139,8 +139,8 @@ fn event_text(received: &ReceivedEvent) -> String {
 fn carry_out<L: Link>(client: &mut Client<L>, order: Order) -> Result<String, ClientError> {
     let (done, text) = match order {
         Order::Off => (client.switch_off(), BRIDGE_OFF.into()),
-        Order::Arm => (client.ask(&PlainCommand::Arm), format!("`{}`: ok", order.word())),
-        Order::Clear => (client.ask(&PlainCommand::Clear), format!("`{}`: ok", order.word())),
+        Order::Arm => (client.ask(&StationRequest::Arm), format!("`{}`: ok", order.word())),
+        Order::Clear => (client.ask(&StationRequest::Clear), format!("`{}`: ok", order.word())),
     };
     match done {
         Ok(()) => Ok(text),

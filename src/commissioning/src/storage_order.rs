@@ -18,4 +18,3 @@ vocabulary! {
         Forget = "forget",
     }
 }
-

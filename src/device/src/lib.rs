@@ -36,7 +36,7 @@ pub use state_name::StateName;
 pub use station::Station;
 pub use telemetry::{Telemetry, TelemetryFields};
 pub use thermal_learner::Flux;
-pub use thermal_settings::{TICK_HZ, TICK_S};
+pub use thermal_settings::{TICK_HZ, TICK_S, Vocabulary};
 pub use trigger_edge::TriggerEdge;
 
 /// Scans of all eight analogue signals of one finger per second: 16 000, of which 16 are summed for each control tick.

@@ -30,6 +30,18 @@ impl TelemetryFields {
         self.0 & 1 << place != 0
     }
 
+    /// The fields of both sets.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// The set without the fields of another.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
     /// Whether a field is in both sets.
     pub const fn intersects(self, other: Self) -> bool {
         self.0 & other.0 != 0

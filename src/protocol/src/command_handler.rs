@@ -12,8 +12,8 @@ use thermal_device::command::{
 use thermal_device::learning::PersonState;
 use thermal_device::{FingerIndex, StateName, TICK_S};
 use thermal_settings::{
-    Person, PersonCode, Persons, Settings, SettingsRecord, StoredDevice, StoredSettings,
-    WordList, encode_settings_record,
+    Person, PersonCode, Persons, Settings, SettingsRecord, StoredDevice, StoredSettings, WordList,
+    encode_settings_record,
 };
 use thermal_wire::request::{DeviceRequest, PersonRequest, SessionRequest};
 use thermal_wire::words::{expect_end, read_word};
@@ -218,7 +218,9 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 self.checksums = switch.is_on();
                 Reply::DONE
             }
-            DeviceRequest::Save => return Self::save_or_forget(StorageOrder::Save, finger, execute),
+            DeviceRequest::Save => {
+                return Self::save_or_forget(StorageOrder::Save, finger, execute);
+            }
             DeviceRequest::ForgetAll => {
                 return Self::save_or_forget(StorageOrder::Forget, finger, execute);
             }

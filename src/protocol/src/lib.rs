@@ -25,6 +25,7 @@ pub use line_checksum::{ChecksumError, OutgoingLine, line_checksum, strip_checks
 pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
 pub use person::{PersonCodes, PersonReply};
 pub use reply::Reply;
+pub use station_command::check_line;
 pub use telemetry::UnsolicitedLine;
 pub use upload::UploadError;
 

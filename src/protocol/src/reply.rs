@@ -11,8 +11,8 @@ use thermal_device::safety::{SelfTestReport, SideLine, TripCause};
 use thermal_device::sense::Samples;
 use thermal_device::{Flux, SCANS_PER_SECOND, TICK_HZ};
 use thermal_settings::{DisplaySurface, FluxSensor};
-use thermal_wire::{Argument as _, LineBuffer};
 use thermal_wire::telemetry::{TUNED_WORD, UNTUNED_WORD};
+use thermal_wire::{Argument as _, LineBuffer};
 
 use crate::BoardStatus;
 use crate::person::{PersonCodes, PersonReply};

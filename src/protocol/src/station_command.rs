@@ -4,7 +4,8 @@ use contact_model::contact_law::ContactLaw;
 use contact_model::material::{Material, Surface};
 use thermal_device::command::{ChosenContactLaw, ChosenMaterial, Command, ObjectBody};
 use thermal_device::safety::Setpoint;
-use thermal_device::stimulus::{CourseEnd, CourseStart, Hold, PlayOrder};
+use thermal_device::stimulus::{Hold, PlayOrder};
+use thermal_wire::Request;
 use thermal_wire::request::StationRequest;
 
 use crate::Error;
@@ -61,8 +62,9 @@ pub fn station_work(request: &StationRequest, display: &Surface) -> Result<Stati
             };
             Command::Material(chosen(CUSTOM_MATERIAL_NAME, &properties)?)
         }
-        StationRequest::Material { material } => {
-            Command::Material(chosen(material.name(), material.properties())?)
+        StationRequest::Material { ref name } => {
+            let (name, properties) = name.find()?;
+            Command::Material(chosen(name, properties)?)
         }
         StationRequest::ObjectAtRoomTemperature => Command::Object(None),
         StationRequest::HalfSpace => Command::Body(ObjectBody::HalfSpace),
@@ -92,10 +94,8 @@ pub fn station_work(request: &StationRequest, display: &Surface) -> Result<Stati
         },
         StationRequest::Play { order } => Command::Play(order),
         StationRequest::Pulse { base_c, target_c, rise_k_s, hold_s, return_k_s, order } => {
-            let at_once =
-                PlayOrder { start: CourseStart::Now, play_count: 1, end: CourseEnd::default() };
             let pulse = Pulse { base_c, target_c, rise_k_s, hold_s, return_k_s };
-            return Ok(StationWork::Pulse(pulse, order.unwrap_or(at_once)));
+            return Ok(StationWork::Pulse(pulse, order.unwrap_or(PlayOrder::ONCE_NOW)));
         }
         StationRequest::SkinOfSensor => Command::AssumeSkin(None),
         StationRequest::AssumedSkin { celsius } => Command::AssumeSkin(Some(celsius.celsius())),
@@ -107,4 +107,15 @@ pub fn station_work(request: &StationRequest, display: &Surface) -> Result<Stati
         StationRequest::Raw => Command::Raw,
         StationRequest::Tune => Command::Tune,
     }))
+}
+
+/// Reads a line without its address as a device with this display does, without executing it.
+///
+/// # Errors
+/// The line is no request, or the contact model cannot represent its material.
+pub fn check_line(line: &str, display: &Surface) -> Result<(), Error> {
+    match Request::read(line)? {
+        Request::Station(request) => station_work(&request, display).map(drop),
+        _ => Ok(()),
+    }
 }

@@ -2,9 +2,9 @@
 
 use core::fmt;
 
+use thermal_device::FingerIndex;
 use thermal_device::command::{self, Command, FluxState, WithSourceFinger};
 use thermal_device::events::{DeviceEvent, UnsolicitedReport};
-use thermal_device::FingerIndex;
 use thermal_wire::LineBuffer;
 use thermal_wire::telemetry::{FLUX_FIELDS, TelemetryLine};
 

@@ -294,10 +294,10 @@ fn safety_limits_hold_for_any_samples_and_lines() {
 fn safety_limits_hold_for_any_object_under_a_finger() {
     let (accepted, sent) = (Cell::new(0), Cell::new(0));
     let temperatures = prop_oneof![Just(-20.0), Just(60.0), -20.0..60.0];
-    let scenarios = (upload(), temperatures, 0.05..5.0, select(&AssumedFinger::PROTOCOL_WORDS));
+    let scenarios = (upload(), temperatures, 0.05..5.0, select(AssumedFinger::ALL));
     let count = TickCount::default();
     let mut runner = TestRunner::new(ProptestConfig::with_cases(48));
-    let outcome = runner.run(&scenarios, |(upload, object_c, force_n, (finger, _))| {
+    let outcome = runner.run(&scenarios, |(upload, object_c, force_n, finger)| {
         let mut bench = TestBench::new();
         bench.plate_responds = true;
         send(&mut bench, &format!("finger {finger}"))?;

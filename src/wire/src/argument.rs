@@ -45,7 +45,16 @@ macro_rules! vocabularies {
     )+};
 }
 
-vocabularies!(AssumedFinger, ContactModel, CourseEnd, CourseStart, Law, Switch, TemperatureKind, ThermistorId);
+vocabularies!(
+    AssumedFinger,
+    ContactModel,
+    CourseEnd,
+    CourseStart,
+    Law,
+    Switch,
+    TemperatureKind,
+    ThermistorId
+);
 
 vocabulary! {
     /// Whether something is to happen.

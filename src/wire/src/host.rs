@@ -1,6 +1,7 @@
 //! What a host needs beside the device: readers of lines, and the declarations as tables.
 
 mod read_telemetry;
+mod requests;
 
 use std::string::String;
 use std::string::ToString as _;
@@ -9,8 +10,9 @@ use std::vec::Vec;
 use thermal_device::StateName;
 use thermal_device::safety::Fault;
 
-pub use crate::telemetry::{COLUMNS, Telemetry};
 use crate::telemetry::FIELDS_OF_EVERY_LINE;
+pub use crate::telemetry::{COLUMNS, Telemetry};
+pub use requests::{upload, upload_course};
 
 /// What a word from the device can be, beside `-`.
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +117,7 @@ pub fn fault(word: &str) -> Option<Fault> {
 pub fn state(word: &str, fault_word: &str) -> Option<StateName> {
     // Every line of telemetry comes here, and the faults are many: they are searched only for a word that no other state has.
     let mut without_fault = StateName::WITHOUT_FAULT.into_iter();
-    without_fault.find(|state| state.name() == word).or_else(|| {
-        fault(fault_word).map(StateName::Tripped).filter(|state| state.name() == word)
-    })
+    without_fault
+        .find(|state| state.name() == word)
+        .or_else(|| fault(fault_word).map(StateName::Tripped).filter(|state| state.name() == word))
 }

@@ -27,5 +27,5 @@ pub use line_buffer::LineBuffer;
 pub use number::{Number, Quantity, Whole};
 pub use read_error::{QuotedWordExcerpt, ReadError};
 pub use request::Request;
-pub use special_arguments::{KnownMaterial, Millimetres, PointOrClear};
+pub use special_arguments::{MaterialName, Millimetres, PointOrClear};
 pub use upload::UploadLine;

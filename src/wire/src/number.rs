@@ -7,9 +7,9 @@ use contact_model::fixed_point::{Celsius, rounded_units, saturated, units_to_f64
 use fixed::types::I32F32;
 use thermal_settings::Range;
 
+use crate::ReadError;
 use crate::argument::Argument;
 use crate::words::{Words, read_fixed_point_in_range, read_whole_number_in_range};
-use crate::ReadError;
 
 /// A quantity that a host sends.
 pub trait Quantity {

@@ -25,6 +25,11 @@ impl From<&str> for QuotedWordExcerpt {
 }
 
 impl QuotedWordExcerpt {
+    /// The excerpt without quotes.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
     /// Whether there is no word.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()

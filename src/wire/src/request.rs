@@ -13,13 +13,13 @@ use thermal_device::safety::ThermistorId;
 use thermal_device::stimulus::PlayOrder;
 use thermal_settings::{DisplaySurface, FluxSensor, PersonCode};
 
+use crate::ReadError;
 use crate::argument::{Argument, PersonData, Switch};
 use crate::number::{Number, Whole};
 use crate::quantity::*;
 use crate::setting::{Setting, SettingNumber};
-use crate::special_arguments::{KnownMaterial, Millimetres, PointOrClear};
+use crate::special_arguments::{MaterialName, Millimetres, PointOrClear};
 use crate::words::{Words, expect_end, read_word, word_or_empty};
-use crate::ReadError;
 
 /// Words with which a line of a form begins, and whether arguments follow.
 struct Form {
@@ -133,7 +133,7 @@ requests! {
             slope_rad: Number<Slope>,
         };
         /// The object's material by its name.
-        "material" => Material { material: KnownMaterial };
+        "material" => Material { name: MaterialName };
         /// The object has the room's temperature before contact.
         "object" "room" => ObjectAtRoomTemperature;
         /// The object is an endless block of its material.
@@ -319,15 +319,14 @@ fn place_of_form(command: &str, words: &mut Words<'_>) -> Result<usize, ReadErro
             *words = rest;
             Ok(place)
         }
-        (Some(known), _) => {
-            Err(ReadError::UnknownSecondWord(known, word_or_empty(words).into()))
-        }
+        (Some(known), _) => Err(ReadError::UnknownSecondWord(known, word_or_empty(words).into())),
     }
 }
 
 /// An error in the word after a command, where other words may stand, too.
 fn with_second_words(command: &str, words: &Words<'_>, error: ReadError) -> ReadError {
-    let form = FORMS.iter().find(|form| form.words.len() > 1 && form.words.first() == Some(&command));
+    let form =
+        FORMS.iter().find(|form| form.words.len() > 1 && form.words.first() == Some(&command));
     let first = form.and_then(|form| form.words.first());
     match (error, first) {
         (ReadError::NotANumber(range, word), Some(command))

@@ -9,42 +9,43 @@ use thermal_device::events::{DeviceEventKind, EventKinds};
 use thermal_device::stimulus::{CourseEnd, CourseStart, PlayOrder};
 use thermal_settings::{Vocabulary as _, WordList};
 
-use crate::ReadError;
 use crate::argument::Argument;
 use crate::number::{Number, Quantity as _};
 use crate::quantity::{Film, Reference, Repeats, Thickness};
 use crate::telemetry::{self, DEFAULT_FIELDS, NO_FIELDS};
 use crate::words::{Words, read_whole_number_in_range, skip_if_next_is, word_or_empty};
+use crate::{QuotedWordExcerpt, ReadError};
 
-/// A material of [`MATERIALS`], by its name.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KnownMaterial(&'static (&'static str, Material));
+/// Name of a material.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MaterialName(QuotedWordExcerpt);
 
-impl KnownMaterial {
-    /// The material with this name.
-    pub fn named(name: &str) -> Option<Self> {
-        MATERIALS.iter().find(|(known, _)| *known == name).map(Self)
-    }
-
-    /// Its name.
-    pub const fn name(self) -> &'static str {
-        self.0.0
-    }
-
-    /// Its properties.
-    pub const fn properties(self) -> &'static Material {
-        &self.0.1
+impl MaterialName {
+    /// The material of [`MATERIALS`] with this name, and its name there.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn find(&self) -> Result<(&'static str, &'static Material), ReadError> {
+        let known = MATERIALS.iter().find(|(name, _)| *name == self.0.as_str());
+        let (name, properties) = known.ok_or_else(|| ReadError::UnknownMaterial(self.0.clone()))?;
+        Ok((name, properties))
     }
 }
 
-impl Argument for KnownMaterial {
+impl From<&str> for MaterialName {
+    fn from(name: &str) -> Self {
+        Self(name.into())
+    }
+}
+
+impl Argument for MaterialName {
     fn read(words: &mut Words<'_>) -> Result<Self, ReadError> {
-        let word = word_or_empty(words);
-        Self::named(word).ok_or(ReadError::UnknownMaterial(word.into()))
+        let name = Self::from(word_or_empty(words));
+        name.find().map(|_| name)
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, " {}", self.name())
+        write!(f, " {}", self.0.as_str())
     }
 }
 
@@ -134,8 +135,7 @@ impl Argument for Millimetres {
 /// What is behind a slab: `insulated`, `held`, or `film` with its coefficient.
 impl Argument for Back {
     fn read(words: &mut Words<'_>) -> Result<Self, ReadError> {
-        const BACKS: &WordList =
-            &WordList { kind: "back", words: &["insulated", "held", "film"] };
+        const BACKS: &WordList = &WordList { kind: "back", words: &["insulated", "held", "film"] };
         Ok(match word_or_empty(words) {
             "insulated" => Self::Insulated,
             "held" => Self::Held,

@@ -2,15 +2,17 @@
 
 use core::fmt;
 
-use thermal_device::command::FluxState;
-use thermal_device::TelemetryFields;
 #[cfg(feature = "host")]
 use thermal_device::StateName;
+use thermal_device::TelemetryFields;
+use thermal_device::command::FluxState;
 
-use crate::kind::{Amperes, Count, Kind, Knowledge, Newtons, Temperature, UNKNOWN_WORD, WattsPerSquareMetre};
 use crate::LineBuffer;
 #[cfg(feature = "host")]
 use crate::host::Column;
+use crate::kind::{
+    Amperes, Count, Kind, Knowledge, Newtons, Temperature, UNKNOWN_WORD, WattsPerSquareMetre,
+};
 
 /// Word in `state` for a tile that was identified or set.
 pub const TUNED_WORD: &str = "tuned";
@@ -143,8 +145,10 @@ pub const DEFAULT_FIELDS: TelemetryFields = TelemetryFields::of_first(FIELDS_OF_
 /// All fields.
 pub const ALL_FIELDS: TelemetryFields = TelemetryFields::of_first(NAMES.len());
 /// The fields of the heat-flux sensor.
-pub const FLUX_FIELDS: TelemetryFields =
-    NO_FIELDS.with(Index::flux_w_m2 as usize).with(Index::surface_c as usize).with(Index::known as usize);
+pub const FLUX_FIELDS: TelemetryFields = NO_FIELDS
+    .with(Index::flux_w_m2 as usize)
+    .with(Index::surface_c as usize)
+    .with(Index::known as usize);
 
 /// Place in a line of the field with this name.
 pub fn place_of_field(name: &str) -> Option<usize> {

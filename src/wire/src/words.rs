@@ -69,7 +69,10 @@ pub fn read_fixed_point_in_range(
 /// # Errors
 /// Those of [`read_fixed_point_in_range`].
 #[inline(never)]
-pub fn read_number_in_range(words: &mut Words<'_>, range: &'static Range) -> Result<f64, ReadError> {
+pub fn read_number_in_range(
+    words: &mut Words<'_>,
+    range: &'static Range,
+) -> Result<f64, ReadError> {
     let value = read_fixed_point_in_range(words, range)?;
     Ok(units_to_f64(value.to_bits(), I32F32::FRAC_NBITS))
 }

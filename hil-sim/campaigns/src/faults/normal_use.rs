@@ -16,6 +16,7 @@ use thermal_sim::scene::Scene;
 use super::drawn_course::course_tables;
 use super::touch::{FORCE_N, LAYERED_SKIN_MAX_C, SKINS_C, log_uniform};
 use super::{DrawnDevice, Touch, scene_text};
+use thermal_device::Vocabulary as _;
 
 /// Length of a session, s, after the time in which the device is armed and settles.
 const SESSION_S: f64 = 120.0;
@@ -54,7 +55,7 @@ impl UseSession {
             Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, &format!("session {number}")));
         let mut device = DrawnDevice::new(seed, number / DrawnDevice::CAMPAIGNS);
         let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
-        let (law, _) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
+        let law = Law::WORDS.words[draw.random_range(0..Law::WORDS.words.len())];
         let object_c = draw.random_range(17.0..=41.0);
         let held_c = draw.random_bool(HELD).then(|| draw.random_range(15.0..=42.0));
         let course_seed = stream_seed(seed, &format!("session {number} course"));

@@ -20,6 +20,7 @@ use super::drawn_course::course_tables;
 use super::normal_use::press;
 use super::scene_text::host_line;
 use super::touch::{FORCE_N, SKINS_C, log_uniform};
+use thermal_device::Vocabulary as _;
 
 /// True surface of the display without a fault, °C.
 const SURFACE_C: (f64, f64) = (14.0, 43.0);
@@ -60,7 +61,7 @@ impl SoundCampaign {
         let device = DrawnDevice::new(seed, number / DrawnDevice::CAMPAIGNS);
         let own = stream_seed(seed, &format!("sound campaign {number}"));
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(own);
-        let (law, _) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
+        let law = Law::WORDS.words[draw.random_range(0..Law::WORDS.words.len())];
         let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
         let appears_s = [0.0, DURATION_S][usize::from(draw.random_bool(0.5))];
         let mut text = format!(
@@ -152,7 +153,7 @@ fn commands(draw: &mut Xoshiro256PlusPlus, t_s: f64) -> String {
             return host_line(&format!("object {object_c:.3}"), t_s) + &start;
         }
         5 => {
-            let (law, _) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
+            let law = Law::WORDS.words[draw.random_range(0..Law::WORDS.words.len())];
             format!("law {law}")
         }
         6 => return course_tables(draw.random(), t_s, DURATION_S),

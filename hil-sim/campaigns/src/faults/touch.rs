@@ -10,6 +10,7 @@ use thermal_plant::sensors::FluxParams;
 
 use super::scene_text;
 use crate::fidelity::layer_keys;
+use thermal_device::Vocabulary as _;
 
 /// Time at which a line about a slab is sent, s: before any fault.
 const SLAB_LINE_S: f64 = 0.01;
@@ -74,8 +75,8 @@ impl Touch {
         // A scene file holds 63 bits.
         let seed = seed >> 1;
         let tissue = ["layered", "layered", "homogeneous"][draw.random_range(0..3)];
-        let words = AssumedFinger::PROTOCOL_WORDS;
-        let (assumed, _) = words[draw.random_range(0..words.len())];
+        let words = AssumedFinger::WORDS.words;
+        let assumed = words[draw.random_range(0..words.len())];
         let skin_c = if tissue == "layered" { skin_c.min(LAYERED_SKIN_MAX_C) } else { skin_c };
         let mut touch = Self {
             skin_c,

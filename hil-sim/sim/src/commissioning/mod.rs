@@ -13,7 +13,7 @@ mod surroundings;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
-use thermal_client::client::PlainCommand;
+use thermal_client::client::SessionRequest;
 use thermal_client::commissioning::SurroundingsError;
 use thermal_plant::parameters::{Tolerance, relative};
 use thermal_plant::{ConfigError, Params};
@@ -53,7 +53,7 @@ pub fn settings_for_scene(scene: &Scene) -> Result<Vec<String>, CommissionError>
     };
     lines.extend(flux_sensor_line(&scene.params));
     if scene.measured_surface {
-        lines.push(PlainCommand::DisplaySurface(display_surface(scene)).to_string());
+        lines.push(SessionRequest::display_surface(display_surface(scene)).to_string());
     }
     Ok(lines)
 }
@@ -63,7 +63,7 @@ pub fn settings_for_scene(scene: &Scene) -> Result<Vec<String>, CommissionError>
 pub fn flux_sensor_line(params: &Params) -> Option<String> {
     let counts_per_w_m2 = params.flux.as_ref()?.counts_per_w_m2;
     let sensor = FluxSensor { counts_per_w_m2, ..FluxSensor::DESIGNED };
-    Some(PlainCommand::FluxSensor(Some(sensor)).to_string())
+    Some(SessionRequest::flux_sensor(Some(sensor)).to_string())
 }
 
 /// The surface that the device of a scene takes for that of its display: the measured one, if it was measured.

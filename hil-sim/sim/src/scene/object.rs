@@ -5,8 +5,8 @@ use std::ops::Range;
 use contact_model::material::{MATERIALS, Material, Surface, find};
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::slab::{BackBoundary, Layer, Medium};
-use thermal_protocol::Request;
-use thermal_settings::Settings;
+use thermal_protocol::check_line;
+use thermal_settings::DisplaySurface;
 use toml::Spanned;
 
 use super::file::{self, Number};
@@ -34,7 +34,7 @@ impl Object {
             BackBoundary::Film { film_w_m2k, .. } => format!("film {film_w_m2k}"),
         };
         let line = format!("object slab {}mm {back}", in_mm(thickness_m));
-        Request::parse(&line, &Settings::default()).is_ok().then_some(line)
+        check_line(&line, DisplaySurface::NOMINAL.surface()).is_ok().then_some(line)
     }
 
     /// Its layers, from the touched face down, and its back, on one line: by the name of a material, or by conductivity and
@@ -235,8 +235,8 @@ fn custom(
     let [conductivity_w_mk, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad] = values;
     let surface = Surface { conductivity_w_mk, roughness_um, slope_rad };
     let material = Material { surface, density_kg_m3, specific_heat_j_kgk };
-    match Request::parse(&custom_line(&material), &Settings::default()) {
-        Ok(_) => Ok(material),
+    match check_line(&custom_line(&material), DisplaySurface::NOMINAL.surface()) {
+        Ok(()) => Ok(material),
         Err(refused) => {
             let problem = format!("object: the device would answer {:?}", refused.to_string());
             Err(source.error(Some(span.clone()), problem))

@@ -21,6 +21,7 @@ use super::plant::params;
 use super::source::{SceneError, Source};
 use super::{AssumedFinger, Draws, Force, HostLine, Scene};
 use crate::processor::ChipState;
+use thermal_device::Vocabulary as _;
 
 /// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
 const SETTLE_S: f64 = 8.0;
@@ -188,10 +189,9 @@ fn chip(source: &Source<'_>, device: &file::Device) -> Result<ChipState, SceneEr
 
 /// The control law of a name, with the names of the device's protocol.
 fn law(source: &Source<'_>, name: &Spanned<String>) -> Result<Law, SceneError> {
-    let known = Law::PROTOCOL_WORDS.iter().find(|(word, _)| word == name.get_ref());
-    known.map(|(_, law)| *law).ok_or_else(|| {
-        let words: Vec<_> = Law::PROTOCOL_WORDS.iter().map(|(word, _)| *word).collect();
-        let problem = format!("law = {:?}; known are {}", name.get_ref(), words.join(", "));
+    Law::of_word(name.get_ref()).ok_or_else(|| {
+        let words = Law::WORDS.words.join(", ");
+        let problem = format!("law = {:?}; known are {words}", name.get_ref());
         source.error(Some(name.span()), problem)
     })
 }

@@ -3,8 +3,7 @@
 use std::time::Duration;
 
 use thermal_device::events::{DeviceEvent, DeviceEventKind};
-
-use super::fields::in_table;
+use thermal_settings::Vocabulary as _;
 
 /// An event as a client received it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +26,7 @@ impl ReceivedEvent {
         let event = DeviceEvent {
             tick: tick.parse().ok()?,
             microseconds: microseconds.parse().ok()?,
-            kind: in_table(&DeviceEventKind::PROTOCOL_WORDS, kind)?,
+            kind: DeviceEventKind::of_word(kind)?,
         };
         Some((Self { finger, event, at }, event.tick))
     }

@@ -70,12 +70,6 @@ pub fn number_or_unknown(word: &str) -> Option<Option<f64>> {
     }
 }
 
-/// The value with this word in a table of the protocol.
-pub fn in_table<T: Copy>(table: &[(&str, T)], word: &str) -> Option<T> {
-    let found = table.iter().find(|(known, _)| *known == word);
-    found.map(|(_, value)| *value)
-}
-
 /// What is known of a finger, by its word.
 pub fn knowledge(word: &str) -> Option<FingerKnowledge> {
     let mut all = FingerKnowledge::ALL.into_iter();

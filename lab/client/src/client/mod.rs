@@ -9,7 +9,6 @@ mod event;
 mod fields;
 mod off;
 mod person;
-mod plain_command;
 mod query;
 mod reply;
 mod streams;
@@ -34,9 +33,6 @@ pub use error::ClientError;
 pub use event::ReceivedEvent;
 pub use fields::Fields;
 pub use person::{EnrolPerson, PersonReport, person_data};
-pub use plain_command::{
-    PlainCommand, THERMISTORS, thermistor, thermistor_word, upload, upload_course,
-};
 pub use query::{
     Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryContactLaw,
     QueryDisplaySurface, QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryPerson,
@@ -48,7 +44,10 @@ pub use reply::{
 };
 pub use streams::longest_gap;
 pub use telemetry::{ReceivedTelemetry, Telemetry};
+pub use thermal_wire::UploadLine;
 pub use thermal_wire::host::Column as TelemetryColumn;
+pub use thermal_wire::host::{upload, upload_course};
+pub use thermal_wire::request::{DeviceRequest, PersonRequest, SessionRequest, StationRequest};
 
 /// Timeout of an answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
@@ -72,6 +71,21 @@ pub trait Command: fmt::Display {
     /// Reads the answer after `ok`; `None` if it is not understood.
     fn read_reply(&self, reply: &Fields<'_>) -> Option<Self::Reply>;
 }
+
+/// Requests whose answer is `ok` alone.
+macro_rules! requests_without_reply {
+    ($($requests:ty),+) => {$(
+        impl Command for $requests {
+            type Reply = ();
+
+            fn read_reply(&self, reply: &Fields<'_>) -> Option<()> {
+                reply.text().is_empty().then_some(())
+            }
+        }
+    )+};
+}
+
+requests_without_reply!(DeviceRequest, PersonRequest, SessionRequest, StationRequest, UploadLine);
 
 /// Numbers of lines that a client did not receive as they were sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -316,8 +330,8 @@ impl<L: Link> Client<L> {
     /// # Errors
     /// As [`ask`](Self::ask).
     pub fn abort_and_end_stream(&mut self, finger: Option<u8>) -> Result<(), ClientError> {
-        let off = self.ask_finger(finger, &PlainCommand::Abort);
-        let no_stream = self.ask_finger(finger, &PlainCommand::stream(0));
+        let off = self.ask_finger(finger, &StationRequest::Abort);
+        let no_stream = self.ask_finger(finger, &StationRequest::stream(0));
         off.and(no_stream)
     }
 
@@ -543,7 +557,8 @@ impl<L: Link> Client<L> {
         match (words.next(), words.next()) {
             (Some("stream"), Some(interval)) => {
                 let interval_ms = interval.parse().map_or(0.0, f64::ceil);
-                let mut fields = words.filter_map(place_of_field).fold(NO_FIELDS, TelemetryFields::with);
+                let mut fields =
+                    words.filter_map(place_of_field).fold(NO_FIELDS, TelemetryFields::with);
                 if fields == NO_FIELDS {
                     fields = DEFAULT_FIELDS;
                 }

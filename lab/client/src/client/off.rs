@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{Client, ClientError, PlainCommand, QueryIdentity, QueryState};
+use super::{Client, ClientError, QueryIdentity, QueryState, StationRequest};
 use crate::link::{Link, LinkError};
 
 /// Times that the bridges are ordered off until the device confirms it, and the time in which it must do so, altogether.
@@ -40,7 +40,7 @@ impl<L: Link> Client<L> {
     }
 
     fn try_to_switch_off(&mut self) -> Result<(), ClientError> {
-        self.ask(&PlainCommand::Abort)?;
+        self.ask(&StationRequest::Abort)?;
         let fingers = self.ask(&QueryIdentity)?.fingers;
         for finger in 0..fingers {
             let address = (fingers > 1).then_some(finger);

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use thermal_settings::{Person, PersonCode};
+use thermal_wire::request::PersonRequest;
 
 use super::{Command, Fields};
 
@@ -34,7 +35,7 @@ pub struct EnrolPerson(pub PersonCode);
 
 impl fmt::Display for EnrolPerson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "person enrol {}", self.0)
+        PersonRequest::Enrol { code: self.0 }.fmt(f)
     }
 }
 

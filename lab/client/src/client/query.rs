@@ -6,27 +6,27 @@ use contact_model::contact_law::ContactLaw;
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::safety::ThermistorId;
-use thermal_settings::{DisplaySurface, PersonCode};
+use thermal_settings::{DisplaySurface, PersonCode, Vocabulary as _};
+use thermal_wire::PointOrClear;
+use thermal_wire::request::{DeviceRequest, PersonRequest, SessionRequest, StationRequest};
 
-use super::fields::in_table;
 use super::person::{PersonReport, read_codes};
-use super::plain_command::thermistor_word;
 use super::reply::{
     BoardReport, CalibrationFit, Cause, FluxReport, IdentifiedTile, Identity, RawReadings,
     SelfTestReport, SettingsLine, Status,
 };
 use super::{Command, Fields};
 
-/// Declares the queries without arguments: type, line, type of the reply, and how it is read.
+/// Declares the queries without arguments: type, request, type of the reply, and how it is read.
 macro_rules! queries {
-    ($($(#[$doc:meta])+ $query:ident = $line:literal => $reply:ty, $read:expr;)+) => {$(
+    ($($(#[$doc:meta])+ $query:ident = $request:expr => $reply:ty, $read:expr;)+) => {$(
         $(#[$doc])+
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub struct $query;
 
         impl fmt::Display for $query {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str($line)
+                $request.fmt(f)
             }
         }
 
@@ -42,45 +42,45 @@ macro_rules! queries {
 
 queries! {
     /// Name, version, fingers, rates, protocol and capabilities.
-    QueryIdentity = "id" => Identity, Identity::read;
+    QueryIdentity = DeviceRequest::Identify => Identity, Identity::read;
     /// State, object and set-point.
-    QueryState = "state" => Status, Status::read;
+    QueryState = StationRequest::State => Status, Status::read;
     /// Why the device tripped; `None` if it has not.
-    QueryCause = "cause" => Option<Cause>, Cause::read;
+    QueryCause = StationRequest::Cause => Option<Cause>, Cause::read;
     /// The control law in use.
-    QueryLaw = "law" => Law,
-        |reply: &Fields<'_>| in_table(&Law::PROTOCOL_WORDS, reply.word("law")?);
+    QueryLaw = StationRequest::QueryLaw => Law,
+        |reply: &Fields<'_>| Law::of_word(reply.word("law")?);
     /// The finger that the device assumes.
-    QueryAssumedFinger = "finger" => AssumedFinger,
-        |reply: &Fields<'_>| in_table(&AssumedFinger::PROTOCOL_WORDS, reply.word("finger")?);
+    QueryAssumedFinger = StationRequest::QueryFinger => AssumedFinger,
+        |reply: &Fields<'_>| AssumedFinger::of_word(reply.word("finger")?);
     /// The contact law that is set.
-    QueryContactLaw = "contact" => ContactLaw, |reply: &Fields<'_>| Some(ContactLaw {
+    QueryContactLaw = StationRequest::QueryContactLaw => ContactLaw, |reply: &Fields<'_>| Some(ContactLaw {
         exponent: reply.number("exponent")?,
         hardness_pa: reply.number("hardness_pa")?,
         gap_w_m2k: reply.number("gap_w_m2k")?,
     });
     /// Result of the last identification of the tile, which is in use from then on.
-    TuneResult = "tune result" => IdentifiedTile, IdentifiedTile::read;
+    TuneResult = SessionRequest::TuneResult => IdentifiedTile, IdentifiedTile::read;
     /// The tile in use.
-    QueryMargins = "margins" => IdentifiedTile, IdentifiedTile::read;
+    QueryMargins = SessionRequest::Margins => IdentifiedTile, IdentifiedTile::read;
     /// Number of lines of the settings.
-    CountSettings = "settings" => usize, |reply: &Fields<'_>| reply.number("lines");
+    CountSettings = SessionRequest::CountSettings => usize, |reply: &Fields<'_>| reply.number("lines");
     /// What the last self-test measured.
-    QuerySelfTest = "self-test" => SelfTestReport, SelfTestReport::read;
+    QuerySelfTest = StationRequest::SelfTest => SelfTestReport, SelfTestReport::read;
     /// The converter's counts and the fault inputs.
-    QueryRaw = "raw" => RawReadings, RawReadings::read;
+    QueryRaw = StationRequest::Raw => RawReadings, RawReadings::read;
     /// Heat-flux sensor, its flux, and what is known of the finger by it; `None` without one.
-    QueryFlux = "flux" => Option<FluxReport>, FluxReport::read;
+    QueryFlux = SessionRequest::QueryFlux => Option<FluxReport>, FluxReport::read;
     /// The chosen person.
-    QueryPerson = "person" => PersonReport, PersonReport::read;
+    QueryPerson = PersonRequest::QueryPerson => PersonReport, PersonReport::read;
     /// Codes of the stored persons.
-    QueryPersons = "persons" => Vec<PersonCode>, read_codes;
+    QueryPersons = PersonRequest::List => Vec<PersonCode>, read_codes;
     /// Surface of the display.
-    QueryDisplaySurface = "surface" => DisplaySurface, |reply: &Fields<'_>| {
+    QueryDisplaySurface = SessionRequest::QueryDisplaySurface => DisplaySurface, |reply: &Fields<'_>| {
         (reply.numbers(DisplaySurface::NAMES)).map(DisplaySurface::from_array_rounded)
     };
     /// State of the board.
-    QueryBoard = "board" => BoardReport, BoardReport::read;
+    QueryBoard = DeviceRequest::Board => BoardReport, BoardReport::read;
 }
 
 /// A line of the settings, by its number from 1 on.
@@ -89,7 +89,7 @@ pub struct QuerySettings(pub usize);
 
 impl fmt::Display for QuerySettings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "settings {}", self.0)
+        SessionRequest::QuerySetting { number: self.0.into() }.fmt(f)
     }
 }
 
@@ -112,8 +112,8 @@ pub struct Calibrate {
 
 impl fmt::Display for Calibrate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let word = thermistor_word(self.thermistor);
-        write!(f, "calibrate {word} {:.3}", self.reference_c)
+        let point = PointOrClear::Point(self.reference_c.into());
+        SessionRequest::Calibrate { thermistor: self.thermistor, point }.fmt(f)
     }
 }
 

@@ -4,20 +4,19 @@ use std::fmt;
 use std::str::FromStr;
 
 use serde::{Serialize, Serializer};
-use thermal_commissioning::{SessionRequest, Setting};
 use thermal_device::StateName;
 use thermal_device::learning::{FingerKnowledge, FluxSensorTest};
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
-use thermal_protocol::{CONTACT_MODEL_WORDS, Request};
-use thermal_settings::{FluxSensor, Settings};
+use thermal_settings::{FluxSensor, Vocabulary as _};
+use thermal_wire::Request;
 use thermal_wire::host::{fault, finite, state};
+use thermal_wire::request::SessionRequest;
+use thermal_wire::setting::Setting;
 use thermal_wire::telemetry::{TUNED_WORD, UNTUNED_WORD};
 
 use super::Fields;
-use super::fields::{
-    fault_word, flux_sensor_numbers, in_table, knowledge, knowledge_word, state_word,
-};
+use super::fields::{fault_word, flux_sensor_numbers, knowledge, knowledge_word, state_word};
 
 /// Largest number of fingers that a device can have. The answer to `id` may be damaged before checksums are on, and a client loops over
 /// the number in it.
@@ -91,8 +90,7 @@ pub struct Status {
 }
 
 fn mode_word<S: Serializer>(mode: &ContactModel, serializer: S) -> Result<S::Ok, S::Error> {
-    let found = CONTACT_MODEL_WORDS.iter().find(|(_, known)| known == mode);
-    serializer.serialize_str(found.map_or("-", |(word, _)| word))
+    serializer.serialize_str(mode.name())
 }
 
 impl Status {
@@ -105,7 +103,7 @@ impl Status {
                 "room" => None,
                 word => Some(finite(word)?),
             },
-            mode: in_table(&CONTACT_MODEL_WORDS, reply.word("mode")?)?,
+            mode: ContactModel::of_word(reply.word("mode")?)?,
             setpoint_c: reply.number_or_unknown("setpoint_c")?,
             limited: reply.words().any(|word| word == "limited"),
             body: reply.word("body")?.into(),
@@ -234,8 +232,8 @@ impl FromStr for SettingsLine {
 
     /// Reads a line as the device would.
     fn from_str(line: &str) -> Result<Self, String> {
-        match Request::parse(line, &Settings::default()) {
-            Ok(Request::Commissioning(SessionRequest::Set(setting))) => {
+        match Request::read(line) {
+            Ok(Request::Session(SessionRequest::Set { setting })) => {
                 Ok(Self { text: line.into(), setting })
             }
             Ok(_) => Err(format!("'{line}'; lines of settings begin with 'set'")),
@@ -297,9 +295,7 @@ fn side_line(word: Option<&str>) -> Option<Option<SideLine>> {
     let Some(word) = word.filter(|word| *word != "-") else {
         return Some(None);
     };
-    let known = [SideLine::Follows, SideLine::StuckLow, SideLine::StuckHigh];
-    let known = known.into_iter().find(|known| known.name() == word);
-    known.map(Some)
+    SideLine::of_word(word).map(Some)
 }
 
 fn side_line_word<S: Serializer>(
@@ -314,8 +310,7 @@ fn flux_sensor_test(word: Option<&str>) -> Option<Option<FluxSensorTest>> {
     let Some(word) = word else {
         return Some(None);
     };
-    let mut all = FluxSensorTest::ALL.into_iter();
-    all.find(|known| known.name() == word).map(Some)
+    FluxSensorTest::of_word(word).map(Some)
 }
 
 fn flux_sensor_word<S: Serializer>(

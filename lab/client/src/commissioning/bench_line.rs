@@ -4,8 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use thermal_device::safety::ThermistorId;
-
-use crate::client::{thermistor, thermistor_word};
+use thermal_settings::Vocabulary as _;
 
 /// Largest resistor in place of a thermistor, ohm; range of the load, ohm; largest weight, N.
 const RESISTOR_MAX_OHM: f64 = 1e6;
@@ -181,7 +180,7 @@ impl fmt::Display for BenchRequest {
                 Part::Supply => f.write_str("fit supply"),
                 Part::LoadCell => f.write_str("fit load-cell"),
                 Part::Resistor(sensor, ohm) => {
-                    write!(f, "fit resistor {} {ohm}", thermistor_word(*sensor))
+                    write!(f, "fit resistor {} {ohm}", sensor.name())
                 }
                 Part::Thermistors => f.write_str("fit thermistors"),
                 Part::Load(ohm) => write!(f, "fit load {ohm}"),
@@ -190,7 +189,7 @@ impl fmt::Display for BenchRequest {
             },
             Self::Remove(removal) => match removal {
                 Removal::Resistor(sensor) => {
-                    write!(f, "remove resistor {}", thermistor_word(*sensor))
+                    write!(f, "remove resistor {}", sensor.name())
                 }
                 Removal::Load => f.write_str("remove load"),
                 Removal::Weight => f.write_str("remove weight"),
@@ -207,7 +206,7 @@ impl FromStr for BenchRequest {
     /// Reads a line; the error says what is wrong and what is allowed.
     fn from_str(line: &str) -> Result<Self, String> {
         let sensor = |word: &str| {
-            thermistor(word).ok_or_else(|| {
+            ThermistorId::of_word(word).ok_or_else(|| {
                 format!("unknown sensor '{word}'; known: display check sink skin room")
             })
         };

@@ -2,18 +2,18 @@
 
 use std::time::Duration;
 
-use thermal_commissioning::StorageOrder;
 use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
 use thermal_settings::{CODES_PER_ADC_SEGMENT, Settings};
+use thermal_wire::PointOrClear;
 
 use super::{
     CalibrationPoint, CommissionError, CommissioningEvent, CommissioningRecord, FluxCalibration,
     Surroundings, calibrate_flux,
 };
 use crate::client::{
-    Calibrate, Client, ClientError, CountSettings, IdentifiedTile, PlainCommand, QueryMargins,
-    QuerySettings, QueryState, THERMISTORS, TuneResult, thermistor_word,
+    Calibrate, Client, ClientError, CountSettings, DeviceRequest, IdentifiedTile, QueryMargins,
+    QuerySettings, QueryState, SessionRequest, StationRequest, TuneResult,
 };
 use crate::link::Link;
 
@@ -62,7 +62,7 @@ pub fn commission<L: Link>(
     let done = procedure.run();
     if done.is_err() {
         // The reason why it failed is reported; a link that is gone fails here, too.
-        let _ignored = client.ask_finger(finger, &PlainCommand::Abort);
+        let _ignored = client.ask_finger(finger, &StationRequest::Abort);
     }
     done
 }
@@ -124,10 +124,11 @@ pub fn clear_calibration<L: Link>(
     client: &mut Client<L>,
     finger: Option<u8>,
 ) -> Result<(), ClientError> {
-    client.ask_finger(finger, &PlainCommand::Abort)?;
-    THERMISTORS
-        .into_iter()
-        .try_for_each(|one| client.ask_finger(finger, &PlainCommand::ClearCalibration(one)))
+    client.ask_finger(finger, &StationRequest::Abort)?;
+    ThermistorId::ALL.into_iter().try_for_each(|one| {
+        let point = PointOrClear::Clear;
+        client.ask_finger(finger, &SessionRequest::Calibrate { thermistor: *one, point })
+    })
 }
 
 /// All settings of a device or of one of its fingers, as lines.
@@ -152,7 +153,7 @@ pub fn settings<L: Link>(
 /// # Errors
 /// The device refuses, trips, or is not armed in time.
 pub fn arm<L: Link>(client: &mut Client<L>, finger: Option<u8>) -> Result<(), CommissionError> {
-    client.ask_finger(finger, &PlainCommand::Arm)?;
+    client.ask_finger(finger, &StationRequest::Arm)?;
     for _ in 0..SELF_TEST_MS / POLL_MS {
         match client.ask_finger(finger, &QueryState)?.state {
             StateName::Armed => return Ok(()),
@@ -202,7 +203,7 @@ impl<L: Link> Procedure<'_, L> {
         arm(self.client, self.finger)?;
         self.start_step("tune again, with calibrated sensors");
         let tile = self.tune()?;
-        self.client.ask_finger(self.finger, &PlainCommand::Abort)?;
+        self.client.ask_finger(self.finger, &StationRequest::Abort)?;
         self.start_step("calibrate the skin's thermistor in a bath");
         self.calibrate_in_baths(ThermistorId::Skin, SKIN_C)?;
         self.start_step("calibrate the room's thermistor in a bath");
@@ -230,7 +231,7 @@ impl<L: Link> Procedure<'_, L> {
     fn save(&mut self) -> Result<Vec<String>, CommissionError> {
         self.start_step("save what was found");
         let settings = settings(self.client, self.finger)?;
-        self.client.ask(&PlainCommand::Store(StorageOrder::Save))?;
+        self.client.ask(&DeviceRequest::Save)?;
         expect_settings(self.client, self.finger, &settings)?;
         Ok(settings)
     }
@@ -245,7 +246,7 @@ impl<L: Link> Procedure<'_, L> {
 
     /// Makes the device identify its tile.
     fn tune(&mut self) -> Result<IdentifiedTile, CommissionError> {
-        self.client.ask_finger(self.finger, &PlainCommand::Tune)?;
+        self.client.ask_finger(self.finger, &StationRequest::Tune)?;
         for _ in 0..TUNE_S {
             self.wait_ms(1000)?;
             match self.client.ask_finger(self.finger, &TuneResult) {
@@ -268,7 +269,7 @@ impl<L: Link> Procedure<'_, L> {
             let distance_k = (hold_c - self.reference_c(ThermistorId::Display)?).abs();
             // The decimals that a person at the bench is told.
             let sent_c = (hold_c * 100.0).round() / 100.0;
-            self.client.ask_finger(self.finger, &PlainCommand::Hold(sent_c, None))?;
+            self.client.ask_finger(self.finger, &StationRequest::hold(sent_c, None))?;
             self.surroundings.notice(&CommissioningEvent::HoldStarted(hold_c));
             self.wait_ms((distance_k * MS_PER_DEGREE) as u64 + SETTLE_MS)?;
             let mut before_c = f64::NAN;
@@ -335,7 +336,7 @@ impl<L: Link> Procedure<'_, L> {
         thermistor: ThermistorId,
     ) -> Result<Option<String>, CommissionError> {
         let reference_c = self.reference_c(thermistor)?;
-        let sensor = thermistor_word(thermistor);
+        let sensor = thermistor.name();
         let command = Calibrate { thermistor, reference_c };
         match self.client.ask_finger(self.finger, &command) {
             Ok(fit) => {
@@ -375,7 +376,7 @@ fn require_points(
     why: String,
 ) -> Result<(), CommissionError> {
     if points < needed {
-        let sensor = thermistor_word(thermistor);
+        let sensor = thermistor.name();
         return Err(CommissionError::FewPoints { sensor, points, needed, why });
     }
     Ok(())

@@ -5,9 +5,9 @@ use std::fmt;
 use std::str::FromStr;
 
 use thermal_device::safety::ThermistorId;
+use thermal_settings::Vocabulary as _;
 
 use super::{BenchRequest, PhantomPlace};
-use crate::client::{thermistor, thermistor_word};
 
 /// Largest force on the display, N.
 const FORCE_MAX_N: f64 = 40.0;
@@ -41,9 +41,9 @@ pub enum SurroundingsRequest {
 impl fmt::Display for SurroundingsRequest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Reference(sensor) => write!(f, "reference {}", thermistor_word(*sensor)),
+            Self::Reference(sensor) => write!(f, "reference {}", sensor.name()),
             Self::Bath(sensor, celsius) => {
-                write!(f, "bath {} {celsius}", thermistor_word(*sensor))
+                write!(f, "bath {} {celsius}", sensor.name())
             }
             Self::Phantom(place) => {
                 let word = PhantomPlace::WORDS.iter().find(|(_, one)| one == place);
@@ -63,7 +63,7 @@ impl FromStr for SurroundingsRequest {
     fn from_str(line: &str) -> Result<Self, String> {
         let words: Vec<_> = line.split_ascii_whitespace().collect();
         let sensor = |word: &str| {
-            thermistor(word).ok_or_else(|| {
+            ThermistorId::of_word(word).ok_or_else(|| {
                 format!("unknown sensor '{word}'; known: display check sink skin room")
             })
         };

@@ -1,7 +1,7 @@
 //! Courses of temperature that a display follows, on the host: reading, reducing and uploading them.
 //!
 //! ```text
-//! CSV file -> read_course -> CourseFile -> Prepared: at most 128 points, none of which a device refuses -> upload_commands -> device
+//! CSV file -> read_course -> CourseFile -> Prepared: at most 128 points, none of which a device refuses -> upload_lines -> device
 //! ```
 
 mod prepared;
@@ -14,7 +14,7 @@ pub use reduce::{Reduced, reduce};
 
 use thermal_device::stimulus::TemperatureKind;
 
-use crate::client::{PlainCommand, upload_course};
+use crate::client::{UploadLine, upload_course};
 
 pub use thermal_device::stimulus::COURSE_POINTS_MAX;
 /// Largest error of a reduction that is played without being asked for, K.
@@ -195,8 +195,8 @@ impl Course {
         "t_s,celsius\n".to_owned() + &rows.collect::<String>()
     }
 
-    /// The commands that upload the course to a device, with absolute temperatures.
-    pub fn upload_commands(&self) -> Vec<PlainCommand> {
+    /// The lines that upload the course to a device, with absolute temperatures.
+    pub fn upload_lines(&self) -> Vec<UploadLine> {
         let points: Vec<_> = (self.0.iter()).map(|point| (point.t_s, point.celsius)).collect();
         upload_course(TemperatureKind::Absolute, &points)
     }

@@ -6,9 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use thermal_client::client::{
-    BoardReport, Client, ClientError, EnrolPerson, FluxReport, PersonReport, PlainCommand,
-    QueryBoard, QueryCause, QueryDisplaySurface, QueryFlux, QueryIdentity, QueryPerson,
-    QueryPersons, QueryRaw, QuerySelfTest, QueryState, Telemetry, person_data, upload_course,
+    BoardReport, Client, ClientError, DeviceRequest, EnrolPerson, FluxReport, PersonReport,
+    PersonRequest, QueryBoard, QueryCause, QueryDisplaySurface, QueryFlux, QueryIdentity,
+    QueryPerson, QueryPersons, QueryRaw, QuerySelfTest, QueryState, SessionRequest, StationRequest,
+    Telemetry, person_data, upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, Link, LinkError, ReceivedLine};
 use thermal_device::events::DeviceEventKind;
@@ -23,7 +24,7 @@ use crate::fake_device::{FakeDevice, answers, knows};
 #[test]
 fn a_refusal_has_the_devices_text() {
     let mut client = knows(&[("start", "err start needs arm first")]);
-    let error = client.ask(&PlainCommand::Start).unwrap_err();
+    let error = client.ask(&StationRequest::Start).unwrap_err();
     assert_eq!(error.refusal(), Some("start needs arm first"));
     assert_eq!(error.to_string(), "the device answers 'start' with 'err start needs arm first'");
 }
@@ -31,7 +32,7 @@ fn a_refusal_has_the_devices_text() {
 #[test]
 fn a_device_that_does_not_answer_is_given_up_after_two_seconds() {
     let mut client = FakeDevice::client(|_| Vec::new());
-    let error = client.ask(&PlainCommand::Arm).unwrap_err();
+    let error = client.ask(&StationRequest::Arm).unwrap_err();
     assert!(matches!(error, ClientError::TimedOut { .. }), "{error}");
     assert_eq!(error.to_string(), "the device does not answer 'arm' within 2 s");
 }
@@ -94,7 +95,7 @@ fn a_lost_answer_to_checksum_on_does_not_leave_both_ends_apart() {
         }
         answers(&answer)
     });
-    assert!(client.ask(&PlainCommand::Checksum(true)).is_err());
+    assert!(client.ask(&DeviceRequest::Checksum { switch: true.into() }).is_err());
     assert_eq!(client.query("state").unwrap(), "ok state=ready fault=-");
 }
 
@@ -177,7 +178,7 @@ fn a_bridge_that_is_not_confirmed_to_be_off_in_six_seconds_is_said() {
 #[test]
 fn what_is_no_answer_is_shown() {
     let garbage = |_: &str| answers("\u{fffd}\u{fffd}ok?\u{1}");
-    let error = FakeDevice::client(garbage).ask(&PlainCommand::Arm).unwrap_err();
+    let error = FakeDevice::client(garbage).ask(&StationRequest::Arm).unwrap_err();
     assert!(matches!(error, ClientError::NotUnderstood { .. }));
     assert!(error.to_string().contains("ok?"), "{error}");
     // An answer of another form.
@@ -188,7 +189,7 @@ fn what_is_no_answer_is_shown() {
     );
     let mut client = knows(&[("arm", "ok 7")]);
     assert!(matches!(
-        client.ask(&PlainCommand::Arm).unwrap_err(),
+        client.ask(&StationRequest::Arm).unwrap_err(),
         ClientError::NotUnderstood { .. }
     ));
 }
@@ -199,11 +200,11 @@ fn control_characters_of_a_device_are_shown_by_their_numbers() {
     const HOSTILE: &str = "err \u{1b}]0;title\u{7} \u{9b}2J \u{202e}off\u{7f}";
     let shown = r"err \u{1b}]0;title\u{7} \u{9b}2J \u{202e}off\u{7f}";
     let mut client = knows(&[("arm", HOSTILE)]);
-    let error = client.ask(&PlainCommand::Arm).unwrap_err();
+    let error = client.ask(&StationRequest::Arm).unwrap_err();
     assert_eq!(error.to_string(), format!("the device answers 'arm' with '{shown}'"));
     assert_eq!(client.query("arm").unwrap(), shown);
     let garbage = |_: &str| answers("\u{1b}c");
-    let error = FakeDevice::client(garbage).ask(&PlainCommand::Arm).unwrap_err();
+    let error = FakeDevice::client(garbage).ask(&StationRequest::Arm).unwrap_err();
     assert_eq!(error.to_string(), r"the answer to 'arm' is not understood: '\u{1b}c'");
 }
 
@@ -212,7 +213,7 @@ fn garbage_before_an_answer_is_counted_and_skipped() {
     let mut client = FakeDevice::client(|_| {
         ["", "rtfm", "T 12 armed 3", "k", "ok"].map(|line| (1, line.to_owned())).into()
     });
-    client.ask(&PlainCommand::Arm).unwrap();
+    client.ask(&StationRequest::Arm).unwrap();
     assert_eq!(client.counts().damaged, 3);
 }
 
@@ -224,9 +225,9 @@ fn the_answer_of_another_finger_is_not_taken() {
         ("@1 law", "@1 err tripped by dose; clear it first"),
         ("abort", "@3 err busy"),
     ]);
-    client.ask_finger(Some(2), &PlainCommand::Arm).unwrap();
-    assert!(client.ask_finger(Some(3), &PlainCommand::Arm).is_err());
-    assert_eq!(client.ask(&PlainCommand::Abort).unwrap_err().refusal(), Some("busy"));
+    client.ask_finger(Some(2), &StationRequest::Arm).unwrap();
+    assert!(client.ask_finger(Some(3), &StationRequest::Arm).is_err());
+    assert_eq!(client.ask(&StationRequest::Abort).unwrap_err().refusal(), Some("busy"));
 }
 
 #[test]
@@ -245,7 +246,7 @@ fn a_link_that_vanishes_is_an_error_at_once_and_the_reason_is_given() {
     let mut client = FakeDevice::client(|_| Vec::new());
     client.link().vanishes_at = Some(Duration::from_millis(300));
     let gone = ClientError::Link(LinkError::Gone("unplugged".into()));
-    assert_eq!(client.ask(&PlainCommand::Arm).unwrap_err(), gone);
+    assert_eq!(client.ask(&StationRequest::Arm).unwrap_err(), gone);
     assert!(client.wait(Duration::from_secs(1)).is_err());
     assert!(client.next_telemetry(Duration::from_secs(1)).is_err());
 }
@@ -302,19 +303,19 @@ fn with_checksums_damaged_answers_are_not_taken() {
         "law" => answers("ok law=pi"),
         other => answers(&format!("err unknown command '{other}'")),
     });
-    client.ask(&PlainCommand::Checksum(true)).unwrap();
+    client.ask(&DeviceRequest::Checksum { switch: true.into() }).unwrap();
     assert_eq!(client.query("law").unwrap(), "ok law=model");
     assert_eq!(client.counts().damaged, 2);
-    client.ask(&PlainCommand::Checksum(false)).unwrap();
+    client.ask(&DeviceRequest::Checksum { switch: false.into() }).unwrap();
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
 }
 
 #[test]
 fn abort_is_sent_to_a_device_whose_answers_do_not_come_through() {
     let mut client = FakeDevice::client(|_| Vec::new());
-    client.ask(&PlainCommand::Hold(41.0, None)).unwrap_err();
-    client.ask(&PlainCommand::Abort).unwrap_err();
-    client.ask_finger(Some(2), &PlainCommand::Abort).unwrap_err();
+    client.ask(&StationRequest::hold(41.0, None)).unwrap_err();
+    client.ask(&StationRequest::Abort).unwrap_err();
+    client.ask_finger(Some(2), &StationRequest::Abort).unwrap_err();
     let sent = &client.link().sent;
     for abort in ["abort", "@2 abort"] {
         assert!(sent.iter().any(|(_, line)| line == abort), "{sent:?}");
@@ -337,7 +338,7 @@ fn a_device_that_restarts_while_checksums_are_on_is_reached_again() {
         let sum = answer.bytes().fold(0, |sum, byte| sum ^ byte);
         answers(&if on { format!("{answer}*{sum:02X}") } else { answer })
     });
-    client.ask(&PlainCommand::Checksum(true)).unwrap();
+    client.ask(&DeviceRequest::Checksum { switch: true.into() }).unwrap();
     assert_eq!(client.query("law").unwrap(), "ok law=pi");
     // Restarts before this line.
     assert!(client.query("law model").is_err());
@@ -362,7 +363,7 @@ fn only_questions_and_numbered_lines_are_sent_again_after_a_damaged_line() {
             let sum = answer.bytes().fold(0, |sum, byte| sum ^ byte);
             answers(&format!("{answer}*{sum:02X}"))
         });
-        client.ask(&PlainCommand::Checksum(true)).unwrap();
+        client.ask(&DeviceRequest::Checksum { switch: true.into() }).unwrap();
         let accepted = client.query(line).unwrap() == "ok";
         let sent = &client.link().sent;
         let times = sent.iter().filter(|(_, sent)| sent.starts_with(line)).count();
@@ -403,7 +404,7 @@ fn events_and_telemetry_of_chosen_fields_are_read() {
     let mut client = knows(&[("stream 5 setpoint demand", "ok"), ("events on", "ok")]);
     let fields = TelemetryFields::NONE.with(0).with(6);
     client.ask(&PlainCommand::Stream(5, fields)).unwrap();
-    client.ask(&PlainCommand::Events(true)).unwrap();
+    client.ask(&StationRequest::events(true)).unwrap();
     client.link().sends(1, "E 1000 437 trigger");
     client.link().sends(2, "T 1005 stimulus 30.50000 -1.250 limited");
     let received = client.next_telemetry(Duration::from_millis(10)).unwrap().unwrap();
@@ -412,7 +413,7 @@ fn events_and_telemetry_of_chosen_fields_are_read() {
     assert!(telemetry.limited && telemetry.state == StateName::Stimulus);
     assert_eq!((telemetry.demand_a, telemetry.current_a), (Some(-1.25), None));
     assert_eq!(telemetry.evaluations, None);
-    assert_eq!((telemetry.flux_w_m2, telemetry.surface_c, telemetry.finger), (None, None, None));
+    assert_eq!((telemetry.flux_w_m2, telemetry.surface_c, telemetry.known), (None, None, None));
     let event = client.take_event().unwrap().event;
     assert_eq!((event.tick, event.microseconds, event.kind), (1000, 437, DeviceEventKind::Trigger));
     assert_eq!(client.take_event(), None);
@@ -522,7 +523,7 @@ fn the_answers_for_diagnosis_are_read() {
     });
     let surface = DisplaySurface::from_array_rounded([30.0, 1.25, 0.11]);
     assert_eq!(rough.ask(&QueryDisplaySurface).unwrap(), surface);
-    let lines = [surface, DisplaySurface::NOMINAL].map(PlainCommand::DisplaySurface);
+    let lines = [surface, DisplaySurface::NOMINAL].map(SessionRequest::display_surface);
     let lines = lines.map(|line| line.to_string());
     assert_eq!(lines, ["surface set 30 1.25 0.11", "surface nominal"]);
     let cause = client.ask(&QueryCause).unwrap().unwrap();
@@ -588,9 +589,9 @@ fn persons_are_read_and_written() {
     let codes = client.ask(&QueryPersons).unwrap();
     assert_eq!(codes, [code, PersonCode::new("X").unwrap()]);
     for command in [
-        PlainCommand::StorePerson(person),
-        PlainCommand::ChoosePerson(None),
-        PlainCommand::ForgetPerson(code),
+        PersonRequest::store(&person),
+        PersonRequest::ChooseNobody,
+        PersonRequest::Forget { code: code },
     ] {
         client.ask(&command).unwrap();
     }

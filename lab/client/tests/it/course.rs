@@ -160,7 +160,7 @@ fn a_rate_limit_follows_the_course_as_soon_as_it_can() {
 #[test]
 fn an_upload_ends_with_the_checksum_of_its_lines() {
     let course = course(&[(0.0, 30.0), (1.2344, 26.00004), (1.2346, 26.1), (2.0, 25.123_46)]);
-    let commands = course.rounded().upload_commands();
+    let commands = course.rounded().upload_lines();
     let lines: Vec<_> = commands.iter().map(ToString::to_string).collect();
     let rows = [
         "upload begin course 4 absolute",

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{Client, PlainCommand, Telemetry, TelemetryColumn};
+use thermal_client::client::{Client, StationRequest, Telemetry, TelemetryColumn};
 use thermal_device::safety::Fault;
 use thermal_device::{StateName, TelemetryFields};
 
@@ -21,7 +21,7 @@ fn streaming(interval_ms: u32) -> Client<FakeDevice> {
         "" => Vec::new(),
         _ => answers("ok"),
     });
-    client.ask(&PlainCommand::stream(interval_ms)).unwrap();
+    client.ask(&StationRequest::stream(interval_ms)).unwrap();
     client
 }
 
@@ -83,7 +83,7 @@ fn a_client_that_waits_gives_a_sign_of_life_while_the_device_streams_and_only_th
     let mut client = knows(&[("stream 50", "ok"), ("stream 0", "ok"), ("law", "ok law=pi")]);
     client.wait(Duration::from_secs(10)).unwrap();
     assert!(client.link().blank_ms().is_empty());
-    client.ask(&PlainCommand::stream(50)).unwrap();
+    client.ask(&StationRequest::stream(50)).unwrap();
     let from_ms = client.link().sent[0].0.as_millis();
     client.wait(Duration::from_secs(7)).unwrap();
     client.query("law").unwrap();
@@ -94,7 +94,7 @@ fn a_client_that_waits_gives_a_sign_of_life_while_the_device_streams_and_only_th
         last_ms = at.as_millis();
     }
     assert!(last_ms > 24_000, "{last_ms}");
-    client.ask(&PlainCommand::stream(0)).unwrap();
+    client.ask(&StationRequest::stream(0)).unwrap();
     let before = client.link().blank_ms().len();
     client.wait(Duration::from_secs(10)).unwrap();
     assert_eq!(client.link().blank_ms().len(), before);
@@ -198,13 +198,13 @@ fn a_line_that_waited_while_its_fields_were_changed_is_dropped() {
 /// The longest interval, of a finger that is addressed, with a checksum (docs/protocol.md).
 #[test]
 fn a_stream_with_the_fields_of_a_heat_flux_sensor_fits_into_a_line_and_is_read_into_its_columns() {
-    let stream = PlainCommand::stream_with_flux(60_000).to_string();
+    let stream = StationRequest::stream_with_flux(60_000).to_string();
     assert!(format!("@4 {stream}*00").len() <= 96, "{stream}");
     let mut client = FakeDevice::client(|line| match line {
         "" => Vec::new(),
         _ => answers("ok"),
     });
-    client.ask(&PlainCommand::stream_with_flux(10)).unwrap();
+    client.ask(&StationRequest::stream_with_flux(10)).unwrap();
     let line = "T 100 contact 30.5 30.4 24.1 33.2 24 1.5 2.25 2.2 2103.5 30.125 trusted -";
     client.link().sends(100, line);
     let line = client.next_telemetry(Duration::from_millis(200)).unwrap().unwrap().telemetry;

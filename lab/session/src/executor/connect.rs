@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use thermal_client::client::{
-    BoardReport, Client, ClientError, Identity, PlainCommand, QueryBoard, QueryCause,
+    BoardReport, Client, ClientError, Identity, DeviceRequest, StationRequest, QueryBoard, QueryCause,
     QueryIdentity, QueryState,
 };
 use thermal_client::commissioning::settings;
@@ -72,7 +72,7 @@ impl<L: Link> Executor<'_, L> {
         }
         // First of all, because a device that has restarted has forgotten it, and its other answers would count as damaged.
         // Whether it answers at all, the next question shows.
-        let checksums = self.client.ask(&PlainCommand::Checksum(true));
+        let checksums = self.client.ask(&DeviceRequest::Checksum { switch: true.into() });
         if let Err(ClientError::Link(error)) = checksums {
             return Err(error.into());
         }
@@ -91,7 +91,7 @@ impl<L: Link> Executor<'_, L> {
                 let fault = fault.name().into();
                 self.operator(OperatorQuestion::Tripped { fault, explanation })?;
                 let address = self.fingers.address(finger);
-                match self.client.ask_finger(address, &PlainCommand::Clear) {
+                match self.client.ask_finger(address, &StationRequest::Clear) {
                     Ok(()) => {}
                     Err(ClientError::Link(error)) => return Err(error.into()),
                     Err(refused) => {

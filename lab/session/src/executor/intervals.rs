@@ -1,8 +1,8 @@
 //! A trial with two intervals: the finger stays on the display, which departs from its base temperature in one or both.
 
-use thermal_client::client::PlainCommand;
+use thermal_client::client::StationRequest;
 use thermal_client::link::Link;
-use thermal_device::stimulus::{CourseEnd, CourseStart, PlayOrder};
+use thermal_device::stimulus::PlayOrder;
 
 use super::{Executor, TrialEnd};
 use crate::schedule::Next;
@@ -48,17 +48,13 @@ impl<L: Link> Executor<'_, L> {
             };
             if departure_k.abs() >= DEPARTURE_MIN_K {
                 let ramps_s = 2.0 * departure_k.abs() / rate_k_s;
-                let pulse = PlainCommand::Pulse {
-                    base_c,
-                    target_c: base_c + departure_k,
-                    rise_k_s: rate_k_s,
-                    hold_s: (interval_s - ramps_s).max(0.001),
-                    return_k_s: rate_k_s,
-                    order: PlayOrder {
-                        start: CourseStart::Now,
-                        play_count: 1,
-                        end: CourseEnd::Hold,
-                    },
+                let pulse = StationRequest::Pulse {
+                    base_c: base_c.into(),
+                    target_c: (base_c + departure_k).into(),
+                    rise_k_s: rate_k_s.into(),
+                    hold_s: (interval_s - ramps_s).max(0.001).into(),
+                    return_k_s: rate_k_s.into(),
+                    order: Some(PlayOrder::ONCE_NOW),
                 };
                 self.command(Some(device_finger), &pulse)?;
             }

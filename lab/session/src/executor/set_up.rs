@@ -1,6 +1,6 @@
 //! Brings the device from any state to the one that a trial needs.
 
-use thermal_client::client::{PlainCommand, QueryState, Telemetry};
+use thermal_client::client::{StationRequest, QueryState, Telemetry};
 use thermal_client::link::Link;
 use thermal_device::StateName;
 
@@ -29,24 +29,24 @@ impl<L: Link> Executor<'_, L> {
         let reporting = session.reporting_fingers(trial);
         for finger in 0..self.fingers.count() as u8 {
             if !displays.contains(&finger) {
-                self.command(Some(finger), &PlainCommand::Abort)?;
+                self.command(Some(finger), &StationRequest::Abort)?;
             }
             if !reporting.contains(&finger) {
-                self.command(Some(finger), &PlainCommand::stream(0))?;
+                self.command(Some(finger), &StationRequest::stream(0))?;
             }
         }
         if let Some(device) = &session.device
             && !reporting.is_empty()
         {
-            self.command(None, &PlainCommand::Events(true))?;
+            self.command(None, &StationRequest::events(true))?;
             if !displays.is_empty() {
                 self.choose_rendering(device)?;
             }
             for finger in &reporting {
                 let stream = if self.fingers.has_flux_sensor(*finger) {
-                    PlainCommand::stream_with_flux(device.stream_ms)
+                    StationRequest::stream_with_flux(device.stream_ms)
                 } else {
-                    PlainCommand::stream(device.stream_ms)
+                    StationRequest::stream(device.stream_ms)
                 };
                 self.command(Some(*finger), &stream)?;
             }
@@ -91,7 +91,7 @@ impl<L: Link> Executor<'_, L> {
         };
         self.fingers.forget_states();
         for finger in displays {
-            self.command(Some(*finger), &PlainCommand::Hold(rest.skin_c, None))?;
+            self.command(Some(*finger), &StationRequest::hold(rest.skin_c, None))?;
         }
         self.wait_for_setpoints(displays, |_| Some(rest.skin_c))
     }
@@ -99,11 +99,11 @@ impl<L: Link> Executor<'_, L> {
     /// How all displays render.
     fn choose_rendering(&mut self, device: &DeviceSetup) -> Result<(), TrialEnd> {
         for command in [
-            PlainCommand::Law(device.law),
-            PlainCommand::Mode(device.mode),
-            PlainCommand::AssumedFinger(device.assumed_finger),
-            PlainCommand::Skin(device.assumed_skin_c),
-            PlainCommand::ObjectTemperature(device.object_c),
+            StationRequest::Law { law: device.law },
+            StationRequest::Mode { model: device.mode },
+            StationRequest::Finger { finger: device.assumed_finger },
+            StationRequest::skin(device.assumed_skin_c),
+            StationRequest::object_temperature(device.object_c),
         ] {
             self.command(None, &command)?;
         }
@@ -115,8 +115,8 @@ impl<L: Link> Executor<'_, L> {
             if let Presented::Material { device_finger, material } = presented {
                 let mut own = self.session.materials.iter();
                 let command = match own.find(|(name, _)| name == material) {
-                    Some((_, properties)) => PlainCommand::CustomMaterial(*properties),
-                    None => PlainCommand::Material(material.clone()),
+                    Some((_, properties)) => StationRequest::custom_material(properties),
+                    None => StationRequest::material(material),
                 };
                 self.command(Some(*device_finger), &command)?;
             }
@@ -128,7 +128,7 @@ impl<L: Link> Executor<'_, L> {
     pub(super) fn arm(&mut self, displays: &[u8]) -> Result<(), TrialEnd> {
         self.fingers.forget_states();
         for finger in displays {
-            self.command(Some(*finger), &PlainCommand::Arm)?;
+            self.command(Some(*finger), &StationRequest::Arm)?;
         }
         let until_s = self.now_s() + ARM_S;
         let is_armed = |executor: &mut Self| {
@@ -167,13 +167,13 @@ impl<L: Link> Executor<'_, L> {
             match *presented {
                 Presented::Nothing | Presented::Sample { .. } => {}
                 Presented::Material { device_finger, .. } => {
-                    self.command(Some(device_finger), &PlainCommand::Start)?;
+                    self.command(Some(device_finger), &StationRequest::Start)?;
                 }
                 Presented::Hold { device_finger, celsius } => {
-                    self.command(Some(device_finger), &PlainCommand::Hold(celsius, None))?
+                    self.command(Some(device_finger), &StationRequest::hold(celsius, None))?
                 }
                 Presented::Pulses { device_finger, base_c, .. } => {
-                    self.command(Some(device_finger), &PlainCommand::Hold(base_c, None))?
+                    self.command(Some(device_finger), &StationRequest::hold(base_c, None))?
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{ClientError, PlainCommand, ReceivedTelemetry, longest_gap};
+use thermal_client::client::{ClientError, Command, StationRequest, ReceivedTelemetry, longest_gap};
 use thermal_client::link::{Link, LinkError};
 use thermal_device::StateName;
 use thermal_device::events::DeviceEventKind;
@@ -174,7 +174,7 @@ impl<L: Link> Executor<'_, L> {
     pub(super) fn command(
         &mut self,
         finger: Option<u8>,
-        command: &PlainCommand,
+        command: &impl Command<Reply = ()>,
     ) -> Result<(), TrialEnd> {
         let address = finger.and_then(|finger| self.fingers.address(finger));
         (self.client.ask_finger(address, command)).map_err(trial_end_of)
@@ -190,7 +190,7 @@ impl<L: Link> Executor<'_, L> {
             error => SessionEnd::NotOff(error),
         })?;
         // The bridge is off; that telemetry goes on for a while harms nobody.
-        let _ignored = self.client.ask(&PlainCommand::stream(0));
+        let _ignored = self.client.ask(&StationRequest::stream(0));
         self.streaming_since_s = None;
         Ok(())
     }

@@ -1,10 +1,10 @@
 //! Materials that a session describes, and names of materials.
 
 use contact_model::material::{self, MATERIALS, Material, Surface};
-use thermal_protocol::CUSTOM_MATERIAL_WORD;
 
 use super::source::SessionError;
 use super::value::{LEVEL, Number, Value};
+use thermal_wire::request::second_words;
 
 /// Ranges of a material's properties: those of the device's line `material custom`.
 pub(super) const PROPERTIES: [Number; 5] = [
@@ -22,7 +22,7 @@ pub(super) fn materials(file: Option<&Value<'_>>) -> Result<Vec<(String, Materia
     };
     let tables = file.any_table("a table for each material")?;
     let read = tables.values.iter().map(|(name, value)| {
-        if material::find(name).is_some() || *name == CUSTOM_MATERIAL_WORD {
+        if material::find(name).is_some() || second_words("material").any(|word| word == *name) {
             return Err(value.error(format!(
                 "materials.{name}: allowed is a name of its own; {} have their meaning",
                 known(&[])

@@ -4,7 +4,6 @@ use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::Setpoint;
-use thermal_protocol::CONTACT_MODEL_WORDS;
 
 use super::present::Presentation;
 use super::source::SessionError;
@@ -62,13 +61,9 @@ pub(super) fn device(
         }
     };
     Ok(Some(DeviceSetup {
-        law: table.word_or("law", &Law::PROTOCOL_WORDS, Law::Model)?,
-        mode: table.word_or("mode", &CONTACT_MODEL_WORDS, ContactModel::default())?,
-        assumed_finger: table.word_or(
-            "assumed_finger",
-            &AssumedFinger::PROTOCOL_WORDS,
-            AssumedFinger::default(),
-        )?,
+        law: table.vocabulary_or("law", Law::Model)?,
+        mode: table.vocabulary_or("mode", ContactModel::default())?,
+        assumed_finger: table.vocabulary_or("assumed_finger", AssumedFinger::default())?,
         object_c: or_word(&OBJECT_C, "room")?,
         assumed_skin_c: or_word(&DEVICE_SKIN_C, "sensor")?,
         stream_ms: table.whole(&STREAM_MS)?,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use contact_model::material::{Material, Surface};
-use thermal_client::client::PlainCommand;
+use thermal_client::client::StationRequest;
 use thermal_protocol::Request;
 use thermal_settings::Settings;
 
@@ -963,7 +963,7 @@ fn the_device_accepts_the_same_materials() {
             density_kg_m3,
             specific_heat_j_kgk,
         };
-        let line = PlainCommand::CustomMaterial(material).to_string();
+        let line = StationRequest::custom_material(material).to_string();
         Request::parse(&line, &Settings::default()).is_ok()
     };
     let corner = |corner: usize| {

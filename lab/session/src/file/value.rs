@@ -6,6 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::source::{SessionError, Source};
+use thermal_device::Vocabulary;
 
 /// A number that a key may have.
 pub(super) struct Number {
@@ -317,6 +318,12 @@ impl<'a> Table<'a> {
         default: T,
     ) -> Result<T, SessionError> {
         self.get(key).map_or(Ok(default), |value| value.word(words))
+    }
+
+    /// A word of the device's protocol.
+    pub fn vocabulary_or<T: Vocabulary>(&self, key: &str, default: T) -> Result<T, SessionError> {
+        let words = T::WORDS.words.iter().copied().zip(T::ALL.iter().copied());
+        self.word_or(key, &words.collect::<Vec<_>>(), default)
     }
 
     pub fn boolean_or(&self, key: &str, default: bool) -> Result<bool, SessionError> {

@@ -42,6 +42,12 @@ pub struct PlayOrder {
     pub end: CourseEnd,
 }
 
+impl PlayOrder {
+    /// From the next tick on, once, and the display stays on the last point.
+    pub const ONCE_NOW: Self =
+        Self { start: CourseStart::Now, play_count: 1, end: CourseEnd::Hold };
+}
+
 /// A place in a course that is played one or more times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place {

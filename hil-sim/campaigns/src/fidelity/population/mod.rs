@@ -9,7 +9,7 @@ mod statistics;
 
 use contact_model::contact_law::ContactLaw;
 use contact_model::material::{REFERENCE_DISPLAY, SKIN, Surface};
-use thermal_client::client::PlainCommand;
+use thermal_client::client::StationRequest;
 use thermal_plant::Params;
 use thermal_plant::parameters::{self, stream_seed};
 use thermal_plant::sensors::FluxParams;
@@ -268,7 +268,7 @@ fn exact_contact(seed: u64) -> ContactLaw {
 
 /// The line that tells the device of a law.
 fn told(law: ContactLaw) -> String {
-    let line = PlainCommand::ContactLaw(law);
+    let line = StationRequest::contact_law(law);
     format!("[[host]]\nt_s = 0.0\nline = \"{line}\"\n")
 }
 

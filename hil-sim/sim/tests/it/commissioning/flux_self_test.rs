@@ -1,6 +1,6 @@
 //! What the self-test says of the heat-flux sensor.
 
-use thermal_client::client::{PlainCommand, QuerySelfTest};
+use thermal_client::client::{SessionRequest, QuerySelfTest};
 use thermal_client::commissioning::arm;
 use thermal_device::learning::FluxSensorTest;
 use thermal_plant::sensors::{FluxCircuit, FluxDefect, FluxParams};
@@ -26,7 +26,7 @@ fn tested(
     let world = bench.link().world();
     world.set_force_and_faults(force_n, std::iter::empty());
     world.set_plant_defects(Defects { flux: defect, ..Defects::default() });
-    let sensor = PlainCommand::FluxSensor(Some(FluxSensor::DESIGNED));
+    let sensor = SessionRequest::flux_sensor(Some(FluxSensor::DESIGNED));
     bench.ask(&sensor).expect("a sensor");
     wait(&mut bench, 100);
     arm(&mut bench, None).expect("armed: the sensor trips nothing");

@@ -11,7 +11,7 @@ mod tile;
 
 use std::time::Duration;
 
-use thermal_client::client::{Client, PlainCommand, Telemetry};
+use thermal_client::client::{Client, StationRequest, Telemetry};
 use thermal_plant::{HostParams, Params, parameters};
 use thermal_sim::World;
 use thermal_sim::commissioning::CommissioningSetup;
@@ -58,7 +58,7 @@ fn mean(
     ms: u64,
     truth: impl Fn(&World) -> f64,
 ) -> (f64, f64) {
-    bench.ask(&PlainCommand::stream(1)).expect("telemetry");
+    bench.ask(&StationRequest::stream(1)).expect("telemetry");
     let (mut read, mut true_c) = (Vec::new(), 0.0);
     for _ in 0..ms {
         wait(bench, 1);
@@ -67,7 +67,7 @@ fn mean(
             read.extend(field(&line.telemetry));
         }
     }
-    bench.ask(&PlainCommand::stream(0)).expect("no telemetry");
+    bench.ask(&StationRequest::stream(0)).expect("no telemetry");
     assert!(read.len() as u64 > ms / 2, "telemetry of every tick");
     (read.iter().sum::<f64>() / read.len() as f64, true_c / ms as f64)
 }

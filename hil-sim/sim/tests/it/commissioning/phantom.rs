@@ -1,7 +1,7 @@
 //! The heat-flux sensor, calibrated by the simulated operator's phantom.
 
 use documented_figures::{assert_sampled, one_case_in};
-use thermal_client::client::{Client, PlainCommand, QueryFlux, QueryState};
+use thermal_client::client::{Client, SessionRequest, QueryFlux, QueryState};
 use thermal_client::commissioning::{
     CommissionError, CommissioningEvent, FluxCalibration, PhantomPlace, Surroundings,
     SurroundingsError, SurroundingsRequest, calibrate_flux,
@@ -106,7 +106,7 @@ fn calibrated(
     for line in &settings {
         client.command(line).expect("its own settings");
     }
-    let designed = PlainCommand::FluxSensor(Some(FluxSensor::DESIGNED));
+    let designed = SessionRequest::flux_sensor(Some(FluxSensor::DESIGNED));
     client.ask(&designed).expect("a sensor");
     let mut bench = Bench {
         surroundings: SimulatedSurroundings::new(&setup).with_phantom(phantom),

@@ -10,7 +10,9 @@ use thermal_settings::FluxSensor;
 
 use super::procedure::arm;
 use super::{CommissionError, Surroundings};
-use crate::client::{Client, PlainCommand, QueryState, ReceivedTelemetry};
+use crate::client::{
+    Client, Command, QueryState, ReceivedTelemetry, SessionRequest, StationRequest,
+};
 use crate::link::Link;
 use fit::{Fit, STEP_S, Sample};
 
@@ -188,7 +190,7 @@ pub fn calibrate_flux<L: Link>(
     finger: Option<u8>,
     surroundings: &mut dyn Surroundings<L>,
 ) -> Result<FluxCalibration, CommissionError> {
-    client.ask_finger(finger, &PlainCommand::Abort)?;
+    client.ask_finger(finger, &StationRequest::Abort)?;
     let report = client.flux_report(finger)?;
     let before = report.ok_or(FluxCalibrationError::NoSensor)?.sensor;
     let mut session = Session { client, finger, surroundings };
@@ -198,12 +200,12 @@ pub fn calibrate_flux<L: Link>(
     match calibrated {
         Ok((sensor, calibration)) => {
             ended?;
-            client.ask_finger(finger, &PlainCommand::FluxSensor(Some(sensor)))?;
+            client.ask_finger(finger, &SessionRequest::flux_sensor(Some(sensor)))?;
             surroundings.move_phantom(client, PhantomPlace::Away)?;
             Ok(calibration)
         }
         Err(error) => {
-            let _ignored = client.ask_finger(finger, &PlainCommand::FluxSensor(Some(before)));
+            let _ignored = client.ask_finger(finger, &SessionRequest::flux_sensor(Some(before)));
             Err(error)
         }
     }
@@ -216,7 +218,7 @@ struct Session<'a, L> {
 }
 
 impl<L: Link> Session<'_, L> {
-    fn send(&mut self, command: &PlainCommand) -> Result<(), CommissionError> {
+    fn send(&mut self, command: &impl Command<Reply = ()>) -> Result<(), CommissionError> {
         Ok(self.client.ask_finger(self.finger, command)?)
     }
 
@@ -226,9 +228,9 @@ impl<L: Link> Session<'_, L> {
         self.client.wait(MOVED)?;
         let state = self.client.ask_finger(self.finger, &QueryState)?.state;
         if state.fault().is_some() {
-            self.send(&PlainCommand::Clear)?;
+            self.send(&StationRequest::Clear)?;
         }
-        self.send(&PlainCommand::stream_fields(STREAM_MS, &FIELDS))?;
+        self.send(&StationRequest::stream_fields(STREAM_MS, &FIELDS))?;
         let alone = self.receive(1.0)?;
         let room_c = mean(&alone, "room", |line| line.telemetry.room_c)?;
         if !(ROOM_C.0..=ROOM_C.1).contains(&room_c) {
@@ -240,18 +242,18 @@ impl<L: Link> Session<'_, L> {
         }
         arm(self.client, self.finger)?;
         let at_c = |above_k: f64| (100.0 * (room_c + above_k)).round() / 100.0;
-        self.send(&PlainCommand::Hold(at_c(0.0), Some(RATE_K_S)))?;
+        self.send(&StationRequest::hold(at_c(0.0), Some(RATE_K_S)))?;
         self.settle(at_c(0.0))?;
-        self.send(&PlainCommand::FluxZero)?;
+        self.send(&SessionRequest::FluxZero)?;
         (self.surroundings).move_phantom(self.client, PhantomPlace::OnDisplay)?;
         // What has come while the phantom was put on, too.
         let mut lines = self.receive(TOGETHER_S)?;
         let from = lines.len();
         for (above_k, for_s) in COURSE {
-            self.send(&PlainCommand::Hold(at_c(above_k), Some(RATE_K_S)))?;
+            self.send(&StationRequest::hold(at_c(above_k), Some(RATE_K_S)))?;
             lines.extend(self.receive(for_s)?);
         }
-        self.send(&PlainCommand::Abort)?;
+        self.send(&StationRequest::Abort)?;
         self.fit(&lines, from, room_c)
     }
 
