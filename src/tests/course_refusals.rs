@@ -24,7 +24,7 @@ fn every_wrong_course_is_refused_with_its_reason() {
     for (lines, answer) in [
         (
             &["upload begin course 129 absolute"][..],
-            "err number of points '129' out of range; 2 to 128 ",
+            "err number of points '129' out of range; 2 to 128",
         ),
         (&["upload begin course 3"], "err temperatures missing; known: absolute relative"),
         (
@@ -44,7 +44,7 @@ fn every_wrong_course_is_refused_with_its_reason() {
         (&[begin, "upload row 0 4000 30"], "err time '4000' out of range; 0 to 3600 s"),
         (&[begin, "upload row 1 0 30"], "err not the next row, which is 0"),
         (&["play soon"], "err unknown start of a course 'soon'; known: now trigger landing"),
-        (&["play now 0"], "err repeats '0' out of range; 1 to 1000 "),
+        (&["play now 0"], "err repeats '0' out of range; 1 to 1000"),
         (&["play now 2 off"], "err unknown end of a course 'off'; known: hold neutral"),
         (&["hold 30 0.001"], "err rate '0.001' out of range; 0.01 to 100 K/s"),
         (&["hold 43"], "err temperature '43' out of range; 15 to 42 C"),
@@ -133,7 +133,7 @@ fn points_that_are_too_many_not_later_or_out_of_turn_are_refused_and_the_upload_
             "err row 1: time 500 ms is not after 500 ms, that of the row before",
         ),
         ("upload row 2 1 30", "err not the next row, which is 1"),
-        ("upload row 128 1 30", "err row '128' out of range; 0 to 127 "),
+        ("upload row 128 1 30", "err row '128' out of range; 0 to 127"),
         ("upload row 1 -0.5 30", "err time '-0.5' out of range; 0 to 3600 s"),
         ("upload row 1 1", "err temperature missing; 15 to 42 C"),
         ("upload row 1 1 warm", "err temperature 'warm' is not a decimal number; 15 to 42 C"),
@@ -155,11 +155,11 @@ fn a_course_of_the_most_points_is_accepted_and_one_point_more_is_not() {
     assert_eq!(bench.upload("absolute", &points[..128]), "ok");
     assert_eq!(
         bench.upload("absolute", &points),
-        "err number of points '129' out of range; 2 to 128 "
+        "err number of points '129' out of range; 2 to 128"
     );
     assert_eq!(
         bench.upload("absolute", &points[..1]),
-        "err number of points '1' out of range; 2 to 128 "
+        "err number of points '1' out of range; 2 to 128"
     );
     bench.send_ok(&["play now"]);
 }

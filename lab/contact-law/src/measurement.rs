@@ -5,7 +5,8 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use thermal_client::client::{
-    Client, ClientError, SessionRequest, StationRequest, QueryDisplaySurface, QueryState, ReceivedTelemetry,
+    Client, ClientError, QueryDisplaySurface, QueryState, ReceivedTelemetry, SessionRequest,
+    StationRequest,
 };
 use thermal_client::commissioning::{CommissionError, arm};
 use thermal_client::link::{Link, LinkError};

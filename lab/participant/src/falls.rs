@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use contact_model::material::Material;
-use thermal_client::client::{Client, ClientError, StationRequest, QueryState};
+use thermal_client::client::{Client, ClientError, QueryState, StationRequest};
 use thermal_client::link::LinkError;
 use thermal_device::StateName;
 use thermal_device::command::AssumedFinger;
@@ -108,10 +108,10 @@ impl Exploration {
         let gone = |error: LinkError| BenchError::Device(error.to_string());
         client.wait(SETTLES).map_err(gone)?;
         for command in [
-            StationRequest::Law { law: law },
+            StationRequest::Law { law },
             StationRequest::Mode { model: mode },
             StationRequest::Finger { finger: setup.assumed_finger },
-            StationRequest::material(material.into()),
+            StationRequest::material(material),
             StationRequest::object_temperature(None),
         ] {
             client.ask(&command).map_err(refused)?;

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use thermal_client::client::{
-    Client, ClientError, StationRequest, QueryBoard, QueryRaw, QuerySelfTest, QueryState,
-    SelfTestReport,
+    Client, ClientError, QueryBoard, QueryRaw, QuerySelfTest, QueryState, SelfTestReport,
+    StationRequest,
 };
 use thermal_client::commissioning::{CommissionError, SurroundingsError};
 use thermal_client::link::{Link, LinkError};

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use thermal_client::client::{
-    Identity, DeviceRequest, StationRequest, QueryBoard, QueryIdentity, QueryRaw, QueryState, RawReadings
+    DeviceRequest, Identity, QueryBoard, QueryIdentity, QueryRaw, QueryState, RawReadings,
+    StationRequest,
 };
 use thermal_client::commissioning::{CommissioningEvent, arm, commission};
 use thermal_client::link::Link;

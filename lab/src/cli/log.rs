@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use anyhow::Context;
 use clap::Args;
 use thermal_client::client::{
-    ClientError, StationRequest, QueryIdentity, ReceivedTelemetry, TelemetryColumn, TickTime,
+    ClientError, QueryIdentity, ReceivedTelemetry, StationRequest, TelemetryColumn, TickTime,
 };
 use thermal_client::link::{Link, LinkError};
 use thermal_sim::commissioning::flux_sensor_line;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use anyhow::anyhow;
 use clap::Args;
 use serde_json::json;
-use thermal_client::client::{StationRequest, QueryState};
+use thermal_client::client::{QueryState, StationRequest};
 use thermal_client::course::{Prepared, Selection, read_course};
 use thermal_device::StateName;
 use thermal_device::stimulus::{CourseEnd, CourseStart, PlayOrder};

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use contact_model::contact_law::ContactLaw;
 use thermal_client::client::{
-    Client, ClientError, Command, EnrolPerson, PersonReport, PersonRequest, SessionRequest, StationRequest, QueryContactLaw,
-    ReceivedTelemetry,
+    Client, ClientError, Command, EnrolPerson, PersonReport, PersonRequest, QueryContactLaw,
+    ReceivedTelemetry, SessionRequest, StationRequest,
 };
 use thermal_client::commissioning::{CommissionError, arm};
 use thermal_client::link::{Link, LinkError};

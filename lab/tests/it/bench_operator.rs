@@ -10,7 +10,7 @@ use std::sync::mpsc::{self, Sender};
 use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
 use thermal_lab::bench_operator::BenchOperator;
-use thermal_lab::client::{Client, SessionRequest, QueryState, SettingsLine};
+use thermal_lab::client::{Client, QueryState, SessionRequest, SettingsLine};
 use thermal_lab::commissioning::{
     CommissionError, CommissioningEvent, CommissioningRecord, PhantomPlace, Surroundings,
     SurroundingsError, commission,

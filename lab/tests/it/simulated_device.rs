@@ -5,16 +5,15 @@ use std::time::Duration;
 use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::MATERIALS;
 use contact_model::slab::Back;
-use thermal_commissioning::StorageOrder;
 use thermal_device::StateName;
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_lab::client::{
-    Calibrate, Client, CountSettings, DeviceRequest, SessionRequest, StationRequest, QueryAssumedFinger, QueryBoard, QueryCause,
-    QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryRaw, QuerySelfTest, QuerySettings,
-    QueryState, upload,
+    Calibrate, Client, ClientError, Command, CountSettings, DeviceRequest, PointOrClear,
+    QueryAssumedFinger, QueryBoard, QueryCause, QueryFlux, QueryIdentity, QueryLaw, QueryMargins,
+    QueryRaw, QuerySelfTest, QuerySettings, QueryState, SessionRequest, StationRequest, upload,
 };
 use thermal_lab::commissioning::{arm, clear_calibration};
 use thermal_lab::link::{Link, SimulatedLink};
@@ -28,6 +27,15 @@ pub fn device() -> NativeEngine {
     NativeEngine::new(setup.in_use().expect("a plant"))
 }
 
+/// The orders that the device refuses, with its answers.
+fn refusals<L: Link>(
+    client: &mut Client<L>,
+    orders: &[impl Command<Reply = ()>],
+) -> Vec<(String, ClientError)> {
+    let refused = |order: &_| Some((ToString::to_string(order), client.ask(order).err()?));
+    orders.iter().filter_map(refused).collect()
+}
+
 #[test]
 fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     let mut engine = device();
@@ -37,32 +45,38 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     let setting = client.ask(&QuerySettings(3)).unwrap();
     let relaxations = [Relaxation { rate_1_s: 2.0, gain_m2k_j: 4e-5 }];
     let object = Impedance { direct_m2k_w: 5e-7, relaxations: &relaxations };
-    let mut orders = vec![
-        StationRequest::material("oak".into()),
-        StationRequest::material("granite".into()),
-        StationRequest::custom_material(copper),
-        StationRequest::object_temperature(Some(-3.25)),
-        StationRequest::object_temperature(None),
-        StationRequest::HalfSpace,
-        StationRequest::slab(2.5, Back::Film(12.5)),
-        StationRequest::slab(3.0, Back::Held),
-        StationRequest::slab(4.0, Back::Insulated),
-        StationRequest::Finger { finger: AssumedFinger::MeanOnPad },
-        StationRequest::Mode { model: ContactModel::SemiInfinite },
-        StationRequest::Law { law: Law::Pi10Hz },
-        DeviceRequest::Checksum { switch: true.into() },
-        StationRequest::stream(7),
-        StationRequest::stream(0),
-        DeviceRequest::Checksum { switch: false.into() },
-        setting,
-        SessionRequest::Calibrate { thermistor: ThermistorId::Check, point: PointOrClear::Clear },
-        SessionRequest::flux_sensor(None),
-        SessionRequest::flux_sensor(Some(FluxSensor::DESIGNED)),
-    ];
-    orders.extend(upload(&object));
-    let refused: Vec<_> = (orders.iter())
-        .filter_map(|order| Some((order.to_string(), client.ask(order).err()?)))
-        .collect();
+    let mut refused = refusals(
+        &mut client,
+        &[
+            StationRequest::material("oak"),
+            StationRequest::material("granite"),
+            StationRequest::custom_material(&copper),
+            StationRequest::object_temperature(Some(-3.25)),
+            StationRequest::object_temperature(None),
+            StationRequest::HalfSpace,
+            StationRequest::slab(2.5, Back::Film(12.5)),
+            StationRequest::slab(3.0, Back::Held),
+            StationRequest::slab(4.0, Back::Insulated),
+            StationRequest::Finger { finger: AssumedFinger::MeanOnPad },
+            StationRequest::Mode { model: ContactModel::SemiInfinite },
+            StationRequest::Law { law: Law::Pi10Hz },
+            StationRequest::stream(7),
+            StationRequest::stream(0),
+        ],
+    );
+    let checksums = [true, false].map(|on| DeviceRequest::Checksum { switch: on.into() });
+    refused.extend(refusals(&mut client, &checksums));
+    let (thermistor, point) = (ThermistorId::Check, PointOrClear::Clear);
+    refused.extend(refusals(
+        &mut client,
+        &[
+            SessionRequest::Set { setting: setting.setting().clone() },
+            SessionRequest::Calibrate { thermistor, point },
+            SessionRequest::flux_sensor(None),
+            SessionRequest::flux_sensor(Some(FluxSensor::DESIGNED)),
+        ],
+    ));
+    refused.extend(refusals(&mut client, &upload(&object)));
     // The only one that no device knows.
     assert_eq!(refused.len(), 1, "{refused:?}");
     assert!(refused[0].1.refusal().unwrap().starts_with("unknown material 'oak'"));

@@ -222,7 +222,7 @@ fn line(tick: u32, t_s: f64, screen: &str) -> ReceivedTelemetry {
             evaluations: None,
             flux_w_m2: None,
             surface_c: None,
-            finger: None,
+            known: None,
             limited: false,
             is_untuned: false,
         },

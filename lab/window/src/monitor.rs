@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{Client, ClientError, StationRequest, QueryIdentity, ReceivedEvent};
+use thermal_client::client::{Client, ClientError, QueryIdentity, ReceivedEvent, StationRequest};
 use thermal_client::link::{Link, LinkError};
 use thermal_session::{People, Update};
 

@@ -9,12 +9,13 @@ use std::vec::Vec;
 
 use contact_model::fixed_point::{Celsius, Force};
 
+use super::station_command::{StationWork, station_work};
 use super::{
     ANSWER_MAX_BYTES, BoardStatus, Error, LINE_MAX_BYTES, LineError, LineReader, PersonCodes,
-    PersonReply, PersonRequest, Reply, Request, TelemetryLine,
+    PersonReply, Reply,
 };
 use contact_model::contact_law::ContactLaw;
-use thermal_commissioning::{IdentificationError, StorageOrder};
+use thermal_commissioning::IdentificationError;
 use thermal_device::command::{self, Command, FluxState, ObjectBody, Status};
 use thermal_device::command::{AssumedFinger, ChosenContactLaw};
 use thermal_device::control::Law;
@@ -25,15 +26,33 @@ use thermal_device::safety::{
     ComparatorSideReport, Fault, SelfTestReport, SelfTestResult, SideLine,
 };
 use thermal_device::sense::SupplyVoltage;
-use thermal_device::{Flux, StateName, Telemetry, TelemetryFields};
-use thermal_settings::{Person, PersonCode, Persons, Settings};
+use thermal_device::{Flux, StateName, Telemetry};
+use thermal_settings::{DisplaySurface, Person, PersonCode, Persons};
+use thermal_wire::request::{DeviceRequest, PersonRequest};
+use thermal_wire::telemetry::{ALL_FIELDS, DEFAULT_FIELDS, TelemetryLine};
+use thermal_wire::{PersonData, Request};
 
-fn parse(line: &str) -> Result<Request, Error> {
-    Request::parse(line, &Settings::default())
+fn read(line: &str) -> Result<Request, Error> {
+    Request::read(line).map_err(Error::from)
+}
+
+/// What the stations execute for a line.
+fn work(line: &str) -> Result<StationWork, Error> {
+    match read(line)? {
+        Request::Station(request) => station_work(&request, DisplaySurface::NOMINAL.surface()),
+        other => panic!("{line}: {other:?}"),
+    }
+}
+
+fn command_of(line: &str) -> Command<'static> {
+    match work(line) {
+        Ok(StationWork::Command(command)) => command,
+        _ => panic!("{line}"),
+    }
 }
 
 fn refusal(line: &str) -> String {
-    let answer = parse(line).expect_err(line).to_string();
+    let answer = read(line).expect_err(line).to_string();
     assert!(answer.len() <= ANSWER_MAX_BYTES, "{answer}");
     answer
 }
@@ -43,18 +62,20 @@ fn each_line_about_persons_is_parsed() {
     let code = |word: &str| PersonCode::new(word).expect("a code");
     let finger = core::array::from_fn(|i| [0x01, 0x23, 0x45, 0x67, 0x89, 0xab, 0xcd, 0xef][i % 8]);
     let person = Person { code: code("ABCDEFGH"), finger };
+    let chosen = |code| PersonRequest::Person { code, data: None };
+    let stored = PersonRequest::Person { code: person.code, data: Some(PersonData(finger)) };
     for (line, request) in [
-        ("person", PersonRequest::Query),
-        ("person P07", PersonRequest::Choose(Some(code("P07")))),
-        ("person none", PersonRequest::Choose(None)),
-        ("person enrol P07", PersonRequest::Enrol(code("P07"))),
-        ("person ABCDEFGH 0123456789abcdef0123456789ABCDEF01234567", PersonRequest::Store(person)),
+        ("person", PersonRequest::QueryPerson),
+        ("person P07", chosen(code("P07"))),
+        ("person none", PersonRequest::ChooseNobody),
+        ("person enrol P07", PersonRequest::Enrol { code: code("P07") }),
+        ("person ABCDEFGH 0123456789abcdef0123456789ABCDEF01234567", stored),
         ("persons", PersonRequest::List),
-        ("forget person 7", PersonRequest::Forget(code("7"))),
+        ("forget person 7", PersonRequest::Forget { code: code("7") }),
     ] {
-        assert_eq!(parse(line), Ok(Request::Person(request)), "{line}");
+        assert_eq!(read(line), Ok(Request::Person(request)), "{line}");
     }
-    assert_eq!(parse("forget"), Ok(Request::Storage(StorageOrder::Forget)));
+    assert_eq!(read("forget"), Ok(Request::Device(DeviceRequest::ForgetAll)));
     let reply = PersonReply { person: Some(person), contacts: 255 };
     assert_eq!(
         Reply::Person(reply).to_string(),
@@ -74,15 +95,12 @@ fn each_line_about_persons_is_parsed() {
 
 #[test]
 fn every_command_is_parsed() {
-    assert_eq!(parse("id"), Ok(Request::Identify));
-    assert_eq!(parse("board"), Ok(Request::Board));
-    for (line, command) in [
+    assert_eq!(read("id"), Ok(Request::Device(DeviceRequest::Identify)));
+    assert_eq!(read("board"), Ok(Request::Device(DeviceRequest::Board)));
+    for (line, expected) in [
         ("state", Command::Status),
-        ("stream 0", Command::Stream { interval_ms: 0, fields: TelemetryFields::DEFAULT }),
-        (
-            " stream  60000 ",
-            Command::Stream { interval_ms: 60_000, fields: TelemetryFields::DEFAULT },
-        ),
+        ("stream 0", Command::Stream { interval_ms: 0, fields: DEFAULT_FIELDS }),
+        (" stream  60000 ", Command::Stream { interval_ms: 60_000, fields: DEFAULT_FIELDS }),
         ("object room", Command::Object(None)),
         ("object half-space", Command::Body(ObjectBody::HalfSpace)),
         ("finger", Command::Finger(None)),
@@ -109,11 +127,11 @@ fn every_command_is_parsed() {
         ("abort", Command::Abort),
         ("clear", Command::Clear),
     ] {
-        assert_eq!(parse(line), Ok(Request::Station(command)), "{line}");
+        assert_eq!(command_of(line), expected, "{line}");
     }
     // Copper by its name and by its properties.
-    let pair_of = |line| match parse(line) {
-        Ok(Request::Station(Command::Material(material))) => material.pair,
+    let pair_of = |line| match command_of(line) {
+        Command::Material(material) => material.pair,
         other => panic!("{line}: {other:?}"),
     };
     let (named, custom) =
@@ -128,15 +146,14 @@ fn both_ends_of_a_range_are_allowed() {
         "material custom 0.001 1 10 0.001 0.0001",
         "material custom 5000 30000 10000 1000 1.5",
     ] {
-        assert!(parse(line).is_ok(), "{}", refusal(line));
+        assert!(work(line).is_ok(), "{line}");
     }
 }
 
 /// The values of Eq. 6-8 themselves are the law that costs nothing.
 #[test]
 fn a_contact_law_of_nominal_values_is_the_nominal_one() {
-    let Ok(Request::Station(Command::ContactLaw(Some(law)))) = parse("contact 0.95 122500 0")
-    else {
+    let Command::ContactLaw(Some(law)) = command_of("contact 0.95 122500 0") else {
         panic!("a contact law");
     };
     assert_eq!(law.own, None);
@@ -147,8 +164,9 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id board state stream events trigger-out checksum material object finger contact person persons upload mode law arm hold play pulse skin start abort clear cause self-test raw \
-             calibrate tune margins settings set flux surface save forget",
+            "err unknown command 'fly'; known: id board checksum save forget state stream events trigger-out material object \
+             finger contact mode law arm hold play pulse skin start abort clear cause self-test raw tune calibrate margins \
+             settings set flux surface person persons upload",
         ),
         (
             "material unobtainium-of-the-first-kind",
@@ -159,7 +177,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
         ("law x", "err unknown law 'x'; known: pi-10hz pi model"),
         (" ", "err command missing"),
         ("stream", "err interval missing; 0 to 60000 ms"),
-        ("object", "err object missing; slab, half-space, room, or -20 to 60 C"),
+        ("object", "err object temperature missing; -20 to 60 C; or room half-space slab"),
         (
             "material",
             "err material missing; known: copper bronze stainless-steel granite g10 abs foam baf2 zns custom",
@@ -167,7 +185,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
         ("material custom 1 1", "err specific heat missing; 10 to 10000 J/kgK"),
         ("material custom 1 1 10 1", "err slope missing; 0.0001 to 1.5 rad"),
         ("mode", "err mode missing; known: contact semi-infinite"),
-        ("contact soft", "err exponent 'soft' is not a decimal number; 0.3 to 1.5 "),
+        ("contact soft", "err exponent 'soft' is not a decimal number; 0.3 to 1.5; or nominal"),
         ("contact 0.9 122500", "err gap missing; 0 to 100000 W/(m2 K)"),
         ("contact 0.9 999 0", "err microhardness '999' out of range; 1000 to 100000000 Pa"),
         ("calibrate", "err sensor missing; known: display check sink skin room"),
@@ -202,11 +220,26 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
         ("forget persons", "err unexpected 'persons' after the command"),
         ("arm now", "err unexpected 'now' after the command"),
         ("object room 3", "err unexpected '3' after the command"),
-        ("object warm", "err object 'warm': slab, half-space, room, or -20 to 60 C"),
-        ("object slap 3mm held", "err object 'slap': slab, half-space, room, or -20 to 60 C"),
-        ("object half space", "err object 'half': slab, half-space, room, or -20 to 60 C"),
-        ("object nan", "err object 'nan': slab, half-space, room, or -20 to 60 C"),
-        ("object inf", "err object 'inf': slab, half-space, room, or -20 to 60 C"),
+        (
+            "object warm",
+            "err object temperature 'warm' is not a decimal number; -20 to 60 C; or room half-space slab",
+        ),
+        (
+            "object slap 3mm held",
+            "err object temperature 'slap' is not a decimal number; -20 to 60 C; or room half-space slab",
+        ),
+        (
+            "object half space",
+            "err object temperature 'half' is not a decimal number; -20 to 60 C; or room half-space slab",
+        ),
+        (
+            "object nan",
+            "err object temperature 'nan' is not a decimal number; -20 to 60 C; or room half-space slab",
+        ),
+        (
+            "object inf",
+            "err object temperature 'inf' is not a decimal number; -20 to 60 C; or room half-space slab",
+        ),
         ("object 60.001", "err object temperature '60.001' out of range; -20 to 60 C"),
         ("stream -1", "err interval '-1' out of range; 0 to 60000 ms"),
         (
@@ -243,7 +276,7 @@ proptest! {
         let lines = read_lines(garbage.into_iter().chain(*b"\nobject 25\n"));
         prop_assert_eq!(lines.last(), Some(&Ok("object 25".to_string())));
         for line in lines.into_iter().flatten() {
-            if let Err(error) = parse(&line) {
+            if let Err(error) = read(&line) {
                 prop_assert!(error.to_string().len() <= ANSWER_MAX_BYTES);
             }
         }
@@ -270,7 +303,7 @@ fn the_longest_answers_fit_their_limit() {
         "{answer}"
     );
     let unknown = refusal(&"x".repeat(LINE_MAX_BYTES));
-    assert!(unknown.len() == ANSWER_MAX_BYTES && unknown.ends_with(" forget"), "{unknown}");
+    assert!(unknown.len() == ANSWER_MAX_BYTES && unknown.ends_with(" upload"), "{unknown}");
     let documentation = include_str!("../../../docs/protocol.md");
     let limit = std::format!("at most {ANSWER_MAX_BYTES} bytes without address and checksum");
     assert!(documentation.contains(&limit), "docs/protocol.md: {limit}");
@@ -313,7 +346,7 @@ fn the_longest_answers_fit_their_limit() {
         demand: Current::MIN,
         current: Current::MIN,
         evaluations: u32::MAX,
-        fields: TelemetryFields::DEFAULT,
+        fields: DEFAULT_FIELDS,
     };
     let flux = Some(FluxState {
         flux: Some(Flux::MIN),
@@ -326,11 +359,7 @@ fn the_longest_answers_fit_their_limit() {
         line.len() <= ANSWER_MAX_BYTES && line.ends_with(" 4294967295 display-short"),
         "{line}"
     );
-    let all = Telemetry {
-        fields: (0..TelemetryFields::NAMES.len())
-            .fold(TelemetryFields::NONE, TelemetryFields::with),
-        ..longest
-    };
+    let all = Telemetry { fields: ALL_FIELDS, ..longest };
     assert_eq!(
         write(all),
         line.replace(" display-short", " -524288.0 -512.0000 sensor-range display-short")

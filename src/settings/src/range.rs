@@ -30,7 +30,8 @@ impl Range {
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (min, max) = (Shortest(self.min), Shortest(self.max));
-        write!(f, "{min} to {max} {}", self.unit)
+        write!(f, "{min} to {max}")?;
+        if self.unit.is_empty() { Ok(()) } else { write!(f, " {}", self.unit) }
     }
 }
 

@@ -300,7 +300,7 @@ fn safety_limits_hold_for_any_object_under_a_finger() {
     let outcome = runner.run(&scenarios, |(upload, object_c, force_n, finger)| {
         let mut bench = TestBench::new();
         bench.plate_responds = true;
-        send(&mut bench, &format!("finger {finger}"))?;
+        send(&mut bench, &format!("finger {}", finger.name()))?;
         bench.send_ok(&["law model", "material granite", "arm", "start"]);
         send(&mut bench, &format!("object {object_c}"))?;
         sent.set(sent.get() + 1);

@@ -22,6 +22,12 @@ pub struct LineBuffer {
     length: usize,
 }
 
+impl Default for LineBuffer {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl LineBuffer {
     /// An empty line.
     #[inline]

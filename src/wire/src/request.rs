@@ -284,7 +284,7 @@ impl Request {
         let place = place_of_form(command, &mut words)?;
         let arguments = words.clone();
         let request = read_arguments(place, &mut words)
-            .map_err(|error| with_second_words(command, &arguments, error))?;
+            .map_err(|error| with_second_words(place, &arguments, error))?;
         expect_end(&mut words)?;
         Ok(request)
     }
@@ -324,16 +324,17 @@ fn place_of_form(command: &str, words: &mut Words<'_>) -> Result<usize, ReadErro
 }
 
 /// An error in the word after a command, where other words may stand, too.
-fn with_second_words(command: &str, words: &Words<'_>, error: ReadError) -> ReadError {
-    let form =
-        FORMS.iter().find(|form| form.words.len() > 1 && form.words.first() == Some(&command));
-    let first = form.and_then(|form| form.words.first());
-    match (error, first) {
-        (ReadError::NotANumber(range, word), Some(command))
+fn with_second_words(place: usize, words: &Words<'_>, error: ReadError) -> ReadError {
+    let command = match FORMS.get(place).map(|form| form.words) {
+        Some([command]) if second_words(command).next().is_some() => *command,
+        _ => return error,
+    };
+    match error {
+        ReadError::NotANumber(range, word)
             if word == words.clone().next().unwrap_or_default().into() =>
         {
             ReadError::NotANumberOrWord(range, command, word)
         }
-        (error, _) => error,
+        error => error,
     }
 }

@@ -1,9 +1,9 @@
 //! Settings within the ranges of the `set` lines, and the readings that follow from them.
 
 use arbitrary::{Arbitrary, Unstructured};
+use thermal_display::device::FingerIndex;
 use thermal_display::device::safety::ThermistorId;
 use thermal_display::settings::Vocabulary as _;
-use thermal_display::device::FingerIndex;
 
 use crate::device::{CheckedDevice, READING_ERROR_MAX_K};
 use crate::start::StartDevices;
@@ -30,7 +30,9 @@ impl Input {
             let steps = steps.iter().map(|step| format!(" {:.3}", fraction(*step, 4.0)));
             lines.push(format!("set steps {}{}", 10 + 7 * line, steps.collect::<String>()));
         }
-        for (name, [offset, slope, curvature]) in ThermistorId::WORDS.words.iter().zip(self.corrections) {
+        for (name, [offset, slope, curvature]) in
+            ThermistorId::WORDS.words.iter().zip(self.corrections)
+        {
             let (offset, slope) = (fraction(offset, 1.2), fraction(slope, 0.05));
             let curvature = fraction(curvature, 0.002);
             lines.push(format!("set correction {name} {offset:.6} {slope:.7} {curvature:.8}"));

@@ -3,14 +3,14 @@
 use arbitrary::{Arbitrary, Unstructured};
 use contact_model::fixed_point::WEIGHTS;
 use fixed::types::{I2F30, I4F28, I10F22};
-use thermal_display::device::safety::ThermistorId;
-use thermal_display::settings::Vocabulary as _;
 use thermal_display::device::FingerIndex;
 use thermal_display::device::drive::Drive;
 use thermal_display::device::safety::Fault;
+use thermal_display::device::safety::ThermistorId;
 use thermal_display::device::sense::{
     ADC_CHANNELS_PER_FINGER, DigitalInputs, SCANS_PER_TICK, Samples, Scan,
 };
+use thermal_display::settings::Vocabulary as _;
 
 use thermal_display::device::learning::FingerKnowledge;
 use thermal_learner::{Learner, LearnerInput, LearnerOutput, Trust};
@@ -234,7 +234,7 @@ impl Line {
                 let fraction = |value: &i16, max: f64| max * f64::from(*value) / 32768.0;
                 format!(
                     "set correction {} {:.6} {:.7} {:.8}",
-                    element(&ThermistorId::WORDS.words, *sensor),
+                    element(ThermistorId::WORDS.words, *sensor),
                     fraction(offset, 1.2),
                     fraction(slope, 0.05),
                     fraction(curvature, 0.002)
@@ -256,7 +256,7 @@ impl Line {
             Self::Point(sensor, celsius) => {
                 format!(
                     "calibrate {} {:.3}",
-                    element(&ThermistorId::WORDS.words, *sensor),
+                    element(ThermistorId::WORDS.words, *sensor),
                     fraction(*celsius, 60.0)
                 )
             }

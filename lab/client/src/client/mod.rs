@@ -44,10 +44,10 @@ pub use reply::{
 };
 pub use streams::longest_gap;
 pub use telemetry::{ReceivedTelemetry, Telemetry};
-pub use thermal_wire::UploadLine;
 pub use thermal_wire::host::Column as TelemetryColumn;
 pub use thermal_wire::host::{upload, upload_course};
 pub use thermal_wire::request::{DeviceRequest, PersonRequest, SessionRequest, StationRequest};
+pub use thermal_wire::{PointOrClear, UploadLine};
 
 /// Timeout of an answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);

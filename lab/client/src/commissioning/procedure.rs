@@ -5,15 +5,14 @@ use std::time::Duration;
 use thermal_device::StateName;
 use thermal_device::safety::ThermistorId;
 use thermal_settings::{CODES_PER_ADC_SEGMENT, Settings};
-use thermal_wire::PointOrClear;
 
 use super::{
     CalibrationPoint, CommissionError, CommissioningEvent, CommissioningRecord, FluxCalibration,
     Surroundings, calibrate_flux,
 };
 use crate::client::{
-    Calibrate, Client, ClientError, CountSettings, DeviceRequest, IdentifiedTile, QueryMargins,
-    QuerySettings, QueryState, SessionRequest, StationRequest, TuneResult,
+    Calibrate, Client, ClientError, CountSettings, DeviceRequest, IdentifiedTile, PointOrClear,
+    QueryMargins, QuerySettings, QueryState, SessionRequest, StationRequest, TuneResult,
 };
 use crate::link::Link;
 
@@ -125,7 +124,7 @@ pub fn clear_calibration<L: Link>(
     finger: Option<u8>,
 ) -> Result<(), ClientError> {
     client.ask_finger(finger, &StationRequest::Abort)?;
-    ThermistorId::ALL.into_iter().try_for_each(|one| {
+    ThermistorId::ALL.iter().try_for_each(|one| {
         let point = PointOrClear::Clear;
         client.ask_finger(finger, &SessionRequest::Calibrate { thermistor: *one, point })
     })

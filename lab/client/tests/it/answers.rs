@@ -12,11 +12,11 @@ use thermal_client::client::{
     Telemetry, person_data, upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, Link, LinkError, ReceivedLine};
+use thermal_device::StateName;
 use thermal_device::events::DeviceEventKind;
 use thermal_device::learning::{FingerKnowledge, FluxSensorTest};
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_device::stimulus::TemperatureKind;
-use thermal_device::{StateName, TelemetryFields};
 use thermal_settings::{DisplaySurface, FluxSensor, Person, PersonCode};
 
 use crate::fake_device::{FakeDevice, answers, knows};
@@ -402,8 +402,7 @@ fn only_questions_and_numbered_lines_are_sent_again_after_a_damaged_line() {
 #[test]
 fn events_and_telemetry_of_chosen_fields_are_read() {
     let mut client = knows(&[("stream 5 setpoint demand", "ok"), ("events on", "ok")]);
-    let fields = TelemetryFields::NONE.with(0).with(6);
-    client.ask(&PlainCommand::Stream(5, fields)).unwrap();
+    client.ask(&StationRequest::stream_fields(5, &["demand", "setpoint"])).unwrap();
     client.ask(&StationRequest::events(true)).unwrap();
     client.link().sends(1, "E 1000 437 trigger");
     client.link().sends(2, "T 1005 stimulus 30.50000 -1.250 limited");
@@ -588,11 +587,9 @@ fn persons_are_read_and_written() {
     assert_eq!(client.ask(&QueryPerson).unwrap(), unknown);
     let codes = client.ask(&QueryPersons).unwrap();
     assert_eq!(codes, [code, PersonCode::new("X").unwrap()]);
-    for command in [
-        PersonRequest::store(&person),
-        PersonRequest::ChooseNobody,
-        PersonRequest::Forget { code: code },
-    ] {
+    for command in
+        [PersonRequest::store(&person), PersonRequest::ChooseNobody, PersonRequest::Forget { code }]
+    {
         client.ask(&command).unwrap();
     }
     let wrong =
@@ -603,15 +600,14 @@ fn persons_are_read_and_written() {
 #[test]
 fn fields_of_the_flux_sensor_are_read() {
     let mut client = knows(&[("stream 10 force flux surface finger", "ok")]);
-    let fields = [5, 9, 10, 11].into_iter();
-    let fields = fields.fold(TelemetryFields::NONE, TelemetryFields::with);
-    client.ask(&PlainCommand::Stream(10, fields)).unwrap();
+    let fields = ["force", "flux", "surface", "finger"];
+    client.ask(&StationRequest::stream_fields(10, &fields)).unwrap();
     client.link().sends(1, "T 10 stimulus 0.512 -1234.5 24.0125 wet -");
     client.link().sends(2, "T 20 stimulus 0.512 - - - -");
     client.link().sends(3, "T 30 stimulus 0.512 1 24 damp -");
     client.wait(Duration::from_millis(10)).unwrap();
     let mut next = || Some(client.next_telemetry(Duration::ZERO).unwrap()?.telemetry);
-    let values = |line: Telemetry| (line.force_n, line.flux_w_m2, line.surface_c, line.finger);
+    let values = |line: Telemetry| (line.force_n, line.flux_w_m2, line.surface_c, line.known);
     let mut all = FingerKnowledge::ALL.into_iter();
     let known = all.find(|known| known.name() == "wet").unwrap();
     assert_eq!(next().map(values), Some((Some(0.512), Some(-1234.5), Some(24.0125), Some(known))));

@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use thermal_client::client::{Client, StationRequest, Telemetry, TelemetryColumn};
+use thermal_device::StateName;
 use thermal_device::safety::Fault;
-use thermal_device::{StateName, TelemetryFields};
+use thermal_wire::host::COLUMNS;
 
 use crate::fake_device::{FakeDevice, answers, knows};
 
@@ -146,13 +147,11 @@ fn a_line_that_was_damaged_on_its_way_is_counted_and_not_taken() {
 }
 
 /// Fields whose lines have the same number of words.
-const SETPOINT: TelemetryFields = TelemetryFields::NONE.with(0);
-const DISPLAY: TelemetryFields = TelemetryFields::NONE.with(1);
 
 #[test]
 fn a_line_with_fields_that_were_not_chosen_is_not_taken() {
     let mut client = FakeDevice::client(|_| answers("ok"));
-    client.ask(&PlainCommand::Stream(5, SETPOINT)).unwrap();
+    client.ask(&StationRequest::stream_fields(5, &["setpoint"])).unwrap();
     client.link().sends(1, &line(5));
     client.link().sends(2, "T 10 armed 33.00000 33.0123 -");
     client.link().sends(3, "T 15 armed 33.00000 -");
@@ -169,14 +168,14 @@ fn a_line_that_waited_while_its_fields_were_changed_is_dropped() {
         "" => Vec::new(),
         _ => answers("ok"),
     });
-    client.ask(&PlainCommand::Stream(5, SETPOINT)).unwrap();
+    client.ask(&StationRequest::stream_fields(5, &["setpoint"])).unwrap();
     for tick in (100u32..200).step_by(5) {
         let after_ms = u64::from(tick) - 100;
         (client.link()).sends(after_ms, &format!("T {tick} armed 33.00000 -"));
     }
     client.wait(Duration::from_millis(101)).unwrap();
     while client.next_telemetry(Duration::ZERO).unwrap().is_some() {}
-    client.ask(&PlainCommand::Stream(5, DISPLAY)).unwrap();
+    client.ask(&StationRequest::stream_fields(5, &["display"])).unwrap();
     // Those of the old kind that the answer has overtaken, received late because nobody waited.
     for tick in [195, 200] {
         (client.link()).sends(50, &format!("T {tick} armed 33.00000 -"));

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use thermal_client::client::{ReceivedTelemetry, Telemetry, TelemetryColumn};
-use thermal_wire::host::COLUMNS;
 use thermal_client::text;
+use thermal_wire::host::COLUMNS;
 use thermal_wire::telemetry::ALL_FIELDS;
 
 use super::{RecordingError, unreadable};

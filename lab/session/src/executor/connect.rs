@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use thermal_client::client::{
-    BoardReport, Client, ClientError, Identity, DeviceRequest, StationRequest, QueryBoard, QueryCause,
-    QueryIdentity, QueryState,
+    BoardReport, Client, ClientError, DeviceRequest, Identity, QueryBoard, QueryCause,
+    QueryIdentity, QueryState, StationRequest,
 };
 use thermal_client::commissioning::settings;
 use thermal_client::link::Link;

@@ -1,6 +1,6 @@
 //! Brings the device from any state to the one that a trial needs.
 
-use thermal_client::client::{StationRequest, QueryState, Telemetry};
+use thermal_client::client::{QueryState, StationRequest, Telemetry};
 use thermal_client::link::Link;
 use thermal_device::StateName;
 

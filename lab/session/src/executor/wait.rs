@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{ClientError, Command, StationRequest, ReceivedTelemetry, longest_gap};
+use thermal_client::client::{
+    ClientError, Command, ReceivedTelemetry, StationRequest, longest_gap,
+};
 use thermal_client::link::{Link, LinkError};
 use thermal_device::StateName;
 use thermal_device::events::DeviceEventKind;

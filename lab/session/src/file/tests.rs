@@ -4,8 +4,8 @@ use std::path::Path;
 
 use contact_model::material::{Material, Surface};
 use thermal_client::client::StationRequest;
-use thermal_protocol::Request;
-use thermal_settings::Settings;
+use thermal_protocol::check_line;
+use thermal_settings::DisplaySurface;
 
 use super::value::{Number, Whole};
 use super::{KEYS, design, materials, present, score, setup, trial};
@@ -963,8 +963,8 @@ fn the_device_accepts_the_same_materials() {
             density_kg_m3,
             specific_heat_j_kgk,
         };
-        let line = StationRequest::custom_material(material).to_string();
-        Request::parse(&line, &Settings::default()).is_ok()
+        let line = StationRequest::custom_material(&material).to_string();
+        check_line(&line, DisplaySurface::NOMINAL.surface()).is_ok()
     };
     let corner = |corner: usize| {
         let mut values = [0.0; 5];

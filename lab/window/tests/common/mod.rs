@@ -76,7 +76,7 @@ pub fn telemetry(tick: u32, state: StateName, skin_c: f64) -> Update {
             evaluations: None,
             flux_w_m2: None,
             surface_c: None,
-            finger: None,
+            known: None,
             limited: false,
             is_untuned: false,
         },

@@ -130,8 +130,8 @@ fn the_refusal_of_a_damaged_line_has_the_address_that_has_arrived() {
 fn checksums_are_switched_for_the_whole_device_by_on_and_off() {
     let mut line = Line::<5>::new();
     for (sent, answer) in [
-        ("checksum", "err checksum missing; known: on off"),
-        ("checksum 1", "err unknown checksum '1'; known: on off"),
+        ("checksum", "err switch missing; known: on off"),
+        ("checksum 1", "err unknown switch '1'; known: on off"),
         ("checksum on now", "err unexpected 'now' after the command"),
         ("@2 checksum on", "@2 err checksum is for all fingers at once"),
         ("id*0D", "ok thermal-display 0.2.0 fingers=5"),

@@ -13,8 +13,9 @@ use thermal_device::command::{self, AssumedFinger, Command, ObjectBody, WithSour
 use thermal_device::{FingerIndex, TICK_S};
 use thermal_settings::Settings;
 
-use super::{parse, refusal};
-use crate::{ANSWER_MAX_BYTES, CommandHandler, Error, LINE_MAX_BYTES, Request};
+use super::{command_of, refusal, work};
+use crate::station_command::StationWork;
+use crate::{ANSWER_MAX_BYTES, CommandHandler, Error, LINE_MAX_BYTES};
 
 /// CRC-32 of ISO-HDLC bit by bit, as zip files, Ethernet and Python's `zlib.crc32` have it.
 fn crc32(bytes: &[u8]) -> u32 {
@@ -125,7 +126,7 @@ fn finger_chooses_the_assumed_finger_or_asks_for_it() {
         ("finger mean-on-pad", Some(AssumedFinger::MeanOnPad)),
         ("finger thesis", Some(AssumedFinger::Thesis)),
     ] {
-        assert_eq!(parse(line), Ok(Request::Station(Command::Finger(finger))), "{line}");
+        assert_eq!(command_of(line), Command::Finger(finger), "{line}");
     }
     assert_eq!(
         refusal("finger thumb"),
@@ -136,8 +137,8 @@ fn finger_chooses_the_assumed_finger_or_asks_for_it() {
 
 #[test]
 fn a_slab_is_a_thickness_and_what_is_behind_it() {
-    let slab = |thickness_mm, back| Ok(Request::Slab { thickness_mm, back });
-    for (line, request) in [
+    let slab = |thickness_mm, back| (thickness_mm, back);
+    for (line, expected) in [
         ("object slab 3mm insulated", slab(3.0, Back::Insulated)),
         ("object slab 3 mm insulated", slab(3.0, Back::Insulated)),
         ("object slab 3 insulated", slab(3.0, Back::Insulated)),
@@ -145,22 +146,20 @@ fn a_slab_is_a_thickness_and_what_is_behind_it() {
         ("object slab 1000 mm film 12.5", slab(1000.0, Back::Film(12.5))),
         ("object slab 4 film 100000", slab(4.0, Back::Film(1e5))),
     ] {
-        assert_eq!(parse(line), request, "{line}");
+        let Ok(StationWork::Slab(thickness_mm, back)) = work(line) else { panic!("{line}") };
+        assert_eq!((thickness_mm, back), expected, "{line}");
     }
     for (line, answer) in [
         ("object slab", "err thickness missing; 0.1 to 1000 mm"),
-        ("object slab mm", "err thickness 'mm': a number of mm, such as 3 or 3mm; 0.1 to 1000"),
+        ("object slab mm", "err thickness 'mm' is not a decimal number; 0.1 to 1000 mm"),
         ("object slab 3", "err back missing; known: insulated held film"),
         ("object slab 3mm", "err back missing; known: insulated held film"),
         ("object slab 3 mm", "err back missing; known: insulated held film"),
         ("object slab 3mm film", "err film missing; 0.1 to 100000 W/m2K"),
-        (
-            "object slab 3cm held",
-            "err thickness '3cm': a number of mm, such as 3 or 3mm; 0.1 to 1000",
-        ),
+        ("object slab 3cm held", "err thickness '3cm' is not a decimal number; 0.1 to 1000 mm"),
         (
             "object slab insulated",
-            "err thickness 'insulated': a number of mm, such as 3 or 3mm; 0.1 to 1000",
+            "err thickness 'insulated' is not a decimal number; 0.1 to 1000 mm",
         ),
         ("object slab 0.09mm held", "err thickness '0.09' out of range; 0.1 to 1000 mm"),
         ("object slab 1001 held", "err thickness '1001' out of range; 0.1 to 1000 mm"),
@@ -309,18 +308,18 @@ fn an_error_before_the_commit_leaves_the_upload_as_it_was() {
     for (line, answers) in rows.iter().zip([
         &[
             ("upload", "err begin, row or commit missing"),
-            ("upload end", "err unknown upload 'end'; known: begin row commit object course"),
+            ("upload end", "err unknown upload 'end'; known: begin row commit"),
             ("upload row 1 2 3", "err not the next row, which is 0"),
         ][..],
         &[
-            ("upload row", "err row missing; 0 to 21 "),
+            ("upload row", "err row missing; 0 to 21"),
             ("upload row 1", "err rate missing; 0 to 690 1/s"),
             ("upload row 1 1", "err gain missing; 0.000001 to 13000000 mm2K/J"),
             ("upload row 1 1 1 1", "err unexpected '1' after the command"),
             ("upload row 0 1 1", "err not the next row, which is 1"),
             ("upload row 2 1 1", "err not the next row, which is 1"),
-            ("upload row 1.5 1 1", "err row '1.5' out of range; 0 to 21 "),
-            ("upload row 22 1 1", "err row '22' out of range; 0 to 21 "),
+            ("upload row 1.5 1 1", "err row '1.5' out of range; 0 to 21"),
+            ("upload row 22 1 1", "err row '22' out of range; 0 to 21"),
             ("upload row 1 -1 1", "err rate '-1' out of range; 0 to 690 1/s"),
             ("upload row 1 690.1 1", "err rate '690.1' out of range; 0 to 690 1/s"),
             ("upload row 1 1 0", "err gain '0' out of range; 0.000001 to 13000000 mm2K/J"),
@@ -348,14 +347,11 @@ fn an_error_before_the_commit_leaves_the_upload_as_it_was() {
 fn begin_says_what_is_uploaded() {
     for (line, answer) in [
         ("upload begin", "err kind of upload missing"),
-        (
-            "upload begin finger 1 0",
-            "err unknown upload 'finger'; known: begin row commit object course",
-        ),
-        ("upload begin object", "err number of rows missing; 0 to 22 "),
+        ("upload begin finger 1 0", "err unknown kind of upload 'finger'; known: object course"),
+        ("upload begin object", "err number of rows missing; 0 to 22"),
         ("upload begin object 1", "err direct missing; 0 to 27000 mm2K/W"),
-        ("upload begin object 23 0", "err number of rows '23' out of range; 0 to 22 "),
-        ("upload begin object -1 0", "err number of rows '-1' out of range; 0 to 22 "),
+        ("upload begin object 23 0", "err number of rows '23' out of range; 0 to 22"),
+        ("upload begin object -1 0", "err number of rows '-1' out of range; 0 to 22"),
         ("upload begin object 1 -1", "err direct '-1' out of range; 0 to 27000 mm2K/W"),
         ("upload begin object 1 27001", "err direct '27001' out of range; 0 to 27000 mm2K/W"),
         ("upload begin object 1 1 1", "err unexpected '1' after the command"),

@@ -1,6 +1,6 @@
 //! What the self-test says of the heat-flux sensor.
 
-use thermal_client::client::{SessionRequest, QuerySelfTest};
+use thermal_client::client::{QuerySelfTest, SessionRequest};
 use thermal_client::commissioning::arm;
 use thermal_device::learning::FluxSensorTest;
 use thermal_plant::sensors::{FluxCircuit, FluxDefect, FluxParams};

@@ -1,7 +1,7 @@
 //! The heat-flux sensor, calibrated by the simulated operator's phantom.
 
 use documented_figures::{assert_sampled, one_case_in};
-use thermal_client::client::{Client, SessionRequest, QueryFlux, QueryState};
+use thermal_client::client::{Client, QueryFlux, QueryState, SessionRequest};
 use thermal_client::commissioning::{
     CommissionError, CommissioningEvent, FluxCalibration, PhantomPlace, Surroundings,
     SurroundingsError, SurroundingsRequest, calibrate_flux,
