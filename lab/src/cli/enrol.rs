@@ -112,14 +112,14 @@ fn at_device<L: Link>(
 ) -> Result<(), Failure> {
     let (code, finger) = (arguments.code, arguments.finger);
     if arguments.forget {
-        let forget = PersonRequest::Forget { code: code };
+        let forget = PersonRequest::Forget { code };
         return client.ask(&forget).map_err(Failure::run);
     }
     if let Some(file) = &arguments.restore {
         let person = read(file, code).map_err(Failure::input)?;
         let commands = [
             (None, PersonRequest::store(&person)),
-            (finger, PersonRequest::Person { code: code, data: None }),
+            (finger, PersonRequest::Person { code, data: None }),
         ];
         for (finger, command) in commands {
             client.ask_finger(finger, &command).map_err(Failure::run)?;
@@ -141,7 +141,7 @@ fn at_device<L: Link>(
     let surface = client.ask_finger(finger, &QueryDisplaySurface);
     let surface = *surface.map_err(Failure::run)?.surface();
     let file = PersonFile {
-        code: code.to_string(),
+        code.to_string(),
         data: person_data(&person),
         enrolled_unix_s: since_1970.map_or(0, |time| time.as_secs()),
         device: board.and_then(|board| board.uid),
