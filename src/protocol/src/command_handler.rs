@@ -200,6 +200,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     }
 
     /// Executes a request that the device as a whole answers.
+    #[inline(never)]
     fn answer_of_device(
         &mut self,
         request: &DeviceRequest,
@@ -449,6 +450,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. With
     /// `None` on a device with several fingers, the queries `settings`, `margins`, `flux` and `surface` are answered by the first finger;
     /// a new calibration point and `tune result`, which are computed for milliseconds, are rejected.
+    #[inline(never)]
     fn execute_in_commissioning_sessions(
         &mut self,
         request: SessionRequest,
@@ -504,6 +506,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     }
 
     /// Answers `save` or `forget`: the caller restarts the device, unless the order is rejected.
+    #[inline(never)]
     fn save_or_forget(
         order: StorageOrder,
         finger: Option<FingerIndex<FINGERS>>,

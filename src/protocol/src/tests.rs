@@ -217,7 +217,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
         ),
         ("person none P07", "err unexpected 'P07' after the command"),
         ("persons P07", "err unexpected 'P07' after the command"),
-        ("forget persons", "err unexpected 'persons' after the command"),
+        ("forget persons", "err unknown forget 'persons'; known: person"),
         ("arm now", "err unexpected 'now' after the command"),
         ("object room 3", "err unexpected '3' after the command"),
         (

@@ -81,7 +81,6 @@ impl<Q: Quantity> From<f64> for Number<Q> {
 }
 
 impl<Q: Quantity> Argument for Number<Q> {
-    #[inline(never)]
     fn read(words: &mut Words<'_>) -> Result<Self, ReadError> {
         read_fixed_point_in_range(words, Q::RANGE).map(|value| Self(value, PhantomData))
     }

@@ -2,6 +2,7 @@
 
 use core::fmt;
 use core::iter;
+use core::str::SplitAsciiWhitespace;
 
 use contact_model::slab::Back;
 use thermal_device::TelemetryFields;
@@ -21,10 +22,23 @@ use crate::setting::{Setting, SettingNumber};
 use crate::special_arguments::{MaterialName, Millimetres, PointOrClear};
 use crate::words::{Words, expect_end, read_word, word_or_empty};
 
-/// Words with which a line of a form begins, and whether arguments follow.
+/// Words with which a line of a form begins, separated by spaces, and whether arguments follow.
 struct Form {
-    words: &'static [&'static str],
+    words: &'static str,
     has_arguments: bool,
+}
+
+impl Form {
+    /// The form's words.
+    fn words(&self) -> SplitAsciiWhitespace<'static> {
+        self.words.split_ascii_whitespace()
+    }
+
+    /// The first word, and the second one if there are two.
+    fn first_two_words(&self) -> (&'static str, Option<&'static str>) {
+        let mut words = self.words();
+        (words.next().unwrap_or_default(), words.next())
+    }
 }
 
 /// Declares requests from their rows: the words of the line, the name of the request, and its arguments. Who executes a request
@@ -71,7 +85,7 @@ macro_rules! requests {
         enum Place { $($($request,)+)+ }
 
         const FORMS: &[Form] = &[$($(Form {
-            words: &[$($word),+],
+            words: concat!($($word, " "),+),
             has_arguments: [$($(has_argument(stringify!($argument)),)+)? false][0],
         },)+)+];
 
@@ -253,20 +267,23 @@ requests! {
 /// First word of the lines of an upload.
 pub const UPLOAD_WORD: &str = "upload";
 
-/// First words of all requests.
+/// First words of all requests, each once.
 pub fn command_words() -> impl Iterator<Item = &'static str> {
-    let first = |form: &'static Form| form.words.first().copied();
-    let is_new = move |(place, word): &(usize, &'static str)| {
-        !FORMS.iter().take(*place).filter_map(first).any(|other| other == *word)
-    };
-    let words = FORMS.iter().filter_map(first).enumerate().filter(is_new).map(|(_, word)| word);
+    let first = |form: &Form| form.first_two_words().0;
+    let words = FORMS.iter().enumerate().filter_map(move |(place, form)| {
+        let word = first(form);
+        let is_new = !FORMS.iter().take(place).any(|other| first(other) == word);
+        is_new.then_some(word)
+    });
     words.chain(iter::once(UPLOAD_WORD))
 }
 
 /// Words that may follow this command.
 pub fn second_words(command: &str) -> impl Iterator<Item = &'static str> {
-    let of_command = FORMS.iter().filter(move |form| form.words.first() == Some(&command));
-    of_command.filter_map(|form| form.words.get(1).copied())
+    FORMS.iter().filter_map(move |form| match form.first_two_words() {
+        (first, second) if first == command => second,
+        _ => None,
+    })
 }
 
 impl Request {
@@ -296,14 +313,16 @@ impl Request {
 fn place_of_form(command: &str, words: &mut Words<'_>) -> Result<usize, ReadError> {
     let (mut known, mut too_long, mut has_second_words) = (None, None, false);
     for (place, form) in FORMS.iter().enumerate() {
-        let [first, others @ ..] = form.words else { continue };
-        if *first != command {
+        let mut others = form.words();
+        let first = others.next().unwrap_or_default();
+        if first != command {
             continue;
         }
-        known = Some(*first);
+        known = Some(first);
         let mut rest = words.clone();
-        if others.iter().all(|word| rest.next() == Some(word)) {
-            if form.has_arguments || rest.clone().next().is_none() {
+        if others.all(|word| rest.next() == Some(word)) {
+            let has_second_word = form.first_two_words().1.is_some();
+            if has_second_word || form.has_arguments || rest.clone().next().is_none() {
                 *words = rest;
                 return Ok(place);
             }
@@ -325,8 +344,8 @@ fn place_of_form(command: &str, words: &mut Words<'_>) -> Result<usize, ReadErro
 
 /// An error in the word after a command, where other words may stand, too.
 fn with_second_words(place: usize, words: &Words<'_>, error: ReadError) -> ReadError {
-    let command = match FORMS.get(place).map(|form| form.words) {
-        Some([command]) if second_words(command).next().is_some() => *command,
+    let command = match FORMS.get(place).map(Form::first_two_words) {
+        Some((command, None)) if second_words(command).next().is_some() => command,
         _ => return error,
     };
     match error {

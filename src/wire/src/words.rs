@@ -50,6 +50,7 @@ pub fn skip_if_next_is(words: &mut Words<'_>, expected: &str) -> bool {
 /// # Errors
 /// [`ReadError::NotANumber`]: the word is not a decimal number, or no word is left. [`ReadError::OutOfRange`]: the number lies
 /// outside `range`.
+#[inline(never)]
 pub fn read_fixed_point_in_range(
     words: &mut Words<'_>,
     range: &'static Range,
