@@ -119,27 +119,25 @@ def test_a_line_of_telemetry_is_read() -> None:
     line = "T 7 contact 24.31939 24.3300 23.99 - 23.97 1.999 0.233 0.426 17 limited"
     parsed = parse_line(line, TELEMETRY_FIELDS)
     assert parsed is not None
-    assert (parsed.tick, parsed.state, parsed.evaluations, parsed.remark) == (7, "contact", 17, "limited")
-    np.testing.assert_equal(parsed.numbers, [24.31939, 24.33, 23.99, np.nan, 23.97, 1.999, 0.233, 0.426])
-    np.testing.assert_equal(parsed.of_flux, [np.nan, np.nan])
-    assert parsed.known == ""
+    assert (parsed.tick, parsed.state, parsed.remark) == (7, "contact", "limited")
+    np.testing.assert_equal(parsed.values, [24.31939, 24.33, 23.99, np.nan, 23.97, 1.999, 0.233, 0.426, 17])
+    np.testing.assert_equal(parsed.named[:3], [np.nan, np.nan, ""])
 
 
 def test_a_line_with_chosen_fields_fills_their_columns() -> None:
     parsed = parse_line("T 7 preset 30.0000 1.5 -", ("display", "force"))
     assert parsed is not None
-    np.testing.assert_equal(parsed.numbers, [np.nan, 30, np.nan, np.nan, np.nan, 1.5, np.nan, np.nan])
+    np.testing.assert_equal(parsed.values, [np.nan, 30, np.nan, np.nan, np.nan, 1.5, np.nan, np.nan, -1])
 
 
 def test_a_line_with_fields_of_the_flux_sensor_fills_their_columns() -> None:
     fields: tuple[TelemetryField, ...] = ("force", *FLUX_FIELDS)
     parsed = parse_line("T 7 contact 1.5 -1234.5 24.0125 trusted -", fields)
     assert parsed is not None
-    assert (parsed.numbers[5], parsed.of_flux, parsed.known) == (1.5, (-1234.5, 24.0125), "trusted")
+    assert (parsed.values[5], parsed.named[:3]) == (1.5, (-1234.5, 24.0125, "trusted"))
     parsed = parse_line("T 7 contact 1.5 - - - -", fields)
     assert parsed is not None
-    np.testing.assert_equal(parsed.of_flux, [np.nan, np.nan])
-    assert parsed.known == ""
+    np.testing.assert_equal(parsed.named[:3], [np.nan, np.nan, ""])
 
 
 @pytest.mark.parametrize(

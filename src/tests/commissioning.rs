@@ -226,7 +226,7 @@ fn invalid_arguments_are_refused_and_change_nothing() {
         ("calibrate display 26 C", "err unexpected 'C' after the command"),
         ("calibrate display clear now", "err unexpected 'now' after the command"),
         ("calibrate display 61", "err reference temperature '61' out of range; 0 to 60 C"),
-        ("tune it", "err unexpected 'it' after the command"),
+        ("tune it", "err unknown tune 'it'; known: result"),
         ("margins 3", "err unexpected '3' after the command"),
     ] {
         assert_eq!(one.send(line), answer, "{line}");

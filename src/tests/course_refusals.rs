@@ -48,13 +48,13 @@ fn every_wrong_course_is_refused_with_its_reason() {
         (&["play now 2 off"], "err unknown end of a course 'off'; known: hold neutral"),
         (&["hold 30 0.001"], "err rate '0.001' out of range; 0.01 to 100 K/s"),
         (&["hold 43"], "err temperature '43' out of range; 15 to 42 C"),
-        (&["skin"], "err skin missing; sensor or 15 to 42 C"),
-        (&["skin cold"], "err skin 'cold': sensor or 15 to 42 C"),
+        (&["skin"], "err skin missing; 15 to 42 C; or sensor"),
+        (&["skin cold"], "err skin 'cold' is not a decimal number; 15 to 42 C; or sensor"),
         (
             &["pulse 30 42 1 600 1"],
             "err too hot for too long: CEM43 would be 2.51 min; below 0.50 min is allowed",
         ),
-        (&["events maybe"], "err unknown events 'maybe'; known: on off"),
+        (&["events maybe"], "err unknown switch 'maybe'; known: on off"),
         (
             &["trigger-out land,touch"],
             "err unknown event 'touch'; known: land lift start end flux none",

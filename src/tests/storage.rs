@@ -31,7 +31,10 @@ fn refusal<const FINGERS: usize>(
 fn storage_orders_are_accepted_only_while_all_bridges_are_off() {
     let settings = Settings::default();
     let (mut handler, mut device) = (CommandHandler::<5>::new(settings), Device::new(&settings));
-    for (line, order) in [("save", StorageOrder::Save), ("forget", StorageOrder::Forget)] {
+    for (line, order, extra) in [
+        ("save", StorageOrder::Save, "err unexpected 'it' after the command"),
+        ("forget", StorageOrder::Forget, "err unknown forget 'it'; known: person"),
+    ] {
         assert_eq!(answer(&mut handler, &mut device, line), Reply::Restart(order));
         assert_eq!(
             refusal(&mut handler, &mut device, &format!("@2 {line}")),
@@ -39,7 +42,7 @@ fn storage_orders_are_accepted_only_while_all_bridges_are_off() {
         );
         assert_eq!(
             refusal(&mut handler, &mut device, &format!("{line} it")),
-            "err unexpected 'it' after the command"
+            extra
         );
         answer(&mut handler, &mut device, "@3 arm");
         assert_eq!(

@@ -692,8 +692,8 @@ class Connection:
             if passed < 1 << 31:
                 lost = max(0, passed // stream.interval_ms - 1)
         self._lost += lost
-        before = (tick, finger, state, *parsed.numbers, parsed.evaluations, remark)
-        self.telemetry.put((*before, host_s, at_s, lost, *parsed.of_flux, parsed.known))
+        before = (tick, finger, state, *parsed.values, remark)
+        self.telemetry.put((*before, host_s, at_s, lost, *parsed.named))
         # After the row: who sees the trip sees the row that says so.
         if state != "tripped":
             self._trips.pop(finger, None)

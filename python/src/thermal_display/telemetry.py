@@ -6,38 +6,50 @@ import threading
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from .errors import TelemetryTimeout
-from .words import ALL_FIELDS, FLUX_FIELDS, TELEMETRY_FIELDS, State, TelemetryField
+from .words import ALL_FIELDS, TELEMETRY_FIELDS, State, TelemetryField
 
 if TYPE_CHECKING:
     from .connection import Connection
+
+
+@dataclass(frozen=True)
+class Column:
+    """A field of a telemetry line as the column of an array."""
+
+    field: TelemetryField
+    name: str
+    kind: Literal["number", "count", "word"]
+
+
+COLUMNS: tuple[Column, ...] = (
+    # generated: telemetry-columns
+    # /generated
+)
+"""The fields in the order of a line."""
+
+_READERS: dict[str, Callable[[str], Any]] = {"number": float, "count": int, "word": str}
+_UNKNOWN: dict[str, Any] = {"number": float("nan"), "count": -1, "word": ""}
+_TYPES: dict[str, Any] = {"number": np.float64, "count": np.int64, "word": "U12"}
+_OF_EVERY_LINE = COLUMNS[: len(TELEMETRY_FIELDS)]
+_NAMED = COLUMNS[len(TELEMETRY_FIELDS) :]
 
 TELEMETRY_DTYPE: np.dtype[Any] = np.dtype(
     [
         ("tick", np.uint32),
         ("finger", np.uint8),
         ("state", "U9"),
-        ("setpoint_c", np.float64),
-        ("display_c", np.float64),
-        ("sink_c", np.float64),
-        ("skin_c", np.float64),
-        ("room_c", np.float64),
-        ("force_n", np.float64),
-        ("demand_a", np.float64),
-        ("current_a", np.float64),
-        ("evaluations", np.int64),
+        *((column.name, _TYPES[column.kind]) for column in _OF_EVERY_LINE),
         ("remark", "U18"),
         ("host_s", np.float64),
         ("received_s", np.float64),
         ("lost_before", np.uint32),
-        ("flux_w_m2", np.float64),
-        ("surface_c", np.float64),
-        ("known", "U12"),
+        *((column.name, _TYPES[column.kind]) for column in _NAMED),
     ]
 )
 """Rows of telemetry. `tick` in ms since the device's reset; temperatures in °C, force in N, currents in A; NaN, and -1 for
@@ -49,10 +61,7 @@ it was not asked for or there is no sensor."""
 TelemetryArray = np.ndarray[Any, np.dtype[np.void]]
 """One-dimensional structured array of `TELEMETRY_DTYPE`."""
 
-_NAN = float("nan")
-_NUMBERS = tuple(field for field in ALL_FIELDS if field not in ("evaluations", "finger"))
-_COLUMN = {field: index for index, field in enumerate(_NUMBERS)}
-_OF_FLUX = sum(field in FLUX_FIELDS for field in _NUMBERS)
+_COLUMN = {column.field: column for column in COLUMNS}
 _STATES = frozenset(state.value for state in State)
 
 
@@ -63,22 +72,14 @@ class Sample:
     tick: int
     finger: int
     state: State
-    setpoint_c: float
-    display_c: float
-    sink_c: float
-    skin_c: float
-    room_c: float
-    force_n: float
-    demand_a: float
-    current_a: float
-    evaluations: int
+    # generated: telemetry-of-every-line
+    # /generated
     remark: str
     host_s: float
     received_s: float
     lost_before: int
-    flux_w_m2: float
-    surface_c: float
-    known: str
+    # generated: telemetry-named
+    # /generated
 
     @property
     def fault(self) -> str | None:
@@ -130,13 +131,11 @@ class ParsedLine:
 
     tick: int
     state: str
-    numbers: tuple[float, ...]
-    """In the order of a line, setpoint to current."""
-    evaluations: int
+    values: tuple[Any, ...]
+    """Of the fields that a line has if none is chosen, in its order."""
     remark: str
-    of_flux: tuple[float, ...]
-    """Flux and surface."""
-    known: str
+    named: tuple[Any, ...]
+    """Of the other fields."""
 
 
 def parse_line(content: str, fields: tuple[TelemetryField, ...]) -> ParsedLine | None:
@@ -148,20 +147,12 @@ def parse_line(content: str, fields: tuple[TelemetryField, ...]) -> ParsedLine |
         return None
     if words[0] != "T" or words[2] not in _STATES:
         return None
-    numbers = [_NAN] * len(_NUMBERS)
-    evaluations = -1
-    known = ""
+    values = {column.field: _UNKNOWN[column.kind] for column in COLUMNS}
     try:
         tick = int(words[1])
-        for field, word in zip(fields, words[3:]):
-            if word == "-":
-                continue
-            if field == "evaluations":
-                evaluations = int(word)
-            elif field == "finger":
-                known = word
-            else:
-                numbers[_COLUMN[field]] = float(word)
+        for column, word in zip((_COLUMN[field] for field in fields), words[3:]):
+            if word != "-":
+                values[column.field] = _READERS[column.kind](word)
     except ValueError:
         return None
     if not 0 <= tick < 1 << 32:
@@ -169,11 +160,9 @@ def parse_line(content: str, fields: tuple[TelemetryField, ...]) -> ParsedLine |
     return ParsedLine(
         tick=tick,
         state=words[2],
-        numbers=tuple(numbers[:-_OF_FLUX]),
-        evaluations=evaluations,
+        values=tuple(values[column.field] for column in _OF_EVERY_LINE),
         remark=words[3 + count],
-        of_flux=tuple(numbers[-_OF_FLUX:]),
-        known=known,
+        named=tuple(values[column.field] for column in _NAMED),
     )
 
 

@@ -60,67 +60,75 @@ Material = Literal[
 ]
 """Materials that the device knows by name."""
 
-AssumedFinger = Literal["mean", "mean-on-pad", "thesis"]
+AssumedFinger = Literal[
+    # generated: assumed-fingers
+    # /generated
+]
 """Finger that the device assumes for the one that touches."""
 
 FingerKnowledge = Literal[
-    "learning",
-    "trusted",
-    "no-code",
-    "sensor-range",
-    "sensor",
-    "between",
-    "wet",
-    "contact",
-    "unexplained",
-    "arithmetic",
-    "late",
+    # generated: finger-knowledge
+    # /generated
 ]
 """What is known of the finger by its heat flux. With all but the first two, set-points assume the finger of `assume_finger`."""
 
-ContactMode = Literal["contact", "semi-infinite"]
+ContactMode = Literal[
+    # generated: contact-modes
+    # /generated
+]
 """Set-point with contact resistance, or for perfect contact."""
 
-Law = Literal["model", "pi", "pi-10hz"]
+Law = Literal[
+    # generated: laws
+    # /generated
+]
 """Control law."""
 
-PlayStart = Literal["now", "trigger", "landing"]
+PlayStart = Literal[
+    # generated: course-starts
+    # /generated
+]
 """When a course starts: in the next tick, at the trigger input, or when the next finger lands."""
 
-PlayEnd = Literal["hold", "neutral"]
+PlayEnd = Literal[
+    # generated: course-ends
+    # /generated
+]
 """What follows a course: its last temperature, or skin temperature in the state `armed`."""
 
 SlabBack = Literal["insulated", "held"]
 """What is behind a slab: no heat passes, or the temperature stays."""
 
-TriggerEvent = Literal["land", "lift", "start", "end", "flux"]
+TriggerEvent = Literal[
+    # generated: trigger-events
+    # /generated
+]
 """Events that can give a pulse at the trigger output."""
 
-Thermistor = Literal["display", "check", "sink", "skin", "room"]
+Thermistor = Literal[
+    # generated: thermistors
+    # /generated
+]
 """Thermistors; `check` is the second one of the display."""
 
 TelemetryField = Literal[
-    "setpoint",
-    "display",
-    "sink",
-    "skin",
-    "room",
-    "force",
-    "demand",
-    "current",
-    "evaluations",
-    "flux",
-    "surface",
-    "finger",
+    # generated: telemetry-fields
+    # /generated
 ]
 """Fields of telemetry that `stream` can choose, in the order of a line."""
 
 ALL_FIELDS: tuple[TelemetryField, ...] = get_args(TelemetryField)
 """All fields, in the order of a line."""
 
-FLUX_FIELDS: tuple[TelemetryField, ...] = ("flux", "surface", "finger")
+FLUX_FIELDS: tuple[TelemetryField, ...] = (
+    # generated: flux-fields
+    # /generated
+)
 """The fields of the heat-flux sensor, which follow the others in a line if they are chosen: flux, estimate of the display's
 surface, and what is known of the finger."""
 
-TELEMETRY_FIELDS: tuple[TelemetryField, ...] = tuple(field for field in ALL_FIELDS if field not in FLUX_FIELDS)
+TELEMETRY_FIELDS: tuple[TelemetryField, ...] = (
+    # generated: default-fields
+    # /generated
+)
 """The fields of a line if none is chosen, in its order."""

@@ -10,6 +10,8 @@ use thermal_device::stimulus::{CourseEnd, CourseStart, TemperatureKind};
 use thermal_settings::{Person, PersonCode, Vocabulary as _, vocabulary};
 
 use crate::ReadError;
+#[cfg(feature = "host")]
+use crate::host::ArgumentForm;
 use crate::words::{Words, word_or_empty};
 
 /// What stands after the words of a request.
@@ -19,6 +21,10 @@ pub trait Argument: Sized {
     /// # Errors
     /// It is missing, unknown, no number, or out of range.
     fn read(words: &mut Words<'_>) -> Result<Self, ReadError>;
+
+    /// What stands there, for tables.
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm;
 
     /// Writes a space and the argument.
     ///
@@ -35,6 +41,11 @@ macro_rules! vocabularies {
                 let word = word_or_empty(words);
                 let unknown = || ReadError::UnknownWord(Self::WORDS, word.into());
                 Self::of_word(word).ok_or_else(unknown)
+            }
+
+            #[cfg(feature = "host")]
+            fn form() -> ArgumentForm {
+                ArgumentForm::Words(Self::WORDS.words)
             }
 
             fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -89,6 +100,11 @@ impl<A: Argument> Argument for Option<A> {
         }
     }
 
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Optional(std::boxed::Box::new(A::form()))
+    }
+
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.as_ref().map_or(Ok(()), |argument| argument.write(f))
     }
@@ -98,6 +114,11 @@ impl Argument for PersonCode {
     fn read(words: &mut Words<'_>) -> Result<Self, ReadError> {
         let word = word_or_empty(words);
         Self::new(word).ok_or(ReadError::NotPersonCode(word.into()))
+    }
+
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Text("1 to 8 of A-Z, 0-9")
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -113,6 +134,11 @@ impl Argument for PersonData {
     fn read(words: &mut Words<'_>) -> Result<Self, ReadError> {
         let word = word_or_empty(words);
         Person::read_finger(word).map(Self).ok_or(ReadError::NotPersonData(word.into()))
+    }
+
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Text("40 hexadecimal digits")
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

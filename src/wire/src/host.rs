@@ -3,12 +3,14 @@
 mod read_telemetry;
 mod requests;
 
+use std::boxed::Box;
 use std::string::String;
 use std::string::ToString as _;
 use std::vec::Vec;
 
 use thermal_device::StateName;
 use thermal_device::safety::Fault;
+use thermal_settings::Range;
 
 use crate::telemetry::FIELDS_OF_EVERY_LINE;
 pub use crate::telemetry::{COLUMNS, Telemetry};
@@ -101,6 +103,36 @@ impl Column {
             }
         }
     }
+}
+
+/// What a host sends as an argument.
+#[derive(Clone, Debug)]
+pub enum ArgumentForm {
+    /// A decimal number.
+    Number(&'static Range),
+    /// A whole number.
+    Whole(&'static Range),
+    /// Decimal numbers, one of each.
+    Numbers(&'static [Range]),
+    /// One of these words.
+    Words(&'static [&'static str]),
+    /// One or more of these words, with this between them.
+    List(&'static [&'static str], &'static str),
+    /// What this text says.
+    Text(&'static str),
+    /// It may be left out.
+    Optional(Box<Self>),
+}
+
+/// A form of a line from the host.
+#[derive(Clone, Copy, Debug)]
+pub struct RequestForm {
+    /// Words with which the line begins, each with a space behind it.
+    pub words: &'static str,
+    /// What it does, or asks for, as lines of text.
+    pub effect: &'static [&'static str],
+    /// Names and forms of the arguments.
+    pub arguments: &'static [(&'static str, fn() -> ArgumentForm)],
 }
 
 /// A finite number.

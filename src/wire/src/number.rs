@@ -9,6 +9,8 @@ use thermal_settings::Range;
 
 use crate::ReadError;
 use crate::argument::Argument;
+#[cfg(feature = "host")]
+use crate::host::ArgumentForm;
 use crate::words::{Words, read_fixed_point_in_range, read_whole_number_in_range};
 
 /// A quantity that a host sends.
@@ -85,6 +87,11 @@ impl<Q: Quantity> Argument for Number<Q> {
         read_fixed_point_in_range(words, Q::RANGE).map(|value| Self(value, PhantomData))
     }
 
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Number(Q::RANGE)
+    }
+
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match Q::DECIMALS {
             Some(decimals) => write!(f, " {:.*}", decimals as usize, self.0),
@@ -113,6 +120,11 @@ impl<Q: Quantity> From<usize> for Whole<Q> {
 impl<Q: Quantity> Argument for Whole<Q> {
     fn read(words: &mut Words<'_>) -> Result<Self, ReadError> {
         read_whole_number_in_range(words, Q::RANGE).map(Self::from)
+    }
+
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Whole(Q::RANGE)
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -16,6 +16,8 @@ use thermal_settings::{DisplaySurface, FluxSensor, PersonCode};
 
 use crate::ReadError;
 use crate::argument::{Argument, PersonData, Switch};
+#[cfg(feature = "host")]
+use crate::host::RequestForm;
 use crate::number::{Number, Whole};
 use crate::quantity::*;
 use crate::setting::{Setting, SettingNumber};
@@ -47,7 +49,7 @@ macro_rules! requests {
     ($(
         $(#[$group_doc:meta])+
         $group:ident($requests:ident) {$(
-            $(#[$doc:meta])+
+            $(#[doc = $doc:literal])+
             $($word:literal)+ => $request:ident $({ $($argument:ident: $kind:ty),+ $(,)? })?;
         )+}
     )+) => {
@@ -55,7 +57,7 @@ macro_rules! requests {
             $(#[$group_doc])+
             #[derive(Clone, Debug, PartialEq)]
             pub enum $requests {$(
-                $(#[$doc])+
+                $(#[doc = $doc])+
                 #[allow(missing_docs, reason = "name and type say it")]
                 $request $({ $($argument: $kind),+ })?,
             )+}
@@ -87,6 +89,14 @@ macro_rules! requests {
         const FORMS: &[Form] = &[$($(Form {
             words: concat!($($word, " "),+),
             has_arguments: [$($(has_argument(stringify!($argument)),)+)? false][0],
+        },)+)+];
+
+        /// All forms of a line but those of an upload, in the order of the table.
+        #[cfg(feature = "host")]
+        pub const TABLE: &[RequestForm] = &[$($(RequestForm {
+            words: concat!($($word, " "),+),
+            effect: &[$($doc),+],
+            arguments: &[$($((stringify!($argument), <$kind as Argument>::form)),+)?],
         },)+)+];
 
         fn read_arguments(place: usize, words: &mut Words<'_>) -> Result<Request, ReadError> {

@@ -12,6 +12,8 @@ use thermal_settings::{
 
 use crate::ReadError;
 use crate::argument::Argument;
+#[cfg(feature = "host")]
+use crate::host::ArgumentForm;
 use crate::number::{Whole, quantities};
 use crate::words::{
     Words, read_number_in_range, read_numbers_in_ranges, skip_if_next_is, word_or_empty,
@@ -107,6 +109,11 @@ impl Argument for Setting {
         })
     }
 
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Text("a line of the settings")
+    }
+
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Steps { first, counts } => {
@@ -146,6 +153,11 @@ impl Argument for FluxSensor {
         read_numbers_in_ranges(words, &FLUX_SENSOR_RANGES).map(Self::from_array_rounded)
     }
 
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Numbers(&FLUX_SENSOR_RANGES)
+    }
+
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write_numbers(f, &self.to_array(), &Self::DECIMALS)
     }
@@ -155,6 +167,11 @@ impl Argument for FluxSensor {
 impl Argument for DisplaySurface {
     fn read(words: &mut Words<'_>) -> Result<Self, ReadError> {
         read_numbers_in_ranges(words, &DISPLAY_SURFACE_RANGES).map(Self::from_array_rounded)
+    }
+
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Numbers(&DISPLAY_SURFACE_RANGES)
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

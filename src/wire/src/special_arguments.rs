@@ -10,6 +10,8 @@ use thermal_device::stimulus::{CourseEnd, CourseStart, PlayOrder};
 use thermal_settings::{Vocabulary as _, WordList};
 
 use crate::argument::Argument;
+#[cfg(feature = "host")]
+use crate::host::ArgumentForm;
 use crate::number::{Number, Quantity as _};
 use crate::quantity::{Film, Reference, Repeats, Thickness};
 use crate::telemetry::{self, DEFAULT_FIELDS, NO_FIELDS};
@@ -44,6 +46,11 @@ impl Argument for MaterialName {
         name.find().map(|_| name)
     }
 
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Text("name of a material")
+    }
+
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, " {}", self.0.as_str())
     }
@@ -62,6 +69,11 @@ impl Argument for TelemetryFields {
         Ok(if fields == NO_FIELDS { DEFAULT_FIELDS } else { fields })
     }
 
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Optional(std::boxed::Box::new(ArgumentForm::List(&telemetry::NAMES, " ")))
+    }
+
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if *self == DEFAULT_FIELDS {
             return Ok(());
@@ -74,14 +86,12 @@ impl Argument for TelemetryFields {
 
 /// Argument of `trigger-out` that switches the output off.
 const NO_EVENTS_WORD: &str = "none";
+const MARKED: &WordList =
+    &WordList { kind: "event", words: &["land", "lift", "start", "end", "flux", NO_EVENTS_WORD] };
 
 /// `none`, or kinds of events that are joined by commas. An edge at the trigger input is none of them.
 impl Argument for EventKinds {
     fn read(words: &mut Words<'_>) -> Result<Self, ReadError> {
-        const MARKED: &WordList = &WordList {
-            kind: "event",
-            words: &["land", "lift", "start", "end", "flux", NO_EVENTS_WORD],
-        };
         let list = word_or_empty(words);
         let mut kinds = Self::NONE;
         if list == NO_EVENTS_WORD {
@@ -94,6 +104,11 @@ impl Argument for EventKinds {
             }
         }
         Ok(kinds)
+    }
+
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::List(MARKED.words, ",")
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -126,22 +141,33 @@ impl Argument for Millimetres {
         Ok(Self(thickness))
     }
 
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Number(Thickness::RANGE)
+    }
+
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.write(f)?;
         f.write_str("mm")
     }
 }
 
+const BACKS: &WordList = &WordList { kind: "back", words: &["insulated", "held", "film"] };
+
 /// What is behind a slab: `insulated`, `held`, or `film` with its coefficient.
 impl Argument for Back {
     fn read(words: &mut Words<'_>) -> Result<Self, ReadError> {
-        const BACKS: &WordList = &WordList { kind: "back", words: &["insulated", "held", "film"] };
         Ok(match word_or_empty(words) {
             "insulated" => Self::Insulated,
             "held" => Self::Held,
             "film" => Self::Film(Number::<Film>::read(words)?.f64()),
             unknown => return Err(ReadError::UnknownWord(BACKS, unknown.into())),
         })
+    }
+
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Text("insulated, held, or film with 0.1 to 100000 W/m2K")
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -168,6 +194,11 @@ impl Argument for PlayOrder {
         Ok(Self { start, play_count, end })
     }
 
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Text("now, trigger or landing; repeats, 1 to 1000; hold or neutral")
+    }
+
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, " {} {} {}", self.start.name(), self.play_count, self.end.name())
     }
@@ -188,6 +219,11 @@ impl Argument for PointOrClear {
             return Ok(Self::Clear);
         }
         Number::read(words).map(Self::Point)
+    }
+
+    #[cfg(feature = "host")]
+    fn form() -> ArgumentForm {
+        ArgumentForm::Text("clear, or 0 to 60 C")
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
