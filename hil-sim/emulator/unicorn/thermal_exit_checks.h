@@ -1,5 +1,5 @@
-/* Included before every source file of Unicorn 2.1, by CFLAGS in .cargo/config.toml. It leaves out checks that take four tenths of
- * an emulated run and find nothing here.
+/* Included before every source file of Unicorn 2.1, by CFLAGS in .cargo/config.toml. It leaves out checks that find nothing here
+ * and slow an emulated run down; ../README.md says by how much.
  *
  * Unicorn's translator calls check_exit_request() behind every load and store, and saves all guest registers for it, so that
  * uc_emu_stop() in a callback of the access ends the run there. The emulated machine calls uc_emu_stop() in hooks of blocks,

@@ -19,7 +19,7 @@ const ANSWERED_IN_MS: usize = 300;
 
 /// Lines to a finger that touches, in contact with an uploaded object. Each choice is made where it changes most: a material
 /// after an object with a body, a finger after one of another tissue.
-const IN_CONTACT: [&str; 53] = [
+const IN_CONTACT: [&str; 67] = [
     "id",
     "board",
     "state",
@@ -37,6 +37,9 @@ const IN_CONTACT: [&str; 53] = [
     "material copper",
     "finger mean",
     "finger mean-on-pad",
+    "contact",
+    "contact 0.9 61250 1000",
+    "contact nominal",
     "material custom 0.17 700 2000 5 0.12",
     "object slab 3mm insulated",
     "object half-space",
@@ -63,6 +66,17 @@ const IN_CONTACT: [&str; 53] = [
     "finger mean",
     "set flux 0.1 2000 4 20",
     "flux zero",
+    "surface",
+    "surface set 20 2 0.2",
+    "set surface 36 1.5 0.15",
+    "surface nominal",
+    "person P01 0123456789abcdef0123456789abcdef01234567",
+    "persons",
+    "person P01",
+    "person",
+    "person enrol P01",
+    "person none",
+    "forget person P01",
     "flux none",
     "hold 30",
     "start",
@@ -196,8 +210,9 @@ impl Session {
         }
     }
 
-    /// Sends all commands of docs/protocol.md, in the states in which they do most. Only `save` and `forget` are missing, which
-    /// need every bridge off, and the rows of a complete identification, which takes half a minute.
+    /// Sends all commands of docs/protocol.md, in the states in which they do most. Missing are only `save` and `forget`, which
+    /// need every bridge off, `checksum`, which no finger executes, and the rows of a complete identification, which takes half
+    /// a minute.
     fn ask_everything(&mut self) {
         self.ask_with_uploads(IN_CONTACT.map(str::to_owned));
         let rows = (0..COURSE_POINTS).map(|row| {

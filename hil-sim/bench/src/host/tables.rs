@@ -74,7 +74,7 @@ const PEERS: &str = "\
 All take the inputs of the firmware's kernel, the ticks since contact `n` and `K = b² dt`, each in its natural \
 type, and return `E`; computing `z = sqrt(n K)` is part of their cost and error. In `f32` rounding `K`, the \
 product and its root causes up to 141 units of error before anything is evaluated, and rounding the result 128 \
-more: nearly all of the error of the larger tables. Coefficients are derived by `hil-sim/bench/build.rs`.
+more: most of the error of the quadratic tables of 16 and 64 KiB. Coefficients are derived by `hil-sim/bench/build.rs`.
 
 - libm: `exp(u) erfc(z)`. On this FPU `f64` is software. Near the z at which it breaks, all of its error is the \
 rounding of `z`, amplified by `2 z²`. Beyond, it returns early, which lowers its mean cost.

@@ -11,8 +11,8 @@
 //!     clock.json                              what only clock and computer say
 //! ```
 //!
-//! `log.jsonl` and `telemetry.csv` grow by one trial at a time and are then forced to the disk. A power cut loses the trial
-//! that runs, and nothing else.
+//! `log.jsonl` and `telemetry.csv` grow by one trial at a time. A thread beside the session writes it and forces it to the disk,
+//! before the next one is written. A power cut loses the trial that runs, and the one before if it was not on the disk yet.
 
 mod append;
 mod bids;

@@ -42,26 +42,34 @@ vocabulary! {
         CheckJump = "check-jump",
         /// The reading of the heat sink's thermistor has changed by more than 0.5 K in 4 ms, faster than the sink can.
         SinkJump = "sink-jump",
-        /// The sum of 16 conversions of the display's first thermistor has not changed for 46 ticks (46 ms). Noise would
-        /// change a live signal, so the wire or the converter delivers a constant.
+        /// The sum of 16 conversions of the display's first thermistor has not changed for 46 ticks (46 ms), while the
+        /// conversions of other thermistors scattered. That noise would change a live signal, so the wire or the converter
+        /// delivers a constant. Not found on a converter without such noise.
         DisplayFrozen = "display-frozen",
-        /// The sum of 16 conversions of the display's second thermistor has not changed for 46 ticks (46 ms). Noise would
-        /// change a live signal, so the wire or the converter delivers a constant.
+        /// The sum of 16 conversions of the display's second thermistor has not changed for 46 ticks (46 ms), while the
+        /// conversions of other thermistors scattered. That noise would change a live signal, so the wire or the converter
+        /// delivers a constant. Not found on a converter without such noise.
         CheckFrozen = "check-frozen",
-        /// The sum of 16 conversions of the heat sink's thermistor has not changed for 46 ticks (46 ms). Noise would change
-        /// a live signal, so the wire or the converter delivers a constant.
+        /// The sum of 16 conversions of the heat sink's thermistor has not changed for 46 ticks (46 ms), while the
+        /// conversions of other thermistors scattered. That noise would change a live signal, so the wire or the converter
+        /// delivers a constant. Not found on a converter without such noise.
         SinkFrozen = "sink-frozen",
-        /// The sum of 16 conversions of the skin's thermistor has not changed for 46 ticks (46 ms). Noise would change a
-        /// live signal, so the wire or the converter delivers a constant.
+        /// The sum of 16 conversions of the skin's thermistor has not changed for 46 ticks (46 ms), while the conversions
+        /// of other thermistors scattered. That noise would change a live signal, so the wire or the converter delivers a
+        /// constant. Not found on a converter without such noise.
         SkinFrozen = "skin-frozen",
-        /// The sum of 16 conversions of the room's thermistor has not changed for 46 ticks (46 ms). Noise would change a
-        /// live signal, so the wire or the converter delivers a constant.
+        /// The sum of 16 conversions of the room's thermistor has not changed for 46 ticks (46 ms), while the conversions
+        /// of other thermistors scattered. That noise would change a live signal, so the wire or the converter delivers a
+        /// constant. Not found on a converter without such noise.
         RoomFrozen = "room-frozen",
-        /// The sum of 16 conversions of the force sensor has not changed for 46 ticks (46 ms). Noise would change a live
-        /// signal, so the wire or the converter delivers a constant.
+        /// The sum of 16 conversions of the force sensor has not changed for 46 ticks (46 ms), while the conversions of
+        /// thermistors scattered. That noise would change a live signal, so the wire or the converter delivers a constant.
+        /// Not found on a converter without such noise.
         ForceFrozen = "force-frozen",
         /// The analogue-to-digital converter has stopped: the sum of one channel has not changed for 46 ticks (46 ms), and
-        /// the sums of all five thermistors and the force sensor have not changed for 30 ticks.
+        /// those of all five thermistors and the force sensor either began to repeat together, after noise had changed most
+        /// of them in most ticks, or have not changed for 30 ticks, after conversions of thermistors scattered. Not found
+        /// on a converter without such noise.
         SamplesFrozen = "samples-frozen",
         /// The readings of the two display thermistors have differed by more than 3 K for 40 ms (debounced), so one of them
         /// is wrong.
@@ -145,8 +153,8 @@ vocabulary! {
         /// The independent watchdog has reset the device, because a task did not report to it for 68 to 188 ms (the time
         /// varies with the watchdog's oscillator); detected at the start after that reset.
         Watchdog = "watchdog",
-        /// A reset by the program (or on entry to a low-power mode) that the host did not order by `save` or `forget`;
-        /// detected at the start after that reset.
+        /// A reset by the program (or on entry to a low-power mode) that neither the host has ordered by `save` or
+        /// `forget`, nor the device itself because its external clock has come; detected at the start after that reset.
         UnaskedReset = "unasked-reset",
         /// The settings stored in flash are invalid, which is detected at the start; the device then uses the factory
         /// defaults.

@@ -72,7 +72,7 @@ pub fn page(figures: &Figures) -> String {
     format!(
         "# Cost of the simulated plant\n\n\
          Written by `cargo xtask bench plant --out docs`. Times are those of one host in one run; ratios are \
-         comparable between hosts, errors are the same everywhere.\n\n\
+         comparable between hosts, and errors, up to rounding, do not depend on the host.\n\n\
          ![Cost of a finger against their number, and error against run time over meshes and steps]({SVG})\n\n{}",
         tables(figures)
     )

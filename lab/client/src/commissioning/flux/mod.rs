@@ -53,6 +53,9 @@ const PRESSED_N: f64 = 1.0;
 const FREE_N: f64 = 0.02;
 /// Longest time from the landing to the end, s.
 const RECORDED_MAX_S: f64 = 120.0;
+/// Time from the landing within which Enter must be pressed, s: what follows lasts as long as rest and course.
+const CONFIRMED_MAX_S: f64 =
+    RECORDED_MAX_S - (TOGETHER_S + COURSE[0].1 + COURSE[1].1 + COURSE[2].1 + COURSE[3].1);
 /// Gains over the designed one that a sound sensor on the right phantom has, and contact resistances, m² K/W, without the sensor's layer.
 const GAIN: (f64, f64) = (0.75, 1.33);
 const CONTACT_M2K_W: (f64, f64) = (-1e-5, 4e-4);
@@ -152,8 +155,10 @@ pub enum FluxCalibrationError {
         "the phantom presses with {0:.2} N; it needs {PRESSED_N} N or more with its weight, until the end"
     )]
     NotPressed(f64),
-    /// It was put on too long ago.
-    #[error("the phantom was put on {0:.0} s ago; press Enter within {RECORDED_MAX_S} s")]
+    /// It was put on too long ago. Its value: seconds from then to the end of the course.
+    #[error(
+        "the phantom was put on {0:.0} s ago; press Enter within {CONFIRMED_MAX_S} s after that"
+    )]
     TooLong(f64),
     /// No gain follows from what was read.
     #[error("the display's temperature does not depend on what the sensor reads: shorted wires?")]
