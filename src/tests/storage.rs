@@ -40,10 +40,7 @@ fn storage_orders_are_accepted_only_while_all_bridges_are_off() {
             refusal(&mut handler, &mut device, &format!("@2 {line}")),
             format!("@2 err {line} is for all fingers at once")
         );
-        assert_eq!(
-            refusal(&mut handler, &mut device, &format!("{line} it")),
-            extra
-        );
+        assert_eq!(refusal(&mut handler, &mut device, &format!("{line} it")), extra);
         answer(&mut handler, &mut device, "@3 arm");
         assert_eq!(
             refusal(&mut handler, &mut device, line),

@@ -141,7 +141,7 @@ fn at_device<L: Link>(
     let surface = client.ask_finger(finger, &QueryDisplaySurface);
     let surface = *surface.map_err(Failure::run)?.surface();
     let file = PersonFile {
-        code.to_string(),
+        code: code.to_string(),
         data: person_data(&person),
         enrolled_unix_s: since_1970.map_or(0, |time| time.as_secs()),
         device: board.and_then(|board| board.uid),
