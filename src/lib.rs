@@ -15,6 +15,7 @@
 //! | [`learner`] | estimates the finger that touches from the heat flux, in a task of its own |
 //! | [`settings`] | what differs between two built devices, and how it is stored in flash |
 //! | [`commissioning`] | calibration of the thermistors and identification of the tile, in the task that answers the host |
+//! | [`wire`] | what host and device say to each other, declared once |
 //! | [`protocol`] | the lines between host and device |
 //! | [`bridge`] | driver of an H-bridge with two logic inputs and an enable input |
 //! | [`line_queue`] | the queue of received lines, between the interrupt and the task that answers |
@@ -52,6 +53,7 @@ pub use thermal_device as device;
 pub use thermal_learner as learner;
 pub use thermal_protocol as protocol;
 pub use thermal_settings as settings;
+pub use thermal_wire as wire;
 
 #[cfg(test)]
 mod tests;
