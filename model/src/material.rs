@@ -70,20 +70,56 @@ const fn solid(k: f64, rho: f64, c: f64, roughness_um: f64, slope_rad: f64) -> M
     }
 }
 
-/// Materials of the thesis by name. The slopes of bronze and G10 are assumed, because the thesis gives none.
-pub const MATERIALS: [(&str, Material); 9] = [
-    ("copper", solid(398.0, 8954.0, 384.0, 0.31, 0.045)),
-    ("bronze", solid(54.0, 8780.0, 355.0, 0.32, 0.053)),
-    ("stainless-steel", solid(13.5, 8000.0, 460.0, 0.19, 0.031)),
-    ("granite", solid(2.79, 2630.0, 775.0, 0.46, 0.048)),
-    ("g10", solid(0.29, 1800.0, 1600.0, 1.50, 0.168)),
-    ("abs", solid(0.18, 1010.0, 1386.0, 0.45, 0.046)),
-    ("foam", solid(0.029, 24.0, 1210.0, 8.03, 0.157)),
-    ("baf2", solid(11.7, 4890.0, 410.0, 0.008, 0.009)),
-    ("zns", solid(27.2, 4090.0, 515.0, 0.006, 0.006)),
-];
+/// Makes tables of rows: name; conductivity, density, specific heat, RMS roughness, mean slope; what it is and the source.
+///
+/// Descriptions are a table of their own, so that the image does not contain them.
+macro_rules! materials {
+    ($($name:literal [$($property:literal),*] $description:literal;)*) => {
+        /// All materials by name.
+        pub const MATERIALS: [(&str, Material); DESCRIPTIONS.len()] =
+            [$(($name, solid($($property),*))),*];
+        /// What each of [`MATERIALS`] is, and the source of its properties.
+        pub const DESCRIPTIONS: [&str; [$($name),*].len()] = [$($description),*];
+    };
+}
+
+materials! {
+    // name           W/(m K)  kg/m³ J/(kg K)   µm    rad
+    "copper"          [398.0, 8954.0,  384.0,  0.31, 0.045] "metal; Ho 2006";
+    "bronze"          [ 54.0, 8780.0,  355.0,  0.32, 0.053] "metal; Ho 2006, slope assumed";
+    "stainless-steel" [ 13.5, 8000.0,  460.0,  0.19, 0.031] "metal; Ho 2006";
+    "granite"         [ 2.79, 2630.0,  775.0,  0.46, 0.048] "stone; Ho 2006";
+    "g10"             [ 0.29, 1800.0, 1600.0,  1.50, 0.168] "glass-fibre board; Ho 2006, slope assumed";
+    "abs"             [ 0.18, 1010.0, 1386.0,  0.45, 0.046] "plastic; Ho 2006";
+    "foam"            [0.029,   24.0, 1210.0,  8.03, 0.157] "insulator; Ho 2006";
+    "baf2"            [ 11.7, 4890.0,  410.0, 0.008, 0.009] "barium fluoride, an infrared window; Ho 2006";
+    "zns"             [ 27.2, 4090.0,  515.0, 0.006, 0.006] "zinc sulphide, an infrared window; Ho 2006";
+}
+
+/// Names of the thesis's materials, in an order that stays. What is drawn by seed, or is a figure of these nine, chooses from
+/// them, so that a material added to [`MATERIALS`] changes neither.
+pub const THESIS_MATERIALS: [&str; 9] =
+    ["copper", "bronze", "stainless-steel", "granite", "g10", "abs", "foam", "baf2", "zns"];
 
 /// Looks up a material by its name in [`MATERIALS`].
-pub fn find(name: &str) -> Option<&'static Material> {
-    MATERIALS.iter().find(|(known, _)| *known == name).map(|(_, material)| material)
+pub const fn find(name: &str) -> Option<&'static Material> {
+    let mut rest: &[(&str, Material)] = &MATERIALS;
+    while let [(known, material), others @ ..] = rest {
+        if equal(known.as_bytes(), name.as_bytes()) {
+            return Some(material);
+        }
+        rest = others;
+    }
+    None
+}
+
+/// Comparison with `==` is not possible in a constant.
+const fn equal(mut a: &[u8], mut b: &[u8]) -> bool {
+    while let ([first, a_rest @ ..], [second, b_rest @ ..]) = (a, b) {
+        if *first != *second {
+            return false;
+        }
+        (a, b) = (a_rest, b_rest);
+    }
+    a.is_empty() && b.is_empty()
 }

@@ -1,6 +1,8 @@
 //! Materials, pressure and limits of the floating-point reference; `budgets` measures its errors.
 
-use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN, average_slope_rad, find};
+use contact_model::material::{
+    MATERIALS, REFERENCE_DISPLAY, SKIN, THESIS_MATERIALS, average_slope_rad, find,
+};
 use contact_model::pressure::{contact_area_m2, pressure_pa};
 use contact_model::reference::{Contact, SemiInfinite};
 
@@ -22,7 +24,7 @@ fn effusivity_and_average_slope_agree_with_golden_values() {
 #[test]
 fn no_heat_flows_at_zero_pressure() {
     let (skin_c, object_c) = (34.0, 24.0);
-    let (_, copper) = &MATERIALS[0];
+    let copper = find("copper").expect("copper");
     let contact = Contact::<f64>::new((&SKIN, skin_c), (copper, object_c), &REFERENCE_DISPLAY, 0.0);
     for t_s in [0.0, 1e-3, 1e9] {
         let at = contact.at(t_s);
@@ -47,11 +49,14 @@ fn flux_approaches_that_of_perfect_contact_as_resistance_vanishes() {
 }
 
 #[test]
-fn every_material_of_the_thesis_is_found_by_its_name() {
+fn every_material_is_found_by_its_name() {
     for (name, material) in &MATERIALS {
         assert_eq!(find(name), Some(material));
     }
-    assert_eq!(find("Copper"), None);
+    assert!(THESIS_MATERIALS.iter().all(|name| find(name).is_some()));
+    for unknown in ["Copper", "copper-", "coppe", ""] {
+        assert_eq!(find(unknown), None);
+    }
 }
 
 /// Section 6.4.2: 0.73, 1.68, 3.14, 5.90 and 10.98 kPa at 0.1, 0.25, 0.5, 1 and 2 N.

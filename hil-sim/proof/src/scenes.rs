@@ -3,7 +3,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use contact_model::material::MATERIALS;
+use contact_model::material::THESIS_MATERIALS;
 use thermal_client::client::upload_course;
 use thermal_device::stimulus::TemperatureKind;
 use thermal_sim::scene::{FaultKind, Scene};
@@ -11,7 +11,7 @@ use thermal_sim::scene::{FaultKind, Scene};
 /// Time at which each fault begins, during contact, s.
 const FAULT_S: f64 = 0.5;
 
-/// One scene for each material, with changes of force and law, queries, and lines that are refused.
+/// One scene for each material of the thesis, with changes of force and law, queries, and lines that are refused.
 ///
 /// # Errors
 /// A scene is refused.
@@ -32,7 +32,7 @@ pub fn touched() -> Result<Vec<(String, Scene)>> {
         (2.2, "hold 15"),
         (2.3, "cause"),
     ];
-    let scene = |(name, _): &(&str, _)| {
+    let scene = |name: &&str| {
         let mut text = head(name, 2.5);
         for (t_s, force_n) in forces {
             writeln!(text, "[[force]]\nt_s = {t_s}\nforce_n = {force_n}")?;
@@ -42,7 +42,7 @@ pub fn touched() -> Result<Vec<(String, Scene)>> {
         }
         parsed(name, &text)
     };
-    MATERIALS.iter().map(scene).collect()
+    THESIS_MATERIALS.iter().map(scene).collect()
 }
 
 /// One scene for each fault, during contact, with a value at three quarters of its range.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use contact_model::material::THESIS_MATERIALS;
 use earlier_displays::{
     Comparison, Display, Report, Showing, SingleContact, Tissue, chart, page, scene, table,
 };
@@ -134,10 +135,7 @@ fn all(arguments: &Arguments) -> Result<(), Failure> {
         }
         None => Tissue::ALL
             .iter()
-            .flat_map(|tissue| {
-                let materials = Report::materials().into_iter();
-                materials.map(|material| scene(material, *tissue))
-            })
+            .flat_map(|tissue| THESIS_MATERIALS.iter().map(|material| scene(material, *tissue)))
             .collect(),
     };
     let runner = match arguments.ideal_only {

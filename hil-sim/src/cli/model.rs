@@ -6,7 +6,8 @@ use anyhow::{Context, anyhow, ensure};
 use clap::{Args, ValueEnum};
 use contact_model::fixed_point::{Celsius, ContactPair, Log2, TEMPERATURE_RANGE_C};
 use contact_model::material::{
-    Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, Surface, find,
+    DESCRIPTIONS, MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, Surface,
+    find,
 };
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, Real};
@@ -15,8 +16,9 @@ use thermal_sim::scene::known_materials;
 use super::Failure;
 
 #[derive(Args)]
+#[command(after_help = materials())]
 pub struct Arguments {
-    /// Material of the thesis: copper, bronze, stainless-steel, granite, g10, abs, foam, baf2, zns
+    /// Name of a material, from the list below
     #[arg(long, required_unless_present = "k_w_mk", conflicts_with = "k_w_mk")]
     material: Option<String>,
     /// Conductivity of an own material, W/(m K)
@@ -132,6 +134,13 @@ fn print(times: &[f64], rows: &[ModelRow]) -> io::Result<()> {
         writeln!(out, "{t_s},{}", cells.join(","))?;
     }
     Ok(())
+}
+
+/// All materials with their descriptions.
+fn materials() -> String {
+    let rows = MATERIALS.iter().zip(DESCRIPTIONS);
+    let lines = rows.map(|((name, _), description)| format!("\n  {name:15}  {description}"));
+    "Materials:".to_owned() + &lines.collect::<String>()
 }
 
 /// The material and the pressure in Pa, if everything is in range.

@@ -136,11 +136,11 @@ fn world(
     room_c: f64,
     (seed, noise_seed, finger): (u64, u64, usize),
 ) -> Result<World, BenchError> {
-    let (_, material) = MATERIALS[0];
+    let [(_, any), ..] = MATERIALS;
     let config = PlantConfig {
         skin_c,
         room_c,
-        object: ObjectConfig::half_space(material, room_c),
+        object: ObjectConfig::half_space(any, room_c),
         start_s: 0.0,
         appears_s: MESHED_S,
         duration_s: MESHED_S,

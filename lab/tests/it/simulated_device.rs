@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use contact_model::impedance::{Impedance, Relaxation};
-use contact_model::material::MATERIALS;
+use contact_model::material::find;
 use contact_model::slab::Back;
 use thermal_device::StateName;
 use thermal_device::command::AssumedFinger;
@@ -41,7 +41,7 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     let mut engine = device();
     let mut client = Client::new(SimulatedLink::new(&mut engine));
     client.wait(Duration::from_millis(600)).unwrap();
-    let (_, copper) = MATERIALS[0];
+    let copper = *find("copper").expect("copper");
     let setting = client.ask(&QuerySettings(3)).unwrap();
     let relaxations = [Relaxation { rate_1_s: 2.0, gain_m2k_j: 4e-5 }];
     let object = Impedance { direct_m2k_w: 5e-7, relaxations: &relaxations };

@@ -82,7 +82,7 @@ mod tests {
     use crate::fixed_point::{
         ContactPair, Force, MantissaExponent, OwnResistances, Ratio, log2_relative_pressure,
     };
-    use crate::material::{MATERIALS, REFERENCE_DISPLAY};
+    use crate::material::{MATERIALS, REFERENCE_DISPLAY, find};
     use crate::pressure::pressure_pa;
     use crate::reference::conductance_at_hardness;
 
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn the_nominal_law_is_none_and_one_beside_it_has_its_resistance() {
         assert_eq!(OwnContactLaw::new(&ContactLaw::NOMINAL, TICK_S), None);
-        let (_, granite) = &MATERIALS[3];
+        let granite = find("granite").expect("granite");
         let pair = ContactPair::new(&SKIN, granite, &REFERENCE_DISPLAY, TICK_S).expect("a pair");
         let beside = OwnResistances {
             law: OwnContactLaw::new(

@@ -4,7 +4,7 @@ use contact_model::fixed_point::{
     Celsius, ContactPair, Flux, Force, Log2, Ratio, Response, Ticks, log2_relative_pressure,
 };
 use contact_model::material::{
-    MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA,
+    Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, THESIS_MATERIALS, find,
 };
 use contact_model::pressure::pressure_pa;
 use contact_model::reference;
@@ -39,9 +39,16 @@ fn log2_of_pressure(pressure_pa: f64) -> Log2 {
     Log2::from_num((pressure_pa / SKIN_MICROHARDNESS_PA).log2())
 }
 
+/// A material of the thesis by its position.
+pub fn of_thesis(index: usize) -> &'static Material {
+    find(THESIS_MATERIALS[index]).expect("a material of the thesis")
+}
+
 /// Every force, with the materials of the thesis in turn.
 fn each_force() -> impl Iterator<Item = (&'static Material, Force)> {
-    forces().zip(MATERIALS.iter().cycle()).map(|(force, (_, object))| (object, force))
+    forces()
+        .zip((0..THESIS_MATERIALS.len()).cycle())
+        .map(|(force, index)| (of_thesis(index), force))
 }
 
 pub fn resistance() -> f64 {
@@ -80,7 +87,7 @@ pub fn per_tick() -> f64 {
 /// Materials from insulators to conductors beyond diamond; slopes from mirrors to those that make `r` nearly 16.
 fn own_materials() -> impl Iterator<Item = Material> {
     points::<4>(5000).map(|[k, rho, c, slope]| {
-        let mut own = MATERIALS[0].1;
+        let mut own = *of_thesis(0);
         own.surface.conductivity_w_mk = log_between(k, 0.01, 3000.0);
         own.surface.slope_rad = log_between(slope, 1e-3, 4.5);
         own.density_kg_m3 = log_between(rho, 1.0, 22_000.0);
@@ -142,7 +149,7 @@ fn golden() -> impl Iterator<Item = Compared> {
 /// display.
 fn swept(ratio: Option<f64>) -> impl Iterator<Item = Compared> {
     points::<6>(40_000).map(move |[index, r, tick, elapsed, skin, step]| {
-        let object = &MATERIALS[(index * 8.0) as usize].1;
+        let object = of_thesis((index * 8.0) as usize);
         let r_m2k_w = log_between(r, 1e-7, 10.0);
         let tick_s = log_between(tick, 1e-5, 0.1);
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
@@ -219,7 +226,7 @@ pub fn preset() -> f64 {
         micro_kelvin(t, number(&row, "T_display_C"))
     });
     let swept = points::<3>(20_000).map(|[index, skin, step]| {
-        let object = &MATERIALS[(index * 8.0) as usize].1;
+        let object = of_thesis((index * 8.0) as usize);
         let (skin_c, object_c) = skin_and_object(skin, step);
         let step = (skin_c - object_c).to_num::<f64>();
         let truth = skin_c.to_num::<f64>() - float(object, 1e4).ratio * step;

@@ -1,10 +1,10 @@
 //! Errors of perfect contact (Eq. 3-1 to 3-4).
 
 use contact_model::fixed_point::Celsius;
-use contact_model::material::{MATERIALS, SKIN, find};
+use contact_model::material::{SKIN, find};
 use contact_model::reference::{SemiInfinite, fourier_number, interface_temperature};
 
-use super::chain::contact_pair;
+use super::chain::{contact_pair, of_thesis};
 use super::sweep::{points, relative, worst};
 use crate::golden::{Row, material, number, rows};
 
@@ -47,7 +47,7 @@ pub fn interface_fixed() -> f64 {
         1e6 * (t.to_num::<f64>() - number(&row, "T_s_C"))
     });
     let swept = points::<3>(20_000).map(|[index, skin, object]| {
-        let object_material = &MATERIALS[(index * 8.0) as usize].1;
+        let object_material = of_thesis((index * 8.0) as usize);
         let [skin, object] = [skin, object].map(|part| Celsius::from_num(165.0 * part - 40.0));
         let t = contact_pair(object_material, 1e-3).interface_temperature(skin, object);
         1e6 * (t.to_num::<f64>()

@@ -20,7 +20,7 @@ from mpmath import atan, cos, erf, erfc, exp, mp, mpf, nstr, pi, quad, sqrt
 mp.dps = 60
 FOLDER = Path(__file__).parent
 
-# k W/mK, rho kg/m3, c J/kgK, Rq um, slope rad, tabulated effusivity, stated R_display / R_object, slope assumed
+# k W/mK, rho kg/m3, c J/kgK, Rq um, slope rad; of the thesis: tabulated effusivity, stated R_display / R_object; slope assumed
 MATERIALS = {
     "copper": ("398", "8954", "384", "0.31", "0.045", "36992", "0.93", 0),
     "bronze": ("54", "8780", "355", "0.32", "0.053", "12973", "", 1),
@@ -186,14 +186,17 @@ def semi_infinite_rows():
     yield (
         "material,T_skin_i_C,T_material_i_C,e_from_k_rho_c,e_tabulated,e_skin,T_s_C,T_s_tabulated_e_1170_C"
     ).split(",")
-    first, second = "copper stainless-steel g10 foam zns".split(), "bronze granite abs baf2".split()
+    names = list(MATERIALS)
+    first, second = names[::2], names[1::2]
     for names, skin, obj in (
         (first, "33", "24"), (second, "34", "24"), (first, "34", "23.5"), (second, "34", "26"),
         (first, "28.6", "21.16"), (second, "34", "44"),
     ):
         for name in names:
-            e = mpf(MATERIALS[name][5])
-            rounded = (mpf(obj) * e + mpf(skin) * 1170) / (e + 1170)
+            e = rounded = ""
+            if tabulated := MATERIALS[name][5]:
+                e = mpf(tabulated)
+                rounded = (mpf(obj) * e + mpf(skin) * 1170) / (e + 1170)
             yield name, skin, obj, effusivity(name), e, E_SKIN, interface(name, skin, obj), rounded
 
 

@@ -29,6 +29,18 @@ class Column:
 
 COLUMNS: tuple[Column, ...] = (
     # generated: telemetry-columns
+    Column("setpoint", "setpoint_c", "number"),
+    Column("display", "display_c", "number"),
+    Column("sink", "sink_c", "number"),
+    Column("skin", "skin_c", "number"),
+    Column("room", "room_c", "number"),
+    Column("force", "force_n", "number"),
+    Column("demand", "demand_a", "number"),
+    Column("current", "current_a", "number"),
+    Column("evaluations", "evaluations", "count"),
+    Column("flux", "flux_w_m2", "number"),
+    Column("surface", "surface_c", "number"),
+    Column("finger", "known", "word"),
     # /generated
 )
 """The fields in the order of a line."""
@@ -73,12 +85,24 @@ class Sample:
     finger: int
     state: State
     # generated: telemetry-of-every-line
+    setpoint_c: float
+    display_c: float
+    sink_c: float
+    skin_c: float
+    room_c: float
+    force_n: float
+    demand_a: float
+    current_a: float
+    evaluations: int
     # /generated
     remark: str
     host_s: float
     received_s: float
     lost_before: int
     # generated: telemetry-named
+    flux_w_m2: float
+    surface_c: float
+    known: str
     # /generated
 
     @property

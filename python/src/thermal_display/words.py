@@ -56,42 +56,76 @@ class EventKind(str, Enum):
 
 
 Material = Literal[
-    "copper", "bronze", "stainless-steel", "granite", "g10", "abs", "foam", "baf2", "zns"
+    # generated: materials
+    "copper",
+    "bronze",
+    "stainless-steel",
+    "granite",
+    "g10",
+    "abs",
+    "foam",
+    "baf2",
+    "zns",
+    # /generated
 ]
 """Materials that the device knows by name."""
 
 AssumedFinger = Literal[
     # generated: assumed-fingers
+    "mean",
+    "mean-on-pad",
+    "thesis",
     # /generated
 ]
 """Finger that the device assumes for the one that touches."""
 
 FingerKnowledge = Literal[
     # generated: finger-knowledge
+    "learning",
+    "trusted",
+    "no-code",
+    "sensor-range",
+    "sensor",
+    "between",
+    "wet",
+    "contact",
+    "unexplained",
+    "arithmetic",
+    "late",
     # /generated
 ]
 """What is known of the finger by its heat flux. With all but the first two, set-points assume the finger of `assume_finger`."""
 
 ContactMode = Literal[
     # generated: contact-modes
+    "contact",
+    "semi-infinite",
     # /generated
 ]
 """Set-point with contact resistance, or for perfect contact."""
 
 Law = Literal[
     # generated: laws
+    "pi-10hz",
+    "pi",
+    "model",
     # /generated
 ]
 """Control law."""
 
 PlayStart = Literal[
     # generated: course-starts
+    "now",
+    "trigger",
+    "landing",
     # /generated
 ]
 """When a course starts: in the next tick, at the trigger input, or when the next finger lands."""
 
 PlayEnd = Literal[
     # generated: course-ends
+    "hold",
+    "neutral",
     # /generated
 ]
 """What follows a course: its last temperature, or skin temperature in the state `armed`."""
@@ -101,18 +135,40 @@ SlabBack = Literal["insulated", "held"]
 
 TriggerEvent = Literal[
     # generated: trigger-events
+    "land",
+    "lift",
+    "start",
+    "end",
+    "flux",
     # /generated
 ]
 """Events that can give a pulse at the trigger output."""
 
 Thermistor = Literal[
     # generated: thermistors
+    "display",
+    "check",
+    "sink",
+    "skin",
+    "room",
     # /generated
 ]
 """Thermistors; `check` is the second one of the display."""
 
 TelemetryField = Literal[
     # generated: telemetry-fields
+    "setpoint",
+    "display",
+    "sink",
+    "skin",
+    "room",
+    "force",
+    "demand",
+    "current",
+    "evaluations",
+    "flux",
+    "surface",
+    "finger",
     # /generated
 ]
 """Fields of telemetry that `stream` can choose, in the order of a line."""
@@ -122,6 +178,9 @@ ALL_FIELDS: tuple[TelemetryField, ...] = get_args(TelemetryField)
 
 FLUX_FIELDS: tuple[TelemetryField, ...] = (
     # generated: flux-fields
+    "flux",
+    "surface",
+    "finger",
     # /generated
 )
 """The fields of the heat-flux sensor, which follow the others in a line if they are chosen: flux, estimate of the display's
@@ -129,6 +188,15 @@ surface, and what is known of the finger."""
 
 TELEMETRY_FIELDS: tuple[TelemetryField, ...] = (
     # generated: default-fields
+    "setpoint",
+    "display",
+    "sink",
+    "skin",
+    "room",
+    "force",
+    "demand",
+    "current",
+    "evaluations",
     # /generated
 )
 """The fields of a line if none is chosen, in its order."""

@@ -2,6 +2,7 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use contact_model::fixed_point::WEIGHTS;
+use contact_model::material::THESIS_MATERIALS;
 use fixed::types::{I2F30, I4F28, I10F22};
 use thermal_display::device::FingerIndex;
 use thermal_display::device::drive::Drive;
@@ -196,9 +197,6 @@ const WORDS: [&str; 36] = [
     "flux set 0.1192 2048 5 30",
 ];
 
-const MATERIALS: [&str; 9] =
-    ["copper", "bronze", "stainless-steel", "granite", "g10", "abs", "foam", "baf2", "zns"];
-
 /// The element at an index modulo their number.
 fn element<T: Copy>(all: &[T], index: u8) -> T {
     all[usize::from(index) % all.len()]
@@ -209,7 +207,7 @@ impl Line {
         let fraction = |value: u16, max: f64| max * f64::from(value) / 65535.0;
         match self {
             Self::Word(index) => element(&WORDS, *index).into(),
-            Self::Material(index) => format!("material {}", element(&MATERIALS, *index)),
+            Self::Material(index) => format!("material {}", element(&THESIS_MATERIALS, *index)),
             Self::Custom(values) => {
                 let max = [5000.0, 30_000.0, 10_000.0, 1000.0, 1.5];
                 let values = values.iter().zip(max).map(|(value, max)| {

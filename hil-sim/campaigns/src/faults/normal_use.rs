@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use contact_model::material::MATERIALS;
+use contact_model::material::THESIS_MATERIALS;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use serde::Serialize;
@@ -54,7 +54,7 @@ impl UseSession {
         let mut draw =
             Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, &format!("session {number}")));
         let mut device = DrawnDevice::new(seed, number / DrawnDevice::CAMPAIGNS);
-        let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
+        let material = THESIS_MATERIALS[draw.random_range(0..THESIS_MATERIALS.len())];
         let law = Law::WORDS.words[draw.random_range(0..Law::WORDS.words.len())];
         let object_c = draw.random_range(17.0..=41.0);
         let held_c = draw.random_bool(HELD).then(|| draw.random_range(15.0..=42.0));

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use contact_model::material::MATERIALS;
+use contact_model::material::THESIS_MATERIALS;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
@@ -62,7 +62,7 @@ impl SoundCampaign {
         let own = stream_seed(seed, &format!("sound campaign {number}"));
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(own);
         let law = Law::WORDS.words[draw.random_range(0..Law::WORDS.words.len())];
-        let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
+        let material = THESIS_MATERIALS[draw.random_range(0..THESIS_MATERIALS.len())];
         let appears_s = [0.0, DURATION_S][usize::from(draw.random_bool(0.5))];
         let mut text = format!(
             "duration_s = {DURATION_S:?}\nskin_c = {:?}\nlaw = \"{law}\"\n{}[object]\nmaterial = \"{material}\"\n\

@@ -1,6 +1,6 @@
 //! The finger that touches, the object that is presented, and what the device is told of both, drawn by seed.
 
-use contact_model::material::MATERIALS;
+use contact_model::material::THESIS_MATERIALS;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use thermal_device::command::AssumedFinger;
@@ -143,7 +143,7 @@ impl Touch {
     fn layers(&mut self, draw: &mut Xoshiro256PlusPlus, material: &str) {
         let mut layers = vec![(material, log_uniform(draw, THICKNESS_MM))];
         for _ in 0..draw.random_range(1..=LAYERS_BELOW_MAX) {
-            let (below, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
+            let below = THESIS_MATERIALS[draw.random_range(0..THESIS_MATERIALS.len())];
             layers.push((below, log_uniform(draw, THICKNESS_MM)));
         }
         if draw.random_bool(0.5) {

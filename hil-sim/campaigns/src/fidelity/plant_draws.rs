@@ -1,6 +1,6 @@
 //! Plants drawn at random from the parameter box.
 
-use contact_model::material::MATERIALS;
+use contact_model::material::THESIS_MATERIALS;
 use contact_model::pressure::THESIS_PRESSURES;
 use serde::Serialize;
 use thermal_device::control::Law;
@@ -62,7 +62,7 @@ pub struct PlantDraw {
     pub seed: u64,
     /// Drawn plant parameters with their values.
     pub plant: Vec<(String, f64)>,
-    /// The case; consecutive draws take all materials and forces in turn.
+    /// The case; consecutive draws take the thesis's materials and forces in turn.
     pub case: FidelityCase,
 }
 
@@ -82,7 +82,7 @@ impl PlantDraw {
                 plant.push((SAME_VALUE.1.to_owned(), value));
             }
         }
-        let pairs = (MATERIALS.len() * THESIS_PRESSURES.len()) as u64;
+        let pairs = (THESIS_MATERIALS.len() * THESIS_PRESSURES.len()) as u64;
         let mut cases = Scenario::A.cases();
         Self {
             number,

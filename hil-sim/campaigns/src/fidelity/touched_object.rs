@@ -1,6 +1,6 @@
 //! Touched objects: the materials of the thesis, and others given by their properties.
 
-use contact_model::material::{MATERIALS, Material, Surface};
+use contact_model::material::{Material, Surface, THESIS_MATERIALS};
 
 /// A material with its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +14,7 @@ pub struct TouchedObject {
 impl TouchedObject {
     /// The nine materials of the thesis.
     pub fn thesis() -> impl Iterator<Item = Self> {
-        MATERIALS.iter().map(|(name, _)| Self::of_thesis(name))
+        THESIS_MATERIALS.into_iter().map(Self::of_thesis)
     }
 
     /// A material of the thesis, which the device has by name.

@@ -1,6 +1,6 @@
 //! Stimuli: courses of temperature, and steps.
 
-use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
+use contact_model::material::{REFERENCE_DISPLAY, SKIN, find};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::Contact;
 use thermal_client::course::{COURSE_POINTS_MAX, Course, CoursePoint, reduce};
@@ -115,8 +115,7 @@ impl Stimulus {
     /// # Panics
     /// There is no copper.
     pub fn recorded() -> Self {
-        let copper = MATERIALS.iter().find(|(name, _)| *name == "copper");
-        let (_, copper) = copper.expect("copper");
+        let copper = find("copper").expect("copper");
         let contact =
             Contact::new((&SKIN, 34.0), (copper, 24.0), &REFERENCE_DISPLAY, pressure_pa(FORCE_N));
         let samples = (0..=(RECORDED_S / SAMPLE_S) as u32).map(|sample| {
@@ -163,9 +162,9 @@ mod tests {
     fn the_recorded_course_is_within_its_reduction_of_the_model() {
         let recorded = Stimulus::recorded().course;
         assert!(recorded.points().len() <= COURSE_POINTS_MAX);
-        let (_, copper) = MATERIALS[0];
+        let copper = find("copper").expect("copper");
         let contact =
-            Contact::new((&SKIN, 34.0), (&copper, 24.0), &REFERENCE_DISPLAY, pressure_pa(FORCE_N));
+            Contact::new((&SKIN, 34.0), (copper, 24.0), &REFERENCE_DISPLAY, pressure_pa(FORCE_N));
         for t_s in [0.5, 1.0, 3.0, 10.0] {
             let error_k: f64 = recorded.at(t_s) - contact.at(t_s).display_c;
             assert!(error_k.abs() < 5e-3, "{t_s} s: {error_k} K");

@@ -1,5 +1,6 @@
 //! Displays side by side.
 
+use contact_model::material::THESIS_MATERIALS;
 use documented_figures::{assert_figure, assert_row};
 use earlier_displays::{Comparison, Display, Report, Tissue, scene, table};
 use thermal_sim::NativeRunner;
@@ -37,7 +38,7 @@ fn ideal_mk(display: Display, material: &str, tissue: Tissue) -> f64 {
 fn the_documented_errors_on_an_ideal_tile_are_those_of_the_methods() {
     for tissue in Tissue::ALL {
         for display in Display::ALL {
-            let errors_mk: Vec<_> = (Report::materials().into_iter())
+            let errors_mk: Vec<_> = (THESIS_MATERIALS.into_iter())
                 .map(|material| ideal_mk(display, material, tissue))
                 .collect();
             let display = display.name();

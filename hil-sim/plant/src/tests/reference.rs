@@ -181,7 +181,7 @@ fn first_steps_after_landing_are_resolved() {
     }
 }
 
-/// Nine materials, five forces, every step of 60 s.
+/// All materials, five forces, every step of 60 s.
 #[test]
 fn every_material_at_every_force_follows_equations_6_5_to_6_7() {
     let mut worst = [[0.0f64; 3]; 2];

@@ -108,8 +108,8 @@ fn on_another_day(scene: &Scene) -> Scene {
 /// The half-space of the first material, at the room's temperature.
 fn first_object() -> Object {
     let [(name, _), ..] = CONTACTS;
-    let (_, copper) = MATERIALS[0];
-    let material = find(name).copied().unwrap_or(copper);
+    let [(_, any), ..] = MATERIALS;
+    let material = find(name).copied().unwrap_or(any);
     let ObjectConfig { layers, back, .. } = ObjectConfig::half_space(material, 0.0);
     Object { name: name.into(), material, start_c: None, appears_t_s: 0.0, layers, back }
 }

@@ -160,11 +160,11 @@ impl CommissioningSetup {
         room_c: f64,
         place: &str,
     ) -> Result<World, ConfigError> {
-        let (_, material) = MATERIALS[0];
+        let [(_, any), ..] = MATERIALS;
         let config = PlantConfig {
             skin_c,
             room_c,
-            object: ObjectConfig::half_space(material, room_c),
+            object: ObjectConfig::half_space(any, room_c),
             start_s: 0.0,
             appears_s: STAY_MAX_S,
             duration_s: STAY_MAX_S,

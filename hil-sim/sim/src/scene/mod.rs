@@ -39,7 +39,7 @@ pub use infrared::Infrared;
 pub(crate) use object::custom_line;
 pub use source::SceneError;
 
-/// The names of the thesis's materials, for messages.
+/// The names of all materials, for messages.
 pub fn known_materials() -> String {
     MATERIALS.map(|(name, _)| name).join(", ")
 }

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::fixed_point::relaxation_bank::{MATCH_HORIZON_TICKS, WINDOW};
 use crate::fixed_point::{Contact, ContactPair, Force, log2_relative_pressure};
-use crate::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
+use crate::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN, find};
 use crate::pressure::pressure_pa;
 use crate::reference;
 
@@ -266,7 +266,7 @@ proptest! {
         targets in prop::collection::vec((-170i32..170, 1u32..500), 1..20),
         force in 0.001..20.0,
     ) {
-        let conductance = contact(&MATERIALS[0].1, force).display_conductance();
+        let conductance = contact(find("copper").expect("copper"), force).display_conductance();
         let mut body = HalfSpace::default();
         let (mut low, mut high) = (0i32, 0i32);
         for (target, ticks) in targets {

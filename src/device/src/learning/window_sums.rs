@@ -136,7 +136,7 @@ impl WindowSums {
 #[cfg(test)]
 mod tests {
     use contact_model::fixed_point::OwnResistances;
-    use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
+    use contact_model::material::{REFERENCE_DISPLAY, SKIN, find};
     use contact_model::reference::contact_resistance;
     use proptest::prelude::*;
 
@@ -204,7 +204,7 @@ mod tests {
         let tick_s: f64 = 1e-3;
         let pair = contact_model::fixed_point::ContactPair::new(
             &SKIN,
-            &MATERIALS[0].1,
+            find("copper").expect("copper"),
             &REFERENCE_DISPLAY,
             tick_s,
         );

@@ -6,7 +6,7 @@ use std::vec::Vec;
 
 use contact_model::fixed_point::{Body, BodyError, FAST_MAX, SLOW_MAX};
 use contact_model::impedance::{Impedance, Relaxation};
-use contact_model::material::{MATERIALS, Material, SKIN, Surface};
+use contact_model::material::{MATERIALS, Material, SKIN, Surface, find};
 use contact_model::slab::{Back, Slab};
 use proptest::prelude::*;
 use thermal_device::command::{self, AssumedFinger, Command, ObjectBody, WithSourceFinger};
@@ -176,7 +176,7 @@ fn a_slab_is_a_thickness_and_what_is_behind_it() {
 
 #[test]
 fn a_slab_is_of_the_material_that_its_finger_presents() {
-    let [(_, copper), (_, bronze), ..] = MATERIALS;
+    let [copper, bronze] = ["copper", "bronze"].map(|name| *find(name).expect(name));
     let slab_of = |material: &Material| {
         let slab = Slab {
             thickness_m: 1e-3 * 3.0,
@@ -521,7 +521,7 @@ proptest! {
         ],
         1..20,
     )) {
-        let mut host = Host::new([Some(MATERIALS[0].1)]);
+        let mut host = Host::new([find("copper").copied()]);
         for line in lines {
             host.send(&line);
         }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use contact_model::material::{MATERIALS, Material, find};
+use contact_model::material::{Material, THESIS_MATERIALS, find};
 
 /// An object: what is touched, and what is behind it.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,12 +58,12 @@ const LAYERED: [(&str, Layers, &str); 9] = [
 /// 216 slabs, nine half-spaces and nine layered objects.
 pub fn every_object() -> Vec<BodyObject> {
     let mut objects = Vec::new();
-    for (material, _) in MATERIALS {
+    for material in THESIS_MATERIALS {
         for thickness_mm in THICKNESSES_MM {
             objects.extend(BACKS.map(|back| slab(material, thickness_mm, back)));
         }
     }
-    objects.extend(MATERIALS.map(|(material, _)| half_space(material)));
+    objects.extend(THESIS_MATERIALS.map(half_space));
     objects.extend(LAYERED.map(layered));
     objects
 }

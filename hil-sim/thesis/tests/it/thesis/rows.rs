@@ -1,6 +1,6 @@
 //! Computed values of the rows against golden values.
 
-use contact_model::material::{average_slope_rad, find};
+use contact_model::material::{THESIS_MATERIALS, average_slope_rad, find};
 use contact_model::reference::fourier_number;
 use serde::Deserialize;
 
@@ -21,8 +21,9 @@ fn interface_temperatures_meet_golden_values() {
         interface_c: f64,
     }
     let mut checked = 0;
-    for golden in table::<Golden>(include_str!("../../../../../model/tests/data/semi_infinite.csv"))
-    {
+    let golden = table::<Golden>(include_str!("../../../../../model/tests/data/semi_infinite.csv"));
+    let of_thesis = |golden: &&Golden| THESIS_MATERIALS.contains(&golden.material.as_str());
+    for golden in golden.iter().filter(of_thesis) {
         let name = name(&golden.material);
         let of = |place: &str, what: &str| computed(place, &format!("{name}, {what}"));
         let (computed_c, effusivity) = match (golden.skin_before_c, golden.object_before_c) {

@@ -3,7 +3,7 @@
 extern crate std;
 
 use contact_model::fixed_point::{FingerBody, to_fixed};
-use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
+use contact_model::material::{REFERENCE_DISPLAY, SKIN, find};
 use proptest::prelude::*;
 
 use super::*;
@@ -17,7 +17,8 @@ const FINGERS: [Bodies; 2] = [
 ];
 
 fn copper() -> ContactPair {
-    ContactPair::new(&SKIN, &MATERIALS[0].1, &REFERENCE_DISPLAY, 1e-3).expect("a valid pair")
+    let copper = find("copper").expect("copper");
+    ContactPair::new(&SKIN, copper, &REFERENCE_DISPLAY, 1e-3).expect("a valid pair")
 }
 
 /// What a tick brings.

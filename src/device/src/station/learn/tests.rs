@@ -3,7 +3,7 @@
 use std::vec::Vec;
 
 use contact_model::fixed_point::{Force, to_fixed};
-use contact_model::material::{MATERIALS, REFERENCE_DISPLAY};
+use contact_model::material::{REFERENCE_DISPLAY, find};
 use fixed::types::{I2F30, I4F28};
 use thermal_learner::Learner;
 use thermal_settings::{FluxSensor, Settings};
@@ -22,8 +22,8 @@ const LANDING_TICK: u32 = 23;
 /// A station that presents granite to a mean finger.
 fn station(flux_sensor: Option<FluxSensor>) -> Station {
     let mut station = Station::new(&Settings { flux_sensor, ..Settings::default() });
-    let (name, granite) = &MATERIALS[3];
-    let granite = ChosenMaterial::new(name, granite, &REFERENCE_DISPLAY).expect("a material");
+    let granite = find("granite").expect("granite");
+    let granite = ChosenMaterial::new("granite", granite, &REFERENCE_DISPLAY).expect("a material");
     station.object.choose_material(&granite);
     station.object.choose_finger(AssumedFinger::Mean);
     station.state = State::Preset;
