@@ -58,7 +58,7 @@ fn names_of(fields: TelemetryFields) -> Vec<&'static str> {
 /// The kinds that `trigger-out` takes, but for the word that switches it off.
 fn trigger_events() -> Vec<&'static str> {
     let form = TABLE.iter().find(|form| form.words == "trigger-out ");
-    match form.and_then(|form| form.arguments.first()).map(|(_, form)| form()) {
+    match form.and_then(|form| form.arguments.first()).map(|argument| (argument.form)()) {
         Some(ArgumentForm::List(words, _)) => {
             words.iter().copied().filter(|word| *word != "none").collect()
         }
@@ -118,12 +118,14 @@ fn lower(text: &str) -> String {
 /// All forms of a line with their arguments.
 fn lines() -> String {
     let rows = TABLE.iter().map(|form| {
-        let names = form.arguments.iter().map(|(name, form)| place(name, &form()));
+        let names = form.arguments.iter().map(|argument| place(argument.name, &(argument.form)()));
         let line: Vec<_> = form.words.split_whitespace().map(String::from).chain(names).collect();
         let ranges: Vec<_> = form
             .arguments
             .iter()
-            .map(|(name, form)| format!("`{}`: {}", name.to_uppercase(), allowed(&form())))
+            .map(|argument| {
+                format!("`{}`: {}", argument.name.to_uppercase(), allowed(&(argument.form)()))
+            })
             .collect();
         let effect = form.effect.concat();
         format!("| `{}` | {} | {} |\n", line.join(" "), ranges.join("; "), effect.trim())
@@ -159,7 +161,7 @@ fn allowed(form: &ArgumentForm) -> String {
 /// A line of each form whose arguments are words and numbers, with numbers in the middle of their ranges.
 fn dictionary() -> String {
     let line = |form: &RequestForm| {
-        let arguments = form.arguments.iter().map(|(_, form)| example(&form()));
+        let arguments = form.arguments.iter().map(|argument| example(&(argument.form)()));
         let words = form.words.split_whitespace().map(|word| Some(word.into()));
         let words: Option<Vec<String>> = words.chain(arguments).collect();
         words.map(|words| format!("\"{}\\x0a\"\n", words.join(" ")))

@@ -131,8 +131,17 @@ pub struct RequestForm {
     pub words: &'static str,
     /// What it does, or asks for, as lines of text.
     pub effect: &'static [&'static str],
-    /// Names and forms of the arguments.
-    pub arguments: &'static [(&'static str, fn() -> ArgumentForm)],
+    /// The arguments in their order.
+    pub arguments: &'static [NamedArgument],
+}
+
+/// An argument in a form of a line.
+#[derive(Clone, Copy, Debug)]
+pub struct NamedArgument {
+    /// Its name, with the unit.
+    pub name: &'static str,
+    /// What it can be.
+    pub form: fn() -> ArgumentForm,
 }
 
 /// A finite number.

@@ -17,7 +17,7 @@ use thermal_settings::{DisplaySurface, FluxSensor, PersonCode};
 use crate::ReadError;
 use crate::argument::{Argument, PersonData, Switch};
 #[cfg(feature = "host")]
-use crate::host::RequestForm;
+use crate::host::{NamedArgument, RequestForm};
 use crate::number::{Number, Whole};
 use crate::quantity::*;
 use crate::setting::{Setting, SettingNumber};
@@ -96,7 +96,10 @@ macro_rules! requests {
         pub const TABLE: &[RequestForm] = &[$($(RequestForm {
             words: concat!($($word, " "),+),
             effect: &[$($doc),+],
-            arguments: &[$($((stringify!($argument), <$kind as Argument>::form)),+)?],
+            arguments: &[$($(NamedArgument {
+                name: stringify!($argument),
+                form: <$kind as Argument>::form,
+            }),+)?],
         },)+)+];
 
         fn read_arguments(place: usize, words: &mut Words<'_>) -> Result<Request, ReadError> {
