@@ -159,6 +159,12 @@ enum Task {
         #[arg(long)]
         check: bool,
     },
+    /// Write tables of the code, such as that of materials, into documents, the package for Python and dictionaries of fuzzers
+    Tables {
+        /// Write nothing; fail if a file differs
+        #[arg(long)]
+        check: bool,
+    },
     /// Build the image that the benchmark runs in the emulator and print its path; called by the benchmark
     BenchImage(SetUp),
     /// Build the image for the emulator's own tests and print its path; called by those tests
@@ -187,6 +193,13 @@ impl SetUp {
     fn permission(self) -> Permission {
         Permission { yes: self.yes || setup::in_ci(), choice: self.toolchain }
     }
+}
+
+/// Runs the program that has the tables. In the suite's profile, whose tests need the same packages.
+fn tables(check: bool) -> anyhow::Result<()> {
+    let line =
+        ["run", "--profile", process::SUITE, "--quiet", "--package", "generated-tables", "--"];
+    Invocation::cargo(line).args(check.then_some("--check")).run()
 }
 
 fn main() -> ExitCode {
@@ -227,6 +240,7 @@ fn main() -> ExitCode {
         }
         Task::Fuzz { set_up, options } => fuzz::run(set_up.permission(), &options),
         Task::Docs { check } => docs::run(check),
+        Task::Tables { check } => tables(check),
         Task::BenchImage(set_up) => auxiliary_image::benchmark(set_up.permission()),
         Task::Probe(set_up) => auxiliary_image::probe(set_up.permission()),
         Task::Foreign { set_up, all } => auxiliary_image::foreign(set_up.permission(), all),

@@ -56,7 +56,17 @@ class EventKind(str, Enum):
 
 
 Material = Literal[
-    "copper", "bronze", "stainless-steel", "granite", "g10", "abs", "foam", "baf2", "zns"
+    # generated: materials
+    "copper",
+    "bronze",
+    "stainless-steel",
+    "granite",
+    "g10",
+    "abs",
+    "foam",
+    "baf2",
+    "zns",
+    # /generated
 ]
 """Materials that the device knows by name."""
 

@@ -51,6 +51,11 @@ fn figures() -> Check {
     check("figures of the documentation", ["xtask docs --check"])
 }
 
+/// Tables in documents and other sources are those that the code declares.
+fn tables() -> Check {
+    check("generated tables", ["xtask tables --check"])
+}
+
 /// The package of `python/`, with the interpreter of its virtual environment, at simulated devices of the program that the tests
 /// of the workspace have built.
 fn package(python: Option<&str>) -> Check {
@@ -87,6 +92,7 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
     let small = vec![
         formatting(lints),
         figures(),
+        tables(),
         only_if(lints.clippy, NO_CLIPPY, check("lints of model, firmware and xtask", [&clippy])),
         units(members),
     ];
@@ -143,6 +149,7 @@ fn whole(
     let host = vec![
         formatting(lints),
         figures(),
+        tables(),
         only_if(lints.clippy, NO_CLIPPY, check("lints of the host's code", lints_of_all)),
         check("hil-sim without the emulator", [without_emulator]),
         Check { title: "documentation", commands: Ok(vec![lints.share_with(documentation)]) },

@@ -1,0 +1,55 @@
+//! `cargo xtask tables`: writes tables of the code between markers of documents and of other sources; with `--check` it only compares.
+mod materials;
+mod part;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail, ensure};
+use part::{Part, markers};
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let check = match &arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [] => false,
+        ["--check"] => true,
+        others => bail!("{others:?}; allowed is --check"),
+    };
+    let mut by_file: BTreeMap<&str, Vec<Part>> = BTreeMap::new();
+    for part in [materials::parts()].into_iter().flatten() {
+        by_file.entry(part.file).or_default().push(part);
+    }
+    let mut differ = Vec::new();
+    for (file, parts) in &by_file {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
+        let content = std::fs::read_to_string(&path).with_context(|| file.to_string())?;
+        let marked = content.matches(markers(file).0).count();
+        ensure!(marked == parts.len(), "{file} has {marked} markers, of {} tables", parts.len());
+        let new =
+            parts.iter().try_fold(content.clone(), |content, part| part.put_into(&content))?;
+        if new != content {
+            differ.push(*file);
+            if !check {
+                std::fs::write(&path, new).with_context(|| file.to_string())?;
+            }
+        }
+    }
+    ensure!(
+        !check || differ.is_empty(),
+        "{} differ from the code: cargo xtask tables",
+        differ.join(", ")
+    );
+    println!("{} files with tables, {} written", by_file.len(), differ.len());
+    Ok(())
+}
