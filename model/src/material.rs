@@ -94,6 +94,8 @@ materials! {
     "foam"            [0.029,   24.0, 1210.0,  8.03, 0.157] "insulator; Ho 2006";
     "baf2"            [ 11.7, 4890.0,  410.0, 0.008, 0.009] "barium fluoride, an infrared window; Ho 2006";
     "zns"             [ 27.2, 4090.0,  515.0, 0.006, 0.006] "zinc sulphide, an infrared window; Ho 2006";
+    // Data sheet MA6061T6 of Aerospace Specification Metals (asm.matweb.com); the surface is a typical one and not measured.
+    "aluminium-6061"  [167.0, 2700.0,  896.0,  0.40, 0.050] "alloy, temper T6; ASM data sheet MA6061T6, surface assumed";
 }
 
 /// Names of the thesis's materials, in an order that stays. What is drawn by seed, or is a figure of these nine, chooses from

@@ -66,6 +66,7 @@ Material = Literal[
     "foam",
     "baf2",
     "zns",
+    "aluminium-6061",
     # /generated
 ]
 """Materials that the device knows by name."""
