@@ -3,7 +3,7 @@
 use super::row::Part;
 use super::{FaultKind, ProcessorKind};
 
-/// The table of all kinds with unit, value and effect, in Markdown.
+/// The table of all kinds with unit, value and effect, in Markdown. `cargo xtask tables` writes it.
 pub fn fault_table() -> String {
     let head = ["| `kind` | unit | `value` | effect |".into(), "|---|---|---|---|".into()];
     let kinds = FaultKind::ALL.into_iter().map(|kind| {
