@@ -113,6 +113,8 @@ fault_kinds! {
         "the bridge supply drops to the value";
     SupplyHigh = "supply-high", plant(|d, f| d.plant.bridge.supply_v = Some(f.value)).value("V", 12.0, 38.0),
         "the bridge supply rises to the value";
+    SupplyResistance = "supply-resistance", plant(|d, f| d.plant.supply.contact_ohm += f.value).value("Ω", 0.0, 1.0),
+        "a loose contact in the wires of the bridge supply has this resistance, so that the voltage falls with the current";
 
     FanOff = "fan-off", plant(|d, f| d.plant.cooling.resistance_factor *= f.value).factor(10.0),
         "factor on the thermal resistance between the sink and its coolant";
