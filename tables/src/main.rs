@@ -1,4 +1,5 @@
 //! `cargo xtask tables`: writes tables of the code between markers of documents and of other sources; with `--check` it only compares.
+mod faults;
 mod materials;
 mod part;
 mod wire;
@@ -28,7 +29,7 @@ fn run() -> Result<()> {
         others => bail!("{others:?}; allowed is --check"),
     };
     let mut by_file: BTreeMap<&str, Vec<Part>> = BTreeMap::new();
-    for part in [materials::parts(), wire::parts()].into_iter().flatten() {
+    for part in [faults::parts(), materials::parts(), wire::parts()].into_iter().flatten() {
         by_file.entry(part.file).or_default().push(part);
     }
     let mut differ = Vec::new();

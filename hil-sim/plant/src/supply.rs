@@ -64,6 +64,19 @@ pub struct SupplyDefects {
     pub stop_sense_open: bool,
     /// The wire from the sense divider to the converter is open; the pin is at ground.
     pub sense_open: bool,
+    /// Resistance of a contact between source and bridge, ohm.
+    ///
+    /// ```
+    /// use thermal_plant::supply::{Supply, SupplyDefects, SupplyParams};
+    ///
+    /// let mut supply = Supply::new(SupplyParams::NOMINAL);
+    /// supply.set_node(12.0);
+    /// supply.set_defects(&SupplyDefects { contact_ohm: 0.3, ..SupplyDefects::default() });
+    /// supply.step(1e-3, 12.0, false, 4.0);
+    /// // 4 A and 7.5 mA through 0.045 and 0.3 ohm.
+    /// assert!((supply.node_v() - (12.0 - 0.345 * 4.0075)).abs() < 1e-9);
+    /// ```
+    pub contact_ohm: f64,
 }
 
 /// Voltage behind the switch below which the driver has no supply to pull nFAULT with, V.
@@ -87,6 +100,7 @@ impl Supply {
                 emergency_stop: false,
                 stop_sense_open: false,
                 sense_open: false,
+                contact_ohm: 0.0,
             },
             node_v: 0.0,
         }
@@ -111,7 +125,8 @@ impl Supply {
         };
         let p = &self.params;
         if closed && !self.defects.emergency_stop {
-            let loaded_v = source_v - p.source_ohm * (bridge_a + p.driver_a);
+            let ohm = p.source_ohm + self.defects.contact_ohm;
+            let loaded_v = source_v - ohm * (bridge_a + p.driver_a);
             self.node_v = (self.node_v + p.soft_start_v_s * step_s).min(loaded_v);
             return;
         }

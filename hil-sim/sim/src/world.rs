@@ -1,7 +1,5 @@
 //! The surroundings of the device: plant, defects and infrared camera.
 
-mod active_defects;
-
 use thermal_plant::bridge::BridgeOutputs;
 use thermal_plant::comparator::ComparatorTest;
 use thermal_plant::infrared::{Camera, ParameterError, Reading};
@@ -9,8 +7,7 @@ use thermal_plant::sensors::Channel;
 use thermal_plant::{ConfigError, Defects, Plant, PlantConfig};
 
 use crate::processor::ChipState;
-use crate::scene::{ActiveFault, Infrared, Scene};
-use active_defects::ActiveDefects;
+use crate::scene::{ActiveDefects, ActiveFault, Infrared, Scene};
 
 /// The plant at the pins of the device, its present defects, and the camera.
 #[derive(Clone, Debug)]

@@ -46,11 +46,11 @@ impl Member {
         !WITH_EMULATOR.contains(&self.name.as_str())
     }
 
-    /// Whether it belongs to the model, the firmware, the tables or xtask, which compile within seconds.
+    /// Whether it belongs to the model, the firmware or xtask, which compile within seconds.
     pub fn is_small(&self) -> bool {
         let root = Path::new("");
         self.folder == root
-            || ["model", "src", "tables", "xtask"]
+            || ["model", "src", "xtask"]
                 .map(Path::new)
                 .iter()
                 .any(|room| self.folder.starts_with(room))

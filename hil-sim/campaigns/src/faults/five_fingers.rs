@@ -48,25 +48,12 @@ pub fn five_finger_cases() -> Vec<FaultCase> {
     cases
 }
 
-/// Whether the fault is one of what the fingers share: processor, host, converter, reference of the thermistors, emergency
-/// stop, line of the comparators' side.
+/// Whether the fault is one of what the fingers share.
 fn is_shared(fault: &InjectedFault) -> bool {
     match fault {
         InjectedFault::Processor(_) => true,
         InjectedFault::HostLine(_) => false,
-        InjectedFault::Hardware(fault) => matches!(
-            fault.kind,
-            FaultKind::AdcStuck
-                | FaultKind::EmergencyStop
-                | FaultKind::SideStuck
-                | FaultKind::ReferenceOff
-                | FaultKind::HostGarbage
-                | FaultKind::HostSilent
-                | FaultKind::HostFlood
-                | FaultKind::HostPlays
-                | FaultKind::TriggerStuck
-                | FaultKind::TriggerChatter
-        ),
+        InjectedFault::Hardware(fault) => fault.kind.is_shared(),
     }
 }
 

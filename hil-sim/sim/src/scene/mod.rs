@@ -31,9 +31,10 @@ use thermal_plant::{Params, PlantConfig};
 
 use crate::processor::{ChipState, Injection};
 
+pub(crate) use fault::ActiveDefects;
 pub use fault::{
     ActiveFault, DRIFT_K_S, FaultKind, ProcessorKey, ProcessorKind, ScheduledFault, Sensor,
-    ValueRange,
+    ValueRange, fault_names, fault_table,
 };
 pub use infrared::Infrared;
 pub(crate) use object::custom_line;

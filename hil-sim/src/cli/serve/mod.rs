@@ -15,7 +15,7 @@ use thermal_sim::board::{Board, BoardBench, LossyLine};
 use thermal_sim::commissioning::{CommissioningSetup, SimulatedSurroundings, settings_for_scene};
 use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, NativeFiveFingers};
-use thermal_sim::scene::{FaultKind, Scene};
+use thermal_sim::scene::Scene;
 use thermal_sim::serve::{
     self, ClientLine, Clock, FiveFingers, OneFinger, ServedDevice, Speed, TcpLine, read_scene,
     scenes_of_five_fingers, serve_in_step,
@@ -153,17 +153,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Says that the client takes the place of the scene's host.
 fn note_host_lines(scene: &Scene) {
-    let mut kinds = scene.faults.iter().map(|fault| fault.fault.kind);
-    let host_fault = |kind| {
-        matches!(
-            kind,
-            FaultKind::HostGarbage
-                | FaultKind::HostSilent
-                | FaultKind::HostFlood
-                | FaultKind::HostPlays
-        )
-    };
-    if !scene.host.is_empty() || kinds.any(host_fault) {
+    let mut faults = scene.faults.iter();
+    if !scene.host.is_empty() || faults.any(|fault| fault.fault.kind.is_of_host()) {
         eprintln!("hil-sim: the lines and faults of the scene's host are left to the client");
     }
 }

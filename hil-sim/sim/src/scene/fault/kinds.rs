@@ -1,205 +1,175 @@
-//! Kinds of faults and the keys that a scene may give for each.
+//! The kinds of faults of plant, converter and host: a row for each.
+//!
+//! A row has the name in a scene; what fails, with its effect on the defects `d` of a fault `f`; unit and range of the value, if it
+//! has one; and the effect in words, as in `docs/scenes.md`. A row of [`plant`] is of one finger unless it is `shared`.
 
-named_enum! {
-    /// Kind of a fault of plant, converter or host.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum FaultKind {
-        /// A thermistor's wire is open: its pin is at the reference and reads cold.
-        ThermistorOpen = "thermistor-open",
-        /// A thermistor is shorted: its pin is at ground and reads hot.
-        ThermistorShort = "thermistor-short",
-        /// The reading of a thermistor drifts by [`DRIFT_K_S`](super::DRIFT_K_S) up to the value.
-        ThermistorDrift = "thermistor-drift",
-        /// The reading of a thermistor is too high by the value, at once.
-        ThermistorOffset = "thermistor-offset",
-        /// A thermistor hangs by its leads: its lag, its coupling to the room and its self-heating grow by the value.
-        ThermistorDetached = "thermistor-detached",
-        /// The converter repeats its last code of a thermistor's channel. The pin itself is unaffected, and so is the comparator.
-        ThermistorStuck = "thermistor-stuck",
-        /// Two thermistors are exchanged.
-        SensorsSwapped = "sensors-swapped",
-        /// The dividers of the thermistors have no supply: all five read as shorted.
-        ReferenceOff = "reference-off",
-        /// Every channel repeats its last code.
-        AdcStuck = "adc-stuck",
-        /// The skin thermistor sits on the display's plate instead of on the finger, and follows the plate.
-        SkinOnPlate = "skin-on-plate",
-        /// The force sensor's wire is open: its pin is at ground.
-        ForceOpen = "force-open",
-        /// The force sensor no longer moves; the converter's noise stays.
-        ForceStuck = "force-stuck",
-        /// The reading of the force sensor is too high by the value.
-        ForceOffset = "force-offset",
-        /// A wire of the heat-flux sensor is broken: its converter reads the upper rail.
-        FluxOpen = "flux-open",
-        /// The wires of the heat-flux sensor are shorted: it reads no flux.
-        FluxShort = "flux-short",
-        /// The converter of the heat-flux sensor repeats its last code.
-        FluxStuck = "flux-stuck",
-        /// The wires of the heat-flux sensor are swapped.
-        FluxReversed = "flux-reversed",
-        /// The gain of the heat-flux sensor changes by the factor.
-        FluxGain = "flux-gain",
-        /// The heat-flux sensor reads too much by the value.
-        FluxZero = "flux-zero",
-        /// The noise of the heat-flux sensor grows by the factor.
-        FluxNoise = "flux-noise",
-        /// Leg a of the bridge stays at the supply; the enable line still takes both legs off.
-        BridgeStuckHigh = "bridge-stuck-high",
-        /// Leg b stays at the supply; the enable line still takes both legs off.
-        BridgeBStuckHigh = "bridge-b-stuck-high",
-        /// Leg a stays at ground, so nothing cools; the enable line still takes both legs off.
-        BridgeStuckLow = "bridge-stuck-low",
-        /// Leg a is high-impedance.
-        LegOpen = "leg-open",
-        /// Output a is shorted to ground: the driver trips when it is driven high, in the pulses that cool.
-        BridgeShorted = "bridge-shorted",
-        /// The driver stays enabled and follows its PWM inputs. Latent, as PWM ends with enable.
-        BridgeEnableStuck = "bridge-enable-stuck",
-        /// The module's wires are swapped.
-        PolaritySwapped = "polarity-swapped",
-        /// The Seebeck coefficient of the module falls to the value times the nominal one: legs aged or bridged by solder.
-        ModuleWeak = "module-weak",
-        /// nFAULT never goes low. Latent; the comparator's tests show it.
-        FaultPinDead = "fault-pin-dead",
-        /// The current mirror always reads the value.
-        MirrorStuck = "mirror-stuck",
-        /// The comparator never cuts the supply. Latent; its test shows it.
-        ComparatorDead = "comparator-dead",
-        /// The comparator has cut the supply and stays so.
-        ComparatorStuck = "comparator-stuck",
-        /// Both sides of the comparator's window never trip. Latent; the comparator's tests show it.
-        WindowDead = "window-dead",
-        /// The hot side of the comparator's window never trips. Latent; its test shows it.
-        WindowHotDead = "window-hot-dead",
-        /// The cold side of the comparator's window never trips. Latent; its test shows it.
-        WindowColdDead = "window-cold-dead",
-        /// The comparator's latch is set and stays so: the same as `comparator-stuck`.
-        LatchStuckSet = "latch-stuck-set",
-        /// The comparator's latch is never set: the same as `comparator-dead`.
-        LatchStuckClear = "latch-stuck-clear",
-        /// The line that selects the side of the comparator's tests is stuck, low below 0.5 and high from there on: one side
-        /// is tested twice and the other never. Latent; the next self-test reads the line back. One line for all fingers.
-        SideStuck = "side-stuck",
-        /// Both thresholds of the comparator are too high by the value. Latent; its tests show what is more than 3 K too high
-        /// or 5 K too low.
-        LadderShift = "ladder-shift",
-        /// The switch of the bridge supply never opens. Latent; the comparator's tests show it by the sensed supply.
-        SwitchShorted = "switch-shorted",
-        /// The switch of the bridge supply is open.
-        SwitchOpen = "switch-open",
-        /// The emergency stop is pressed: it disconnects the bridge supply, and the device sees it.
-        EmergencyStop = "emergency-stop",
-        /// The wire of the sensed bridge supply is open: its pin is at ground.
-        SupplySenseOpen = "supply-sense-open",
-        /// The bridge supply falls to the value.
-        SupplyLow = "supply-low",
-        /// The bridge supply rises to the value.
-        SupplyHigh = "supply-high",
-        /// The thermal resistance between sink and coolant rises by the factor.
-        FanOff = "fan-off",
-        /// The coolant of the sink has the temperature of the value.
-        ChillerOff = "chiller-off",
-        /// The sink is held at the value.
-        SinkHot = "sink-hot",
-        /// The host sends invalid bytes once.
-        HostGarbage = "host-garbage",
-        /// The host sends nothing.
-        HostSilent = "host-silent",
-        /// The host sends as many lines as the serial line carries.
-        HostFlood = "host-flood",
-        /// The host uploads courses and plays them without pause: in turn one that begins at 42 °C and one at 15 °C.
-        HostPlays = "host-plays",
-        /// The trigger input stays low below 0.5 and high from there on, which is a rising edge when it comes.
-        TriggerStuck = "trigger-stuck",
-        /// The trigger input has rising edges at a rate.
-        TriggerChatter = "trigger-chatter",
-    }
-}
+use thermal_plant::bridge::LegDefect;
+use thermal_plant::comparator::LatchDefect;
+use thermal_plant::sensors::{Channel, Circuit, FluxCircuit};
+use thermal_plant::supply::SwitchDefect;
 
-/// Unit, range and default of a kind's value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ValueRange {
-    /// Unit; 1 for a pure number.
-    pub unit: &'static str,
-    /// Smallest allowed value.
-    pub min: f64,
-    /// Largest allowed value.
-    pub max: f64,
-    /// Default; without one, the scene must give a value.
-    pub default: Option<f64>,
-}
+use super::row::{Part, Row, ValueRange};
+use super::row::{flux_sensor, host, plant, thermistor, trigger, two_thermistors};
 
-/// A value that the scene must give.
-const fn required(unit: &'static str, min: f64, max: f64) -> Option<ValueRange> {
-    Some(ValueRange { unit, min, max, default: None })
-}
+fault_kinds! {
+    ThermistorOpen = "thermistor-open", thermistor(|d, f| d.thermistor(f).circuit = Circuit::Open),
+        "the wire is open: the pin is at the reference voltage and reads cold";
+    ThermistorShort = "thermistor-short", thermistor(|d, f| d.thermistor(f).circuit = Circuit::Short),
+        "the thermistor is shorted: the pin is at ground and reads hot";
+    ThermistorDrift = "thermistor-drift", thermistor(|d, f| d.thermistor(f).offset_k += f.value).value("K", -60.0, 60.0),
+        "the reading drifts upwards (or downwards) by 1 K/s until the offset reaches the value";
+    ThermistorOffset = "thermistor-offset", thermistor(|d, f| d.thermistor(f).offset_k += f.value).value("K", -60.0, 60.0),
+        "the reading is off by the value at once";
+    ThermistorDetached = "thermistor-detached", thermistor(|d, f| d.thermistor(f).resistance_factor *= f.value).factor(20.0),
+        "the thermistor hangs by its leads: its lag, the room's share in its temperature and its self-heating grow by this factor";
+    ThermistorStuck = "thermistor-stuck", thermistor(|d, f| d.frozen[f.sensor as usize] = true),
+        "the converter repeats its last code of this channel; the pin, and so the comparator, is sound";
+    SensorsSwapped = "sensors-swapped",
+        two_thermistors(|d, f| d.plant.sensors.connected.swap(f.sensor as usize, f.with as usize)),
+        "`sensor` and `with` are plugged into each other's place";
+    ReferenceOff = "reference-off",
+        plant(|d, _| d.plant.sensors.thermistors.iter_mut().for_each(|one| one.circuit = Circuit::Short)).shared(),
+        "the dividers have no supply: all five thermistors read as shorted";
+    AdcStuck = "adc-stuck", plant(|d, _| d.frozen = [true; Channel::ALL.len()]).shared(),
+        "every channel repeats its last code";
+    SkinOnPlate = "skin-on-plate", plant(|d, _| d.plant.sensors.skin_on_plate = true),
+        "the skin thermistor sits on the plate instead of on the finger, and follows the plate";
 
-/// A factor from 1 to 1000 with a default.
-const fn factor(default: f64) -> Option<ValueRange> {
-    Some(ValueRange { unit: "1", min: 1.0, max: 1000.0, default: Some(default) })
+    ForceOpen = "force-open", plant(|d, _| d.plant.sensors.force.open = true),
+        "the force sensor's pin is at ground";
+    ForceStuck = "force-stuck", plant(|d, _| d.plant.sensors.force.stuck = true),
+        "the force signal stands still; the converter's noise remains";
+    ForceOffset = "force-offset", plant(|d, f| d.plant.sensors.force.offset_n += f.value).value("N", -10.0, 10.0),
+        "the force reads too high by the value";
+
+    FluxOpen = "flux-open", flux_sensor(|d, _| d.plant.flux.circuit = FluxCircuit::Open),
+        "a wire of the [heat-flux sensor](flux.md) is broken: it reads the upper rail";
+    FluxShort = "flux-short", flux_sensor(|d, _| d.plant.flux.circuit = FluxCircuit::Short),
+        "its wires are shorted: it reads no flux";
+    FluxStuck = "flux-stuck", flux_sensor(|d, _| d.plant.flux.stuck = true),
+        "its converter repeats its last code";
+    FluxReversed = "flux-reversed", flux_sensor(|d, _| d.plant.flux.circuit = FluxCircuit::Reversed),
+        "its wires are swapped";
+    FluxGain = "flux-gain", flux_sensor(|d, f| d.plant.flux.gain *= f.value).value("1", 0.0, 10.0),
+        "factor on its gain";
+    FluxZero = "flux-zero", flux_sensor(|d, f| d.plant.flux.zero_w_m2 += f.value).value("W/m²", -5000.0, 5000.0),
+        "it reads too much by the value";
+    FluxNoise = "flux-noise", flux_sensor(|d, f| d.plant.flux.noise *= f.value).factor(50.0),
+        "factor on its noise";
+
+    BridgeStuckHigh = "bridge-stuck-high", plant(|d, _| d.plant.bridge.a = LegDefect::High),
+        "leg A stays at the supply, so that cooling pulses never end; the enable line still turns both legs off";
+    BridgeBStuckHigh = "bridge-b-stuck-high", plant(|d, _| d.plant.bridge.b = LegDefect::High),
+        "leg B stays at the supply; the enable line still turns both legs off";
+    BridgeStuckLow = "bridge-stuck-low", plant(|d, _| d.plant.bridge.a = LegDefect::Low),
+        "leg A stays at ground, so that nothing cools; the enable line still turns both legs off";
+    LegOpen = "leg-open", plant(|d, _| d.plant.bridge.a = LegDefect::Open),
+        "leg A is high-impedance: no current flows";
+    BridgeShorted = "bridge-shorted", plant(|d, _| d.plant.bridge.a = LegDefect::Shorted),
+        "output A is shorted to ground: the driver trips in the pulses that cool, and pulls nFAULT low";
+    BridgeEnableStuck = "bridge-enable-stuck", plant(|d, _| d.plant.bridge.enable_stuck = true),
+        "the driver stays enabled and follows its PWM inputs; latent, because the firmware turns off both PWM and enable";
+    PolaritySwapped = "polarity-swapped", plant(|d, _| d.plant.bridge.swapped = true),
+        "the module's wires are swapped";
+    ModuleWeak = "module-weak", plant(|d, f| d.plant.module.seebeck = f.value).value("1", 0.0, 1.0),
+        "the part of its Seebeck effect that the module keeps";
+    FaultPinDead = "fault-pin-dead", plant(|d, _| d.plant.bridge.fault_pin_dead = true),
+        "nFAULT never goes low; latent until the comparator is tested";
+    MirrorStuck = "mirror-stuck", plant(|d, f| d.plant.sensors.mirror_stuck_a = Some(f.value)).value("A", 0.0, 10.0),
+        "the current mirror always reads this value";
+
+    ComparatorDead = "comparator-dead", plant(|d, _| d.plant.comparator.latch = LatchDefect::StuckClear),
+        "the comparator never cuts the supply; latent until it is tested";
+    ComparatorStuck = "comparator-stuck", plant(|d, _| d.plant.comparator.latch = LatchDefect::StuckSet),
+        "the comparator has cut the supply and keeps it cut";
+    WindowDead = "window-dead",
+        plant(|d, _| (d.plant.comparator.hot_dead, d.plant.comparator.cold_dead) = (true, true)),
+        "both sides of the comparator's window never trip; latent until they are tested";
+    WindowHotDead = "window-hot-dead", plant(|d, _| d.plant.comparator.hot_dead = true),
+        "the hot side never trips; latent until it is tested";
+    WindowColdDead = "window-cold-dead", plant(|d, _| d.plant.comparator.cold_dead = true),
+        "the cold side never trips; latent until it is tested";
+    LatchStuckSet = "latch-stuck-set", plant(|d, _| d.plant.comparator.latch = LatchDefect::StuckSet),
+        "the comparator's latch is set and stays so: the same as `comparator-stuck`";
+    LatchStuckClear = "latch-stuck-clear", plant(|d, _| d.plant.comparator.latch = LatchDefect::StuckClear),
+        "the comparator's latch is never set: the same as `comparator-dead`";
+    SideStuck = "side-stuck",
+        plant(|d, f| d.plant.comparator.side_stuck = Some(f.value >= 0.5)).value("level", 0.0, 1.0).shared(),
+        "the line that selects the side of the comparator's tests stays low (0) or high (1), so that one side would be tested \
+         twice and the other never; latent until the next self-test; one line for all fingers";
+    LadderShift = "ladder-shift", plant(|d, f| d.plant.comparator.ladder_shift_k += f.value).value("K", -30.0, 30.0),
+        "both thresholds of the comparator are too high by this value; its tests show more than 3 K too high or 5 K too low";
+
+    SwitchShorted = "switch-shorted", plant(|d, _| d.plant.supply.switch = SwitchDefect::Shorted),
+        "the switch of the bridge supply never opens; latent until the comparator is tested";
+    SwitchOpen = "switch-open", plant(|d, _| d.plant.supply.switch = SwitchDefect::Open),
+        "the switch of the bridge supply is open";
+    EmergencyStop = "emergency-stop", plant(|d, _| d.plant.supply.emergency_stop = true).shared(),
+        "the emergency stop is pressed: it disconnects the bridge supply, and the device sees it";
+    SupplySenseOpen = "supply-sense-open", plant(|d, _| d.plant.supply.sense_open = true),
+        "the wire of the sensed bridge supply is open; it reads 0 V";
+    // The range of this class of drivers is 4.5 to 38 V.
+    SupplyLow = "supply-low", plant(|d, f| d.plant.bridge.supply_v = Some(f.value)).value("V", 4.5, 12.0),
+        "the bridge supply drops to the value";
+    SupplyHigh = "supply-high", plant(|d, f| d.plant.bridge.supply_v = Some(f.value)).value("V", 12.0, 38.0),
+        "the bridge supply rises to the value";
+    SupplyResistance = "supply-resistance", plant(|d, f| d.plant.supply.contact_ohm += f.value).value("Ω", 0.0, 1.0),
+        "a loose contact in the wires of the bridge supply has this resistance, so that the voltage falls with the current";
+
+    FanOff = "fan-off", plant(|d, f| d.plant.cooling.resistance_factor *= f.value).factor(10.0),
+        "factor on the thermal resistance between the sink and its coolant";
+    ChillerOff = "chiller-off", plant(|d, f| d.plant.cooling.coolant_c = Some(f.value)).value("°C", 5.0, 60.0),
+        "temperature of the coolant";
+    SinkHot = "sink-hot", plant(|d, f| d.plant.cooling.held_c = Some(f.value)).value("°C", 0.0, 90.0),
+        "an external heat source holds the sink at the value";
+
+    HostGarbage = "host-garbage", host().once(),
+        "the host sends bytes that are no line, once";
+    HostSilent = "host-silent", host(),
+        "the host sends nothing";
+    HostFlood = "host-flood", host(),
+        "the host sends `state` as often as the line carries it";
+    HostPlays = "host-plays", host(),
+        "the host uploads courses and plays them without pause, a line every 2 ms: in turn one that begins at 42 °C and one at 15 °C";
+    TriggerStuck = "trigger-stuck", trigger().value("level", 0.0, 1.0),
+        "the trigger input stays low (below 0.5), or high, which is a rising edge when it comes";
+    TriggerChatter = "trigger-chatter", trigger().value("Hz", 1.0, 200e3),
+        "the trigger input has rising edges at this rate";
 }
 
 impl FaultKind {
-    /// The value of the kind, if it has one. The supply range is that of this class of drivers, 4.5 to 38 V.
+    /// The value of the kind, if it has one.
     pub const fn value(self) -> Option<ValueRange> {
-        match self {
-            Self::ThermistorDrift | Self::ThermistorOffset => required("K", -60.0, 60.0),
-            Self::ThermistorDetached => factor(20.0),
-            Self::ModuleWeak => required("1", 0.0, 1.0),
-            Self::ForceOffset => required("N", -10.0, 10.0),
-            Self::FluxGain => required("1", 0.0, 10.0),
-            Self::FluxZero => required("W/m²", -5000.0, 5000.0),
-            Self::FluxNoise => factor(50.0),
-            Self::MirrorStuck => required("A", 0.0, 10.0),
-            Self::SideStuck => required("level", 0.0, 1.0),
-            Self::LadderShift => required("K", -30.0, 30.0),
-            Self::SupplyLow => required("V", 4.5, 12.0),
-            Self::SupplyHigh => required("V", 12.0, 38.0),
-            Self::FanOff => factor(10.0),
-            Self::ChillerOff => required("°C", 5.0, 60.0),
-            Self::SinkHot => required("°C", 0.0, 90.0),
-            Self::TriggerStuck => required("level", 0.0, 1.0),
-            Self::TriggerChatter => required("Hz", 1.0, 200e3),
-            _ => None,
-        }
+        self.row().value
     }
 
     /// Whether it affects one thermistor, which the scene may name.
     pub const fn has_sensor(self) -> bool {
-        matches!(
-            self,
-            Self::ThermistorOpen
-                | Self::ThermistorShort
-                | Self::ThermistorDrift
-                | Self::ThermistorOffset
-                | Self::ThermistorDetached
-                | Self::ThermistorStuck
-                | Self::SensorsSwapped
-        )
+        matches!(self.row().part, Part::Thermistor | Part::TwoThermistors)
     }
 
     /// Whether it affects the heat-flux sensor, which the scene must have.
     pub const fn needs_flux_sensor(self) -> bool {
-        matches!(
-            self,
-            Self::FluxOpen
-                | Self::FluxShort
-                | Self::FluxStuck
-                | Self::FluxReversed
-                | Self::FluxGain
-                | Self::FluxZero
-                | Self::FluxNoise
-        )
+        matches!(self.row().part, Part::FluxSensor)
     }
 
     /// Whether it exchanges two thermistors, of which the scene must name the second.
     pub const fn needs_second_sensor(self) -> bool {
-        matches!(self, Self::SensorsSwapped)
+        matches!(self.row().part, Part::TwoThermistors)
     }
 
     /// Whether it has a duration, so that the scene may give its end.
     pub const fn has_duration(self) -> bool {
-        !matches!(self, Self::HostGarbage)
+        !self.row().once
+    }
+
+    /// Whether the simulated host has it, which another program may replace.
+    pub const fn is_of_host(self) -> bool {
+        matches!(self.row().part, Part::Host)
+    }
+
+    /// Whether it is of what the fingers of a device for five share.
+    pub const fn is_shared(self) -> bool {
+        self.row().shared
     }
 }

@@ -1,14 +1,21 @@
 //! Faults of a scene: kind, start and end.
 
-mod kinds;
+mod defects;
+mod documentation;
 mod parse;
 mod processor;
+#[macro_use]
+mod row;
+mod kinds;
 
 use serde::Deserialize;
 
-pub use kinds::{FaultKind, ValueRange};
+pub(crate) use defects::ActiveDefects;
+pub use documentation::{fault_names, fault_table};
+pub use kinds::FaultKind;
 pub(super) use parse::faults;
 pub use processor::{ProcessorKey, ProcessorKind};
+pub use row::ValueRange;
 
 /// Drift rate of a thermistor, K/s.
 pub const DRIFT_K_S: f64 = 1.0;

@@ -67,32 +67,50 @@ pub struct ProcessorKind {
     pub name: &'static str,
     /// Keys that locate the fault.
     pub keys: &'static [ProcessorKey],
+    /// The effect in words, for `docs/scenes.md`.
+    pub(super) text: &'static str,
 }
 
 impl ProcessorKind {
-    /// All kinds.
+    /// All kinds: name, keys, and the effect in words.
+    #[rustfmt::skip]
     pub const ALL: [Self; 17] = [
-        Self::new("hung-core", &[]),
-        Self::new("debugger-halt", &[]),
-        Self::new("hse-stopped", &[]),
-        Self::new("hse-started", &[]),
-        Self::new("adc-stopped", &[]),
-        Self::new("adc2-stopped", &[]),
-        Self::new("dma-stopped", &[ProcessorKey::Controller, ProcessorKey::Stream]),
-        Self::new("brown-out", &[]),
-        Self::new("power-cycle", &[]),
-        Self::new("reset-pin", &[]),
-        Self::new("software-reset", &[]),
-        Self::new("stack-overflow", &[]),
-        Self::new("ram-bit", &[ProcessorKey::Address, ProcessorKey::Bit]),
-        Self::new("core-bit", &[ProcessorKey::Register, ProcessorKey::Bit]),
-        Self::new("register-bit", &[ProcessorKey::Address, ProcessorKey::Bit]),
-        Self::new("select-line-stuck", &[ProcessorKey::Line, ProcessorKey::Level]),
-        Self::new("select-line-open", &[ProcessorKey::Line]),
+        Self::new("hung-core", &[],
+            "the core executes nothing until a reset; timers, DMA, converter and watchdogs continue"),
+        Self::new("debugger-halt", &[],
+            "a debugger halts the core until a reset; a timer or watchdog that it has chosen in DBGMCU stands still too"),
+        Self::new("hse-stopped", &[],
+            "the external clock fails; the clock security system acts if it is on, else everything but the independent watchdog \
+             stands still and pins keep their level"),
+        Self::new("hse-started", &[], "the external clock comes, or comes back"),
+        Self::new("adc-stopped", &[], "the converter ends no conversion until it is reset"),
+        Self::new("adc2-stopped", &[],
+            "the converter of the heat-flux sensor, ADC2, ends no conversion until it is reset"),
+        Self::new("dma-stopped", &[ProcessorKey::Controller, ProcessorKey::Stream],
+            "a bus error ends an enabled stream, the sampler's (2, 0) unless others are named"),
+        Self::new("brown-out", &[], "the supply dips: a reset; RAM keeps its contents"),
+        Self::new("power-cycle", &[],
+            "the supply is lost: a reset; RAM holds noise drawn from the seed"),
+        Self::new("reset-pin", &[], "the reset pin is pulled; RAM keeps its contents"),
+        Self::new("software-reset", &[],
+            "the program requests a reset, as a program out of control may; RAM keeps its contents"),
+        Self::new("stack-overflow", &[],
+            "the stack pointer is set to the end of the stack, so that the next push leaves it"),
+        Self::new("ram-bit", &[ProcessorKey::Address, ProcessorKey::Bit], "a bit (0 to 7) of a byte of the RAM flips"),
+        Self::new("core-bit", &[ProcessorKey::Register, ProcessorKey::Bit],
+            "a bit of `r0` to `r12`, `sp`, `lr`, `pc`, `psr` (flags), `s0` to `s31` or `fpscr` flips"),
+        Self::new("register-bit", &[ProcessorKey::Address, ProcessorKey::Bit],
+            "a peripheral register is stored with the bit flipped; the peripheral reacts as it would to that write. In BDTR of \
+             TIM1 and TIM8 the bit flips although it is locked. A flip that would stop a peripheral's clock (except the window \
+             watchdog's), or that the model does not take, is refused"),
+        Self::new("select-line-stuck", &[ProcessorKey::Line, ProcessorKey::Level],
+            "five fingers: a select line (0 to 2) of the multiplexers is shorted at its pin, to ground (0) or to 3.3 V (1)"),
+        Self::new("select-line-open", &[ProcessorKey::Line],
+            "five fingers: the wire of a select line breaks, and the pull-down behind it holds the multiplexers' inputs low"),
     ];
 
-    const fn new(name: &'static str, keys: &'static [ProcessorKey]) -> Self {
-        Self { name, keys }
+    const fn new(name: &'static str, keys: &'static [ProcessorKey], text: &'static str) -> Self {
+        Self { name, keys, text }
     }
 
     /// The kind with a name.

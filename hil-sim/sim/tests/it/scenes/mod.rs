@@ -1,7 +1,6 @@
 //! Scenes with other fingers, objects, plants and the camera, on the native engine.
 
 mod display_error;
-mod documented;
 mod examples;
 mod fault_kinds;
 mod flux;
