@@ -21,7 +21,7 @@ fault_kinds! {
     ThermistorOffset = "thermistor-offset", thermistor(|d, f| d.thermistor(f).offset_k += f.value).value("K", -60.0, 60.0),
         "the reading is off by the value at once";
     ThermistorDetached = "thermistor-detached", thermistor(|d, f| d.thermistor(f).resistance_factor *= f.value).factor(20.0),
-        "the thermistor hangs by its leads: its lag, the room's share in its temperature and its self-heating grow by this factor";
+        "the thermistor hangs by its leads: its lag, the room's share in its temperature (at most to 1) and its self-heating grow by this factor";
     ThermistorStuck = "thermistor-stuck", thermistor(|d, f| d.frozen[f.sensor as usize] = true),
         "the converter repeats its last code of this channel; the pin, and so the comparator, is sound";
     SensorsSwapped = "sensors-swapped",
@@ -31,7 +31,7 @@ fault_kinds! {
         plant(|d, _| d.plant.sensors.thermistors.iter_mut().for_each(|one| one.circuit = Circuit::Short)).shared(),
         "the dividers have no supply: all five thermistors read as shorted";
     AdcStuck = "adc-stuck", plant(|d, _| d.frozen = [true; Channel::ALL.len()]).shared(),
-        "every channel repeats its last code";
+        "every channel but the heat-flux sensor's repeats its last code";
     SkinOnPlate = "skin-on-plate", plant(|d, _| d.plant.sensors.skin_on_plate = true),
         "the skin thermistor sits on the plate instead of on the finger, and follows the plate";
 
@@ -68,7 +68,7 @@ fault_kinds! {
     BridgeShorted = "bridge-shorted", plant(|d, _| d.plant.bridge.a = LegDefect::Shorted),
         "output A is shorted to ground: the driver trips in the pulses that cool, and pulls nFAULT low";
     BridgeEnableStuck = "bridge-enable-stuck", plant(|d, _| d.plant.bridge.enable_stuck = true),
-        "the driver stays enabled and follows its PWM inputs; latent, because the firmware turns off both PWM and enable";
+        "the driver stays enabled and follows its PWM inputs; latent";
     PolaritySwapped = "polarity-swapped", plant(|d, _| d.plant.bridge.swapped = true),
         "the module's wires are swapped";
     ModuleWeak = "module-weak", plant(|d, f| d.plant.module.seebeck = f.value).value("1", 0.0, 1.0),
@@ -124,7 +124,7 @@ fault_kinds! {
         "an external heat source holds the sink at the value";
 
     HostGarbage = "host-garbage", host().once(),
-        "the host sends bytes that are no line, once";
+        "the host sends bytes that are no valid lines, once";
     HostSilent = "host-silent", host(),
         "the host sends nothing";
     HostFlood = "host-flood", host(),

@@ -80,7 +80,7 @@ impl ProcessorKind {
         Self::new("debugger-halt", &[],
             "a debugger halts the core until a reset; a timer or watchdog that it has chosen in DBGMCU stands still too"),
         Self::new("hse-stopped", &[],
-            "the external clock fails; the clock security system acts if it is on, else everything but the independent watchdog \
+            "the external clock fails; the clock security system acts if it is on, else, if the system runs on that clock, everything but the independent watchdog \
              stands still and pins keep their level"),
         Self::new("hse-started", &[], "the external clock comes, or comes back"),
         Self::new("adc-stopped", &[], "the converter ends no conversion until it is reset"),
