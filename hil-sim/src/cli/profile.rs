@@ -15,7 +15,7 @@ use super::{Failure, engine, image, output};
 pub struct Arguments {
     /// The scene, TOML
     scene: PathBuf,
-    /// OneFingerBoard to run instead of the one of the current sources; it must have its symbols
+    /// Image to run instead of the one of the current sources; it must have its symbols
     #[arg(long)]
     elf: Option<PathBuf>,
 }

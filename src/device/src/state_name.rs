@@ -12,11 +12,11 @@ pub enum StateName {
     /// The self-test runs, for 0.8 s if no finger disturbs it: the comparator is tested with the bridge off, then 1 A
     /// cools and 1 A warms the display.
     SelfTest,
-    /// The bridge is off after `abort` in armed, preset or contact. The self-test was passed before, so `arm` leads to
-    /// armed at once.
+    /// The bridge is off after `abort` in armed, preset, contact or stimulus. The self-test was passed before, so `arm`
+    /// leads to armed at once.
     Ready,
-    /// No object is presented, and the bridge drives the display: to stay at skin temperature, to hold a temperature,
-    /// or to identify the tile.
+    /// No object is presented, and the bridge drives the display: to stay at skin temperature, or to identify
+    /// the tile.
     Armed,
     /// An object is presented and no finger touches the display, which waits at the preset: the temperature at which a
     /// contact with the object begins.

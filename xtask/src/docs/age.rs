@@ -11,7 +11,7 @@ use crate::process::workspace;
 const NOTE: (&str, &str) = (" (before later changes of ", ")");
 
 /// What a command measures, as folders. The first row that names a part of the command counts.
-const MEASURED: [(&str, &[&str]); 12] = [
+const MEASURED: [(&str, &[&str]); 16] = [
     ("hil-sim thesis", &["hil-sim/thesis", "model"]),
     ("contact-law-fit", &["lab/contact-law", "src", "model", "hil-sim"]),
     ("measure_line", &["python", "lab", "src", "hil-sim"]),
@@ -23,6 +23,10 @@ const MEASURED: [(&str, &[&str]); 12] = [
     ("thermal-lab predict", &["lab/participant", "lab/statistics", "lab/sessions"]),
     ("thermal-lab", &["lab", "src", "model", "hil-sim"]),
     ("statistics", &["lab/statistics"]),
+    ("--only hostile-line", &["python", "lab", "src", "model", "hil-sim"]),
+    ("--only sessions", &["lab", "src", "model", "hil-sim"]),
+    ("--only windows", &["lab", "src", "model", "hil-sim"]),
+    ("--only cases", &["lab", "hardware", "src", "model", "hil-sim"]),
     ("", &["src", "model", "hil-sim"]),
 ];
 

@@ -1,7 +1,7 @@
 //! Symptoms: deviations of the plant that make a fault detectable.
 //!
-//! They are derived from the true state of the plant: sensor outputs before the converter, the level of the fault line, and
-//! the demanded current in the telemetry.
+//! They are derived from the true state of the plant: sensor outputs before the converter, force, supply and the level of the
+//! fault line; and from the telemetry: demanded current, set-point, state and tick.
 //!
 //! The readings of a device are calibrated and noisy. Therefore the thresholds here exceed those of the device by the
 //! largest error of sound sensors. A temperature counts from 0.1 K beyond the device's limit, which is more than the error

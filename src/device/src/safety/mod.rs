@@ -1,6 +1,6 @@
 //! What keeps a finger safe: faults, their detectors, the limits of what may be commanded, and the self-test.
 //!
-//! The bridge is driven in the states self-test, armed, preset and contact. In all others, and in the tick that sees a
+//! The bridge is driven in the states self-test, armed, preset, contact and stimulus. In all others, and in the tick that sees a
 //! fault, both of its legs are high-impedance; only that is called "off". Off is safe only while the sink is cool
 //! enough, because heat flows back from the sink to the display; so the sink has the lowest upper limit of all.
 //!

@@ -16,8 +16,8 @@ pub enum State {
     /// The self-test runs: the comparator is tested with the bridge off, then 1 A cools and 1 A warms the display.
     /// Leads to armed if all checks pass, else to tripped.
     SelfTest(SelfTest),
-    /// The bridge is off after `abort` in armed, preset or contact. The self-test was passed before, so `arm` leads to
-    /// armed at once.
+    /// The bridge is off after `abort` in armed, preset, contact or stimulus. The self-test was passed before, so `arm`
+    /// leads to armed at once.
     Ready,
     /// The bridge drives the display, and no object is presented. The [`ArmedTask`] says what the display does: stay at
     /// skin temperature, or be identified.
