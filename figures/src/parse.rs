@@ -89,9 +89,9 @@ fn with_shared(name: &str, mut facts: Table, shared: &Table) -> Result<Table, St
             return Err(format!("states the {fact} that it shares with its block"));
         }
         let pattern = shared.as_str().filter(|text| text.contains(OWN));
-        if let Some(pattern) = pattern {
-            let text = pattern.replace(OWN, own.and_then(Value::as_str).unwrap_or(name));
-            facts.insert(fact.clone(), text.into());
+        let text = own.map_or(Some(name), Value::as_str);
+        if let (Some(pattern), Some(text)) = (pattern, text) {
+            facts.insert(fact.clone(), pattern.replace(OWN, text).into());
         } else if own.is_none() {
             facts.insert(fact.clone(), shared.clone());
         }
@@ -260,6 +260,7 @@ mod tests {
                 "c = { value = 1, domain = 2 }",
                 "a.c: invalid type: integer `2`, expected a string in `domain`",
             ),
+            ("domain = '{}'\nc = { value = 1, domain = 2 }", "a.c: invalid type: integer `2`"),
             ("c = { value = 1, domain = 'd', exact = true }", "a.c: states the exact that"),
             (
                 "c = { value = 1, domain = 'd' }\n[[a]]\nc = { value = 2, exact = true, what = 'x', domain = 'd', command = 'c' }",
