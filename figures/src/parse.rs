@@ -3,11 +3,17 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use toml::Spanned;
+use toml::{Spanned, Table, Value};
 
 use crate::{Demand, Figure, HEADROOM, Number};
 
-/// A table of the file, as its head explains it.
+/// Facts that the figures of a group share, and the figures, by name.
+type Block = BTreeMap<Spanned<String>, Value>;
+
+/// In a text that figures share, what a figure states itself, or else its name.
+const OWN: &str = "{}";
+
+/// All that is stated of a figure, as the head of the file explains it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Entry {
@@ -35,17 +41,62 @@ enum OneOrMore {
 
 /// All figures of a text, in its order.
 pub fn figures(text: &str) -> Result<Vec<Figure>, String> {
-    type Groups = BTreeMap<String, BTreeMap<String, Spanned<Entry>>>;
-    let groups: Groups = toml::from_str(text).map_err(|error| error.to_string())?;
-    let mut found = Vec::new();
-    for (group, entries) in groups {
-        for (name, entry) in entries {
-            let start = entry.span().start;
-            found.push((start, figure(format!("{group}.{name}"), entry.into_inner())?));
+    let groups: BTreeMap<String, Vec<Block>> =
+        toml::from_str(text).map_err(|error| error.to_string())?;
+    let mut found = BTreeMap::new();
+    for (group, blocks) in groups {
+        for block in blocks {
+            let (rows, mut shared) = rows_and_shared(block);
+            for (start, (name, row)) in rows {
+                let key = format!("{group}.{name}");
+                let in_figure = |problem: String| {
+                    let lines: Vec<_> = problem.lines().collect();
+                    format!("{key}: {}", lines.join(" "))
+                };
+                let facts = with_shared(&name, row, &shared).map_err(in_figure)?;
+                let entry = facts.try_into().map_err(|error| in_figure(error.to_string()))?;
+                let figure = figure(key.clone(), entry)?;
+                if found.insert(key.clone(), (start, figure)).is_some() {
+                    return Err(in_figure("is there twice".into()));
+                }
+                shared.entry("domain").or_insert_with(|| "the same".into());
+            }
         }
     }
+    let mut found: Vec<_> = found.into_values().collect();
     found.sort_by_key(|(start, _)| *start);
     Ok(found.into_iter().map(|(_, figure)| figure).collect())
+}
+
+/// The figures of a block by their place in the text, and the facts that they share.
+fn rows_and_shared(block: Block) -> (BTreeMap<usize, (String, Table)>, Table) {
+    let (mut rows, mut shared) = (BTreeMap::new(), Table::new());
+    for (name, value) in block {
+        let start = name.span().start;
+        match value {
+            Value::Table(row) => _ = rows.insert(start, (name.into_inner(), row)),
+            fact => _ = shared.insert(name.into_inner(), fact),
+        }
+    }
+    (rows, shared)
+}
+
+/// A figure's facts with those that it shares.
+fn with_shared(name: &str, mut facts: Table, shared: &Table) -> Result<Table, String> {
+    for (fact, shared) in shared {
+        let own = facts.get(fact);
+        if own == Some(shared) {
+            return Err(format!("states the {fact} that it shares with its block"));
+        }
+        let pattern = shared.as_str().filter(|text| text.contains(OWN));
+        let text = own.map_or(Some(name), Value::as_str);
+        if let (Some(pattern), Some(text)) = (pattern, text) {
+            facts.insert(fact.clone(), pattern.replace(OWN, text).into());
+        } else if own.is_none() {
+            facts.insert(fact.clone(), shared.clone());
+        }
+    }
+    Ok(facts)
 }
 
 fn figure(key: String, entry: Entry) -> Result<Figure, String> {
@@ -104,7 +155,7 @@ mod tests {
     use crate::Verdict;
 
     fn parsed(lines: &str) -> Result<Figure, String> {
-        let text = format!("[a.b]\nwhat = \"x\"\ndomain = \"d\"\ncommand = \"c\"\n{lines}");
+        let text = format!("[[a]]\n[a.b]\nwhat = \"x\"\ndomain = \"d\"\ncommand = \"c\"\n{lines}");
         figures(&text).map(|mut all| all.remove(0))
     }
 
@@ -165,13 +216,69 @@ mod tests {
         }
     }
 
+    /// What the figures of a block say of a fact, or what is wrong.
+    fn facts(block: &str, fact: fn(&Figure) -> &str) -> Result<Vec<String>, String> {
+        let shared = "command = 'c'\nexact = true\nwhat = 'x'";
+        let figures = figures(&format!("[[a]]\n{shared}\n{block}"))?;
+        Ok(figures.iter().map(|figure| fact(figure).to_owned()).collect())
+    }
+
+    fn problem(block: &str) -> String {
+        facts(block, |figure| &figure.key).expect_err("a problem")
+    }
+
+    #[test]
+    fn figures_share_the_facts_of_their_block_or_state_others() {
+        let block = "unit = 'K'\ndomain = 'd'\nc = { value = 1, unit = 'mK' }\nb = { value = 2 }";
+        assert_eq!(facts(block, |figure| &figure.unit), Ok(vec!["mK".into(), "K".into()]));
+        assert_eq!(facts(block, |figure| &figure.domain), Ok(vec!["d".into(), "d".into()]));
+        let next_block = format!("{block}\n[[a]]\ne = {{ value = 3 }}");
+        assert!(problem(&next_block).starts_with("a.e: missing field"));
+    }
+
+    #[test]
+    fn a_figure_without_a_domain_has_the_one_above() {
+        let block = "c = { value = 1, domain = 'd' }\nb = { value = 2 }";
+        let expected = ["d", "the same"].map(String::from);
+        assert_eq!(facts(block, |figure| &figure.domain), Ok(expected.into()));
+        assert_eq!(problem("c = { value = 1 }"), "a.c: missing field `domain`");
+    }
+
+    #[test]
+    fn braces_in_a_shared_text_are_what_the_figure_states_or_its_name() {
+        let block = "domain = 'on {}'\nc = { value = 1 }\nb = { value = 2, domain = 'd' }";
+        let expected = ["on c", "on d"].map(String::from);
+        assert_eq!(facts(block, |figure| &figure.domain), Ok(expected.into()));
+    }
+
+    #[test]
+    fn what_is_wrong_names_figure_and_fact() {
+        for (block, expected) in [
+            ("c = { value = 1, domain = 'd', wht = 1 }", "a.c: unknown field `wht`"),
+            ("wht = 1\nc = { value = 1, domain = 'd' }", "a.c: unknown field `wht`"),
+            (
+                "c = { value = 1, domain = 2 }",
+                "a.c: invalid type: integer `2`, expected a string in `domain`",
+            ),
+            ("domain = '{}'\nc = { value = 1, domain = 2 }", "a.c: invalid type: integer `2`"),
+            ("c = { value = 1, domain = 'd', exact = true }", "a.c: states the exact that"),
+            (
+                "c = { value = 1, domain = 'd' }\n[[a]]\nc = { value = 2, exact = true, what = 'x', domain = 'd', command = 'c' }",
+                "a.c: is there twice",
+            ),
+        ] {
+            let problem = problem(block);
+            assert!(problem.starts_with(expected), "{problem}");
+        }
+    }
+
     #[test]
     fn figures_keep_the_order_of_the_file() {
-        let keys: Vec<_> = crate::all().iter().map(|figure| &figure.key).collect();
-        let places: Vec<_> = keys
-            .iter()
-            .map(|key| crate::TEXT.find(&format!("[{key}]\n")).expect("a table"))
-            .collect();
-        assert!(places.is_sorted());
+        let block = "command = 'c'\nexact = true\nwhat = 'x'\nz = { value = 1, domain = 'd' }";
+        let text = format!("[[b]]\n{block}\ny = {{ value = 2 }}\n[[a]]\n{block}\n[[b]]\n");
+        let text = text + &block.replace("z =", "x =");
+        let figures = figures(&text).expect("figures");
+        let keys: Vec<_> = figures.iter().map(|figure| figure.key.as_str()).collect();
+        assert_eq!(keys, ["b.z", "b.y", "a.z", "b.x"]);
     }
 }
