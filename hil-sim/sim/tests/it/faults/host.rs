@@ -99,7 +99,7 @@ fn refused_lines_stand_in_the_results_with_their_answers() {
         let lines = lines.map(|refused| (refused.line.clone(), refused.answer.clone()));
         (lines.collect(), figures)
     };
-    let slap = "err object 'slap': slab, half-space, room, or -20 to 60 C";
+    let slap = "err object temperature 'slap' is not a decimal number; -20 to 60 C; or room half-space slab";
     let mode = "err unknown mode 'x'; known: contact semi-infinite";
     let of = |line: &str, answer: &str| (Some(line.to_owned()), answer.to_owned());
     let expected = [of("object slap", slap), of("mode x", mode)];
