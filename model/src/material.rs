@@ -104,13 +104,18 @@ pub const THESIS_MATERIALS: [&str; 9] =
     ["copper", "bronze", "stainless-steel", "granite", "g10", "abs", "foam", "baf2", "zns"];
 
 /// Looks up a material by its name in [`MATERIALS`].
-pub const fn find(name: &str) -> Option<&'static Material> {
-    let mut rest: &[(&str, Material)] = &MATERIALS;
-    while let [(known, material), others @ ..] = rest {
-        if equal(known.as_bytes(), name.as_bytes()) {
-            return Some(material);
+pub fn find(name: &str) -> Option<&'static Material> {
+    position(name).map(|position| &MATERIALS[position].1)
+}
+
+/// Position of a name in [`MATERIALS`], also in a constant.
+pub const fn position(name: &str) -> Option<usize> {
+    let mut position = 0;
+    while position < MATERIALS.len() {
+        if equal(MATERIALS[position].0.as_bytes(), name.as_bytes()) {
+            return Some(position);
         }
-        rest = others;
+        position += 1;
     }
     None
 }

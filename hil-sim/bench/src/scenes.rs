@@ -7,7 +7,7 @@ mod floating;
 use contact_model::fixed_point::{
     Celsius, ChordInterpolation, ContactPair, ContactPairError, Force, log2_relative_pressure,
 };
-use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN, find};
+use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN, position};
 use thermal_device::estimate::{Bodies, FingerEstimator};
 use thermal_device::reference::{
     self, ContactModel, ReferenceGenerator, SETPOINT_INTERPOLATION_TOLERANCE,
@@ -26,13 +26,13 @@ pub const SKIN_C: f64 = 34.0;
 pub const OBJECT_C: f64 = 24.0;
 /// The constant force.
 pub const FORCE_N: f64 = 2.0;
-/// Materials of the five fingers. Scenes with one finger use the first.
-pub const FINGERS: [&Material; 5] = [
-    find("granite").expect("a material"),
-    find("copper").expect("a material"),
-    find("stainless-steel").expect("a material"),
-    find("abs").expect("a material"),
-    find("foam").expect("a material"),
+/// Materials of the five fingers, by their positions in [`MATERIALS`]. Scenes with one finger use the first.
+pub const FINGERS: [usize; 5] = [
+    position("granite").expect("a material"),
+    position("copper").expect("a material"),
+    position("stainless-steel").expect("a material"),
+    position("abs").expect("a material"),
+    position("foam").expect("a material"),
 ];
 
 /// A kind of scene, in one arithmetic.
@@ -93,7 +93,8 @@ impl Station {
         let force = Force::from_num(FORCE_N);
         let (skin, object_c) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
         let fixed = |finger: usize| {
-            let pair = ContactPair::new(&SKIN, FINGERS[finger], &REFERENCE_DISPLAY, TICK_S)?;
+            let object = &MATERIALS[FINGERS[finger]].1;
+            let pair = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
             let contact = pair.at_pressure(log2_relative_pressure(force));
             let (chords, _) = ChordInterpolation::new(
                 &contact,
@@ -113,8 +114,8 @@ impl Station {
             estimator,
             generator: ReferenceGenerator::default(),
             fixed,
-            single: FINGERS.map(FloatingFinger::new),
-            double: FINGERS.map(FloatingFinger::new),
+            single: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
+            double: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
         })
     }
 }

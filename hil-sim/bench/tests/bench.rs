@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
-use contact_model::material::{REFERENCE_DISPLAY, SKIN};
+use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use contact_model::reference::Contact;
 use documented_figures::{assert_compiled, assert_figure};
 use image_proof::compiler::recorded_with;
@@ -120,7 +120,7 @@ fn errors_are_a_few_last_bits_of_the_type() {
 /// set-point errs by that part of `dT (w - r)`.
 #[test]
 fn set_points_obey_equations_6_12_and_3_1() {
-    let granite = FINGERS[0];
+    let granite = &MATERIALS[FINGERS[0]].1;
     let contact = Contact::<f64>::new((&SKIN, 34.0), (granite, 24.0), &REFERENCE_DISPLAY, 1.0);
     let lag_mk = 0.016 * 0.277 * 10e3 * (contact.weight - contact.ratio).abs();
     for row in rows(&RUNS[0], "scenes") {

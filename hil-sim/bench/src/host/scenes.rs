@@ -1,5 +1,5 @@
 //! Errors of the set-points against Eq. 6-12 and 3-1 in double precision.
-use contact_model::material::{REFERENCE_DISPLAY, SKIN};
+use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, interface_temperature};
 use model_bench::job::Checksum;
@@ -41,7 +41,7 @@ pub fn judge(scene: &Scene) -> anyhow::Result<Judgement> {
 
 /// Set-point of the first finger, °C.
 fn exact_c(kind: &str, tick: u32) -> f64 {
-    let object = FINGERS[0];
+    let object: &Material = &MATERIALS[FINGERS[0]].1;
     let display_c = |force_n: f64, tick: u32| {
         Contact::new((&SKIN, SKIN_C), (object, OBJECT_C), &REFERENCE_DISPLAY, pressure_pa(force_n))
             .at(f64::from(tick) * TICK_S)
