@@ -34,7 +34,10 @@ fn each_wrong_line_is_answered_with_its_error_and_the_contact_goes_on() {
         ("frobnicate", "err unknown command 'frobnicate'; known: id board checksum"),
         ("material gold", "err unknown material 'gold'; known: copper bronze"),
         ("mode loud", "err unknown mode 'loud'; known: contact semi-infinite"),
-        ("object hot", "err object temperature 'hot' is not a decimal number; -20 to 60 C; or room"),
+        (
+            "object hot",
+            "err object temperature 'hot' is not a decimal number; -20 to 60 C; or room",
+        ),
         ("object 99", "err object temperature '99' out of range; -20 to 60 C"),
         ("stream", "err interval missing; 0 to 60000 ms"),
         ("id id", "err unexpected 'id' after the command"),
