@@ -118,6 +118,7 @@ impl CommissioningSession {
     }
 
     /// Replaces the part of the settings that a line holds.
+    #[inline(never)]
     fn replace_setting(
         &mut self,
         setting: Setting,

@@ -11,12 +11,14 @@ use crate::ReadError;
 use crate::argument::Argument;
 #[cfg(feature = "host")]
 use crate::host::ArgumentForm;
-use crate::words::{Words, read_fixed_point_in_range, read_whole_number_in_range};
+use crate::words::{Words, read_fixed_point_within, read_whole_number_in_range};
 
 /// A quantity that a host sends.
 pub trait Quantity {
     /// Its name, unit and range.
     const RANGE: &'static Range;
+    /// Its smallest and its largest value.
+    const LIMITS: [I32F32; 2];
     /// Decimals with which a host writes it; `None` for as many as it has.
     const DECIMALS: Option<u32>;
 }
@@ -32,11 +34,19 @@ macro_rules! quantities {
         impl $crate::number::Quantity for $quantity {
             const RANGE: &'static thermal_settings::Range =
                 &thermal_settings::Range { name: $name, unit: $unit, min: $min, max: $max };
+            const LIMITS: [fixed::types::I32F32; 2] =
+                [$crate::number::nearest($min), $crate::number::nearest($max)];
             const DECIMALS: Option<u32> = [$(Some($decimals),)? None][0];
         }
     )+};
 }
 pub(crate) use quantities;
+
+/// The nearest number of the fixed-point type, at compile time: the microcontroller takes long for double precision.
+pub const fn nearest(value: f64) -> I32F32 {
+    let scaled = value * (1u64 << I32F32::FRAC_NBITS) as f64;
+    I32F32::from_bits((scaled + if scaled < 0.0 { -0.5 } else { 0.5 }) as i64)
+}
 
 /// A number of this quantity. One that was read from a line is within its range; a host may send any, which the device refuses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,7 +94,7 @@ impl<Q: Quantity> From<f64> for Number<Q> {
 
 impl<Q: Quantity> Argument for Number<Q> {
     fn read(words: &mut Words<'_>) -> Result<Self, ReadError> {
-        read_fixed_point_in_range(words, Q::RANGE).map(|value| Self(value, PhantomData))
+        read_fixed_point_within(words, Q::RANGE, &Q::LIMITS).map(|value| Self(value, PhantomData))
     }
 
     #[cfg(feature = "host")]

@@ -50,15 +50,27 @@ pub fn skip_if_next_is(words: &mut Words<'_>, expected: &str) -> bool {
 /// # Errors
 /// [`ReadError::NotANumber`]: the word is not a decimal number, or no word is left. [`ReadError::OutOfRange`]: the number lies
 /// outside `range`.
-#[inline(never)]
 pub fn read_fixed_point_in_range(
     words: &mut Words<'_>,
     range: &'static Range,
 ) -> Result<I32F32, ReadError> {
+    let limit = |limit: f64| I32F32::from_bits(rounded_units(limit, I32F32::FRAC_NBITS));
+    read_fixed_point_within(words, range, &[limit(range.min), limit(range.max)])
+}
+
+/// The same with the limits of the range as fixed-point numbers.
+///
+/// # Errors
+/// Those of [`read_fixed_point_in_range`].
+#[inline(never)]
+pub fn read_fixed_point_within(
+    words: &mut Words<'_>,
+    range: &'static Range,
+    [min, max]: &[I32F32; 2],
+) -> Result<I32F32, ReadError> {
     let word = word_or_empty(words);
     let value = fixed_point_from_decimal(word).ok_or(ReadError::NotANumber(range, word.into()))?;
-    let limit = |limit: f64| I32F32::from_bits(rounded_units(limit, I32F32::FRAC_NBITS));
-    if (limit(range.min)..=limit(range.max)).contains(&value) {
+    if (min..=max).contains(&&value) {
         Ok(value)
     } else {
         Err(ReadError::OutOfRange(range, word.into()))
