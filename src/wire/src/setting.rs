@@ -134,14 +134,14 @@ impl Argument for Setting {
             Self::FluxSensor(None) => f.write_str(" flux none"),
             Self::FluxSensor(Some(sensor)) => {
                 f.write_str(" flux")?;
-                sensor.write(f)
+                write_numbers(f, &sensor.to_array(), &FluxSensor::DECIMALS)
             }
             Self::DisplaySurface(DisplaySurface::NOMINAL) => {
                 write!(f, " surface {NOMINAL_SURFACE_WORD}")
             }
             Self::DisplaySurface(surface) => {
                 f.write_str(" surface")?;
-                surface.write(f)
+                write_numbers(f, &surface.to_array(), &DisplaySurface::DECIMALS)
             }
         }
     }
@@ -159,7 +159,7 @@ impl Argument for FluxSensor {
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_numbers(f, &self.to_array(), &Self::DECIMALS)
+        self.to_array().iter().try_for_each(|value| write!(f, " {value}"))
     }
 }
 
@@ -175,7 +175,7 @@ impl Argument for DisplaySurface {
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_numbers(f, &self.to_array(), &Self::DECIMALS)
+        self.to_array().iter().try_for_each(|value| write!(f, " {value}"))
     }
 }
 
