@@ -2,12 +2,13 @@
 
 use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
+use thermal_device::events::DeviceEventKind;
 use thermal_device::learning::FingerKnowledge;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_device::stimulus::{CourseEnd, CourseStart};
 use thermal_device::{TelemetryFields, Vocabulary};
-use thermal_wire::host::{ArgumentForm, COLUMNS, Column, Form, RequestForm};
+use thermal_wire::host::{ArgumentForm, COLUMNS, Column, RequestForm, ValueForm};
 use thermal_wire::request::TABLE;
 use thermal_wire::telemetry::{DEFAULT_FIELDS, FLUX_FIELDS, NAMES};
 
@@ -55,22 +56,17 @@ fn names_of(fields: TelemetryFields) -> Vec<&'static str> {
     chosen.map(|(_, name)| *name).collect()
 }
 
-/// The kinds that `trigger-out` takes, but for the word that switches it off.
+/// The events that `trigger-out` can mark: all but the edge that another device gives.
 fn trigger_events() -> Vec<&'static str> {
-    let form = TABLE.iter().find(|form| form.words == "trigger-out ");
-    match form.and_then(|form| form.arguments.first()).map(|argument| (argument.form)()) {
-        Some(ArgumentForm::List(words, _)) => {
-            words.iter().copied().filter(|word| *word != "none").collect()
-        }
-        _ => Vec::new(),
-    }
+    let kinds = DeviceEventKind::ALL.iter().filter(|kind| **kind != DeviceEventKind::Trigger);
+    kinds.map(|kind| kind.name()).collect()
 }
 
 fn kind(column: &Column) -> &'static str {
     match column.form {
-        Form::Number => "number",
-        Form::Count => "count",
-        Form::Word(_) => "word",
+        ValueForm::Number => "number",
+        ValueForm::Count => "count",
+        ValueForm::Word(_) => "word",
     }
 }
 
@@ -80,9 +76,9 @@ fn column(column: &Column) -> String {
 
 fn attribute(column: &Column) -> String {
     let python = match column.form {
-        Form::Number => "float",
-        Form::Count => "int",
-        Form::Word(_) => "str",
+        ValueForm::Number => "float",
+        ValueForm::Count => "int",
+        ValueForm::Word(_) => "str",
     };
     format!("{}: {python}\n", column.name)
 }
@@ -94,11 +90,11 @@ fn fields() -> String {
         let is_named = named_only.iter().any(|other| other.name == column.name);
         let only = if is_named { "only if named: " } else { "" };
         let unit = match (column.form, column.unit) {
-            (Form::Word(_), _) => "word",
-            (Form::Count, _) => "count",
-            (Form::Number, "degC") => "°C",
-            (Form::Number, "W/m^2") => "W/m²",
-            (Form::Number, unit) => unit,
+            (ValueForm::Word(_), _) => "word",
+            (ValueForm::Count, _) => "count",
+            (ValueForm::Number, "degC") => "°C",
+            (ValueForm::Number, "W/m^2") => "W/m²",
+            (ValueForm::Number, unit) => unit,
         };
         format!("| {} | {unit} | {only}{} |\n", column.field, lower(column.description))
     });
@@ -142,8 +138,7 @@ fn place(name: &str, form: &ArgumentForm) -> String {
 
 fn allowed(form: &ArgumentForm) -> String {
     match form {
-        ArgumentForm::Number(range) => range.to_string(),
-        ArgumentForm::Whole(range) => range.to_string(),
+        ArgumentForm::Number(range) | ArgumentForm::Whole(range) => range.to_string(),
         ArgumentForm::Numbers(ranges) => {
             let ranges: Vec<_> =
                 ranges.iter().map(|range| format!("{} {range}", range.name)).collect();

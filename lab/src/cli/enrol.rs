@@ -8,7 +8,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use serde::{Deserialize, Serialize};
-use thermal_client::client::{Client, PersonRequest, QueryBoard, QueryDisplaySurface, person_data};
+use thermal_client::client::{Client, PersonData, PersonRequest, QueryBoard, QueryDisplaySurface};
 use thermal_client::link::Link;
 use thermal_client::text;
 use thermal_lab::enrolment::{EnrolmentOptions, Step, enrol};
@@ -142,7 +142,7 @@ fn at_device<L: Link>(
     let surface = *surface.map_err(Failure::run)?.surface();
     let file = PersonFile {
         code: code.to_string(),
-        data: person_data(&person),
+        data: PersonData(person.finger).to_string(),
         enrolled_unix_s: since_1970.map_or(0, |time| time.as_secs()),
         device: board.and_then(|board| board.uid),
         objects: options.objects,

@@ -43,7 +43,7 @@ fn an_emulated_board_understands_every_line_and_every_point() {
         let Reading::Meter { point, .. } = check.reading else {
             continue;
         };
-        let known = MeterPoint::ALL.iter().find(|known| known.word() == point);
+        let known = MeterPoint::ALL.iter().find(|known| known.name() == point);
         let known = known.unwrap_or_else(|| panic!("{}: {point}", check.name));
         let Expected::Range(_, _, unit) = check.expected else {
             panic!("{}: a meter shows a number", check.name);

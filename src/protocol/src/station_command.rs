@@ -2,11 +2,13 @@
 
 use contact_model::contact_law::ContactLaw;
 use contact_model::material::{Material, Surface};
+use contact_model::slab::Back;
 use thermal_device::command::{ChosenContactLaw, ChosenMaterial, Command, ObjectBody};
 use thermal_device::safety::Setpoint;
 use thermal_device::stimulus::{Hold, PlayOrder};
-use thermal_wire::Request;
+use thermal_settings::DisplaySurface;
 use thermal_wire::request::StationRequest;
+use thermal_wire::{Number, Request};
 
 use crate::Error;
 use crate::pulse::Pulse;
@@ -20,7 +22,7 @@ pub enum StationWork {
     /// A command that the stations execute.
     Command(Command<'static>),
     /// The object is a slab of the chosen material: thickness, mm, and what is behind it.
-    Slab(f64, contact_model::slab::Back),
+    Slab(f64, Back),
     /// Load the course of a pulse, and play it.
     Pulse(Pulse, PlayOrder),
 }
@@ -90,7 +92,7 @@ pub fn station_work(request: &StationRequest, display: &Surface) -> Result<Stati
         StationRequest::Arm => Command::Arm,
         StationRequest::Hold { celsius, rate_k_s } => Command::Hold {
             target: Setpoint::clamp_celsius_with_flag(celsius.celsius()).0,
-            rate_k_s: rate_k_s.map_or(Hold::DEFAULT_RATE_K_S, thermal_wire::Number::celsius),
+            rate_k_s: rate_k_s.map_or(Hold::DEFAULT_RATE_K_S, Number::celsius),
         },
         StationRequest::Play { order } => Command::Play(order),
         StationRequest::Pulse { base_c, target_c, rise_k_s, hold_s, return_k_s, order } => {
@@ -109,13 +111,15 @@ pub fn station_work(request: &StationRequest, display: &Surface) -> Result<Stati
     }))
 }
 
-/// Reads a line without its address as a device with this display does, without executing it.
+/// Reads a line without its address as a device with the nominal display does, without executing it.
 ///
 /// # Errors
 /// The line is no request, or the contact model cannot represent its material.
-pub fn check_line(line: &str, display: &Surface) -> Result<(), Error> {
+pub fn check_line(line: &str) -> Result<(), Error> {
     match Request::read(line)? {
-        Request::Station(request) => station_work(&request, display).map(drop),
+        Request::Station(request) => {
+            station_work(&request, DisplaySurface::NOMINAL.surface()).map(drop)
+        }
         _ => Ok(()),
     }
 }

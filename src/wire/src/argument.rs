@@ -142,7 +142,13 @@ impl Argument for PersonData {
     }
 
     fn write(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(" ")?;
+        write!(f, " {self}")
+    }
+}
+
+/// Writes two hexadecimal digits for each byte.
+impl fmt::Display for PersonData {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.iter().try_for_each(|byte| write!(f, "{byte:02X}"))
     }
 }

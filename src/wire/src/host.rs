@@ -9,6 +9,7 @@ use std::string::ToString as _;
 use std::vec::Vec;
 
 use thermal_device::StateName;
+use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
 use thermal_settings::Range;
 
@@ -18,7 +19,7 @@ pub use requests::{upload, upload_course};
 
 /// What a word from the device can be, beside `-`.
 #[derive(Clone, Copy, Debug)]
-pub enum Form {
+pub enum ValueForm {
     /// A decimal number.
     Number,
     /// A whole number, 0 or more.
@@ -50,7 +51,7 @@ pub struct Column {
     /// What it is.
     pub description: &'static str,
     /// What its words can be.
-    pub form: Form,
+    pub form: ValueForm,
     pub(crate) value: fn(&Telemetry) -> Option<Value>,
 }
 
@@ -87,8 +88,8 @@ impl Column {
     /// The words of a column with words; none for one with numbers.
     pub fn words(&self) -> Vec<&'static str> {
         match self.form {
-            Form::Word(words) => words(),
-            Form::Number | Form::Count => Vec::new(),
+            ValueForm::Word(words) => words(),
+            ValueForm::Number | ValueForm::Count => Vec::new(),
         }
     }
 
@@ -152,6 +153,11 @@ pub fn finite(word: &str) -> Option<f64> {
 /// The fault with this word.
 pub fn fault(word: &str) -> Option<Fault> {
     Fault::ALL.iter().copied().find(|fault| fault.name() == word)
+}
+
+/// What is known of a finger, by its word.
+pub fn knowledge(word: &str) -> Option<FingerKnowledge> {
+    FingerKnowledge::ALL.into_iter().find(|known| known.name() == word)
 }
 
 /// The state with this word; a tripped one needs the word of its fault.

@@ -7,10 +7,7 @@ use thermal_device::learning::FingerKnowledge;
 
 use crate::LineBuffer;
 #[cfg(feature = "host")]
-use crate::host::{Form, Value};
-
-/// Word for a value that the device does not know.
-pub const UNKNOWN_WORD: &str = "-";
+use crate::host::{Value, ValueForm};
 
 /// How a value stands on a line from the device.
 pub trait Kind {
@@ -21,7 +18,7 @@ pub trait Kind {
 
     /// What the word says to a host.
     #[cfg(feature = "host")]
-    const FORM: Form;
+    const FORM: ValueForm;
 
     /// Appends the word.
     fn write(line: &mut LineBuffer, value: Self::Device);
@@ -48,7 +45,7 @@ macro_rules! numbers {
             type Host = f64;
 
             #[cfg(feature = "host")]
-            const FORM: Form = Form::Number;
+            const FORM: ValueForm = ValueForm::Number;
 
             #[inline]
             fn write($line: &mut LineBuffer, $value: $device) {
@@ -88,7 +85,7 @@ impl Kind for Count {
     type Host = u32;
 
     #[cfg(feature = "host")]
-    const FORM: Form = Form::Count;
+    const FORM: ValueForm = ValueForm::Count;
 
     #[inline]
     fn write(line: &mut LineBuffer, value: u32) {
@@ -115,7 +112,8 @@ impl Kind for Knowledge {
     type Host = FingerKnowledge;
 
     #[cfg(feature = "host")]
-    const FORM: Form = Form::Word(|| FingerKnowledge::ALL.map(FingerKnowledge::name).to_vec());
+    const FORM: ValueForm =
+        ValueForm::Word(|| FingerKnowledge::ALL.map(FingerKnowledge::name).to_vec());
 
     #[inline]
     fn write(line: &mut LineBuffer, value: FingerKnowledge) {
@@ -124,7 +122,7 @@ impl Kind for Knowledge {
 
     #[cfg(feature = "host")]
     fn read(word: &str) -> Option<FingerKnowledge> {
-        FingerKnowledge::ALL.into_iter().find(|known| known.name() == word)
+        crate::host::knowledge(word)
     }
 
     #[cfg(feature = "host")]

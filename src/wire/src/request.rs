@@ -2,7 +2,6 @@
 
 use core::fmt;
 use core::iter;
-use core::str::SplitAsciiWhitespace;
 
 use contact_model::slab::Back;
 use thermal_device::TelemetryFields;
@@ -31,14 +30,9 @@ struct Form {
 }
 
 impl Form {
-    /// The form's words.
-    fn words(&self) -> SplitAsciiWhitespace<'static> {
-        self.words.split_ascii_whitespace()
-    }
-
     /// The first word, and the second one if there are two.
     fn first_two_words(&self) -> (&'static str, Option<&'static str>) {
-        let mut words = self.words();
+        let mut words = self.words.split_ascii_whitespace();
         (words.next().unwrap_or_default(), words.next())
     }
 }

@@ -66,7 +66,7 @@ impl Argument for TelemetryFields {
             let place = place.ok_or_else(|| ReadError::UnknownWord(FIELDS, word.into()))?;
             fields = fields.with(place);
         }
-        Ok(if fields == NO_FIELDS { DEFAULT_FIELDS } else { fields })
+        Ok(telemetry::chosen_or_default(fields))
     }
 
     #[cfg(feature = "host")]

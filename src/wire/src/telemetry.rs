@@ -10,10 +10,10 @@ use thermal_device::command::FluxState;
 use crate::LineBuffer;
 #[cfg(feature = "host")]
 use crate::host::Column;
-use crate::kind::{
-    Amperes, Count, Kind, Knowledge, Newtons, Temperature, UNKNOWN_WORD, WattsPerSquareMetre,
-};
+use crate::kind::{Amperes, Count, Kind, Knowledge, Newtons, Temperature, WattsPerSquareMetre};
 
+/// Word for a value that the device does not know.
+pub const UNKNOWN_WORD: &str = "-";
 /// Word in `state` for a tile that was identified or set.
 pub const TUNED_WORD: &str = "tuned";
 /// Word in `state` and telemetry for a tile that was never identified.
@@ -149,6 +149,11 @@ pub const FLUX_FIELDS: TelemetryFields = NO_FIELDS
     .with(Index::flux_w_m2 as usize)
     .with(Index::surface_c as usize)
     .with(Index::known as usize);
+
+/// The chosen fields, or the default ones if there is none.
+pub fn chosen_or_default(chosen: TelemetryFields) -> TelemetryFields {
+    if chosen == NO_FIELDS { DEFAULT_FIELDS } else { chosen }
+}
 
 /// Place in a line of the field with this name.
 pub fn place_of_field(name: &str) -> Option<usize> {

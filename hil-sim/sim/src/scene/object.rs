@@ -6,7 +6,6 @@ use contact_model::material::{MATERIALS, Material, Surface, find};
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::slab::{BackBoundary, Layer, Medium};
 use thermal_protocol::check_line;
-use thermal_settings::DisplaySurface;
 use toml::Spanned;
 
 use super::file::{self, Number};
@@ -34,7 +33,7 @@ impl Object {
             BackBoundary::Film { film_w_m2k, .. } => format!("film {film_w_m2k}"),
         };
         let line = format!("object slab {}mm {back}", in_mm(thickness_m));
-        check_line(&line, DisplaySurface::NOMINAL.surface()).is_ok().then_some(line)
+        check_line(&line).is_ok().then_some(line)
     }
 
     /// Its layers, from the touched face down, and its back, on one line: by the name of a material, or by conductivity and
@@ -235,7 +234,7 @@ fn custom(
     let [conductivity_w_mk, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad] = values;
     let surface = Surface { conductivity_w_mk, roughness_um, slope_rad };
     let material = Material { surface, density_kg_m3, specific_heat_j_kgk };
-    match check_line(&custom_line(&material), DisplaySurface::NOMINAL.surface()) {
+    match check_line(&custom_line(&material)) {
         Ok(()) => Ok(material),
         Err(refused) => {
             let problem = format!("object: the device would answer {:?}", refused.to_string());

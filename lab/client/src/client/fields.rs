@@ -8,6 +8,7 @@ use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
 use thermal_settings::FluxSensor;
 use thermal_wire::host::finite;
+use thermal_wire::telemetry::UNKNOWN_WORD;
 
 /// The words of an answer after `ok`.
 #[derive(Clone, Copy, Debug)]
@@ -65,15 +66,9 @@ impl<'a> Fields<'a> {
 /// A number, or `Some(None)` for `-`.
 pub fn number_or_unknown(word: &str) -> Option<Option<f64>> {
     match word {
-        "-" => Some(None),
+        UNKNOWN_WORD => Some(None),
         word => finite(word).map(Some),
     }
-}
-
-/// What is known of a finger, by its word.
-pub fn knowledge(word: &str) -> Option<FingerKnowledge> {
-    let mut all = FingerKnowledge::ALL.into_iter();
-    all.find(|knowledge| knowledge.name() == word)
 }
 
 /// Serializes a fault as its word.

@@ -22,7 +22,7 @@ use std::time::Duration;
 
 use thermal_device::TelemetryFields;
 use thermal_protocol::{LINE_MAX_BYTES, line_checksum, strip_checksum};
-use thermal_wire::telemetry::{DEFAULT_FIELDS, NO_FIELDS, place_of_field};
+use thermal_wire::telemetry::{NO_FIELDS, chosen_or_default, place_of_field};
 
 use crate::link::{Link, LinkError, ReceivedLine};
 use crate::text::escaped_line;
@@ -32,7 +32,7 @@ pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
 pub use event::ReceivedEvent;
 pub use fields::Fields;
-pub use person::{EnrolPerson, PersonReport, person_data};
+pub use person::{EnrolPerson, PersonReport};
 pub use query::{
     Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryContactLaw,
     QueryDisplaySurface, QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryPerson,
@@ -47,7 +47,7 @@ pub use telemetry::{ReceivedTelemetry, Telemetry};
 pub use thermal_wire::host::Column as TelemetryColumn;
 pub use thermal_wire::host::{upload, upload_course};
 pub use thermal_wire::request::{DeviceRequest, PersonRequest, SessionRequest, StationRequest};
-pub use thermal_wire::{PointOrClear, UploadLine};
+pub use thermal_wire::{PersonData, PointOrClear, UploadLine};
 
 /// Timeout of an answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
@@ -557,11 +557,8 @@ impl<L: Link> Client<L> {
         match (words.next(), words.next()) {
             (Some("stream"), Some(interval)) => {
                 let interval_ms = interval.parse().map_or(0.0, f64::ceil);
-                let mut fields =
-                    words.filter_map(place_of_field).fold(NO_FIELDS, TelemetryFields::with);
-                if fields == NO_FIELDS {
-                    fields = DEFAULT_FIELDS;
-                }
+                let named = words.filter_map(place_of_field);
+                let fields = chosen_or_default(named.fold(NO_FIELDS, TelemetryFields::with));
                 let stream = Stream { interval_ms: interval_ms as u32, fields };
                 self.streams.set(finger, stream, self.link.now());
             }

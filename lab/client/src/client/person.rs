@@ -47,12 +47,6 @@ impl Command for EnrolPerson {
     }
 }
 
-/// What is stored of a person's finger, as the 40 hexadecimal digits that [`Person::read_finger`] reads.
-pub fn person_data(person: &Person) -> String {
-    let digits = person.finger.iter().map(|byte| format!("{byte:02X}"));
-    digits.collect()
-}
-
 /// The codes of an answer to `persons`.
 pub(super) fn read_codes(reply: &Fields<'_>) -> Option<Vec<PersonCode>> {
     match reply.word("persons")? {

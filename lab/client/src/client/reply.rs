@@ -10,13 +10,13 @@ use thermal_device::reference::ContactModel;
 use thermal_device::safety::{Fault, SelfTestResult, SideLine};
 use thermal_settings::{FluxSensor, Vocabulary as _};
 use thermal_wire::Request;
-use thermal_wire::host::{fault, finite, state};
+use thermal_wire::host::{fault, finite, knowledge, state};
 use thermal_wire::request::SessionRequest;
 use thermal_wire::setting::Setting;
 use thermal_wire::telemetry::{TUNED_WORD, UNTUNED_WORD};
 
 use super::Fields;
-use super::fields::{fault_word, flux_sensor_numbers, knowledge, knowledge_word, state_word};
+use super::fields::{fault_word, flux_sensor_numbers, knowledge_word, state_word};
 
 /// Largest number of fingers that a device can have. The answer to `id` may be damaged before checksums are on, and a client loops over
 /// the number in it.

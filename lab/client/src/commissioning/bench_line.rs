@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use thermal_device::safety::ThermistorId;
-use thermal_settings::Vocabulary as _;
+use thermal_settings::{Vocabulary, vocabulary};
 
 /// Largest resistor in place of a thermistor, ohm; range of the load, ohm; largest weight, N.
 const RESISTOR_MAX_OHM: f64 = 1e6;
@@ -58,112 +58,85 @@ pub enum Removal {
     Weight,
 }
 
-/// Declares enums of words.
-macro_rules! words {
-    ($(#[$doc:meta])+ $name:ident, $($(#[$variant_doc:meta])+ $variant:ident = $word:literal,)+) => {
-        $(#[$doc])+
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum $name {
-            $($(#[$variant_doc])+ $variant,)+
-        }
-
-        impl $name {
-            /// All of them.
-            pub const ALL: &[Self] = &[$(Self::$variant),+];
-
-            /// Its word on the line.
-            pub const fn word(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $word,)+
-                }
-            }
-
-            fn from_word(word: &str) -> Result<Self, String> {
-                let found = Self::ALL.iter().find(|one| one.word() == word);
-                found.copied().ok_or_else(|| {
-                    let known: Vec<_> = Self::ALL.iter().map(|one| one.word()).collect();
-                    format!("'{word}'; known: {}", known.join(", "))
-                })
-            }
-        }
-    };
-}
-
-words! {
+vocabulary! {
     /// A button.
-    Button,
-    /// The emergency stop, which stays pressed.
-    Stop = "stop",
-    /// The microcontroller's reset button, which a person holds.
-    Reset = "reset",
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Button: "button" {
+        /// The emergency stop, which stays pressed.
+        Stop = "stop",
+        /// The microcontroller's reset button, which a person holds.
+        Reset = "reset",
+    }
 }
 
-words! {
+vocabulary! {
     /// Where a meter or an oscilloscope is connected. Resistances are measured without power, and against ground unless it
     /// says otherwise.
-    MeterPoint,
-    /// The touched plate.
-    OhmPlate = "ohm plate",
-    /// 12 V terminals.
-    OhmSupply = "ohm supply",
-    /// Bridge supply behind the high-side switch.
-    OhmBridgeSupply = "ohm bridge-supply",
-    /// Between the tile's terminals.
-    OhmTile = "ohm tile",
-    /// Bridge IN1.
-    OhmIn1 = "ohm in1",
-    /// Bridge IN2.
-    OhmIn2 = "ohm in2",
-    /// Bridge enable.
-    OhmEnable = "ohm enable",
-    /// BOOT0 of the microcontroller.
-    OhmBoot0 = "ohm boot0",
-    /// Test line of the comparator.
-    OhmTest = "ohm test",
-    /// Line that selects the side of the test.
-    OhmSide = "ohm side",
-    /// nFAULT, against 3.3 V.
-    OhmNfault = "ohm nfault",
-    /// Across the fuse.
-    OhmFuse = "ohm fuse",
-    /// Across the emergency stop's contact in the 12 V line.
-    OhmStop = "ohm stop",
-    /// 12 V behind the fuse.
-    VoltSupply = "volt supply",
-    /// 5 V.
-    Volt5 = "volt 5v",
-    /// 3.3 V.
-    Volt3 = "volt 3v3",
-    /// Threshold of the comparator's cold side.
-    VoltCold = "volt cold",
-    /// Threshold of its hot side.
-    VoltHot = "volt hot",
-    /// Bridge supply.
-    VoltBridgeSupply = "volt bridge-supply",
-    /// Bridge IN1.
-    VoltIn1 = "volt in1",
-    /// Bridge IN2.
-    VoltIn2 = "volt in2",
-    /// Bridge enable.
-    VoltEnable = "volt enable",
-    /// Test line of the comparator.
-    VoltTest = "volt test",
-    /// BOOT0.
-    VoltBoot0 = "volt boot0",
-    /// Current out of the 12 V supply.
-    AmpereSupply = "ampere supply",
-    /// Voltage across the load in its last pulse, without its sign.
-    ScopeLoadVolt = "scope load-volt",
-    /// Its ripple, RMS.
-    ScopeLoadRipple = "scope load-ripple",
-    /// Ripple at the current input in that pulse, RMS.
-    ScopeMirrorRipple = "scope mirror-ripple",
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum MeterPoint: "point of a meter" {
+        /// The touched plate.
+        OhmPlate = "ohm plate",
+        /// 12 V terminals.
+        OhmSupply = "ohm supply",
+        /// Bridge supply behind the high-side switch.
+        OhmBridgeSupply = "ohm bridge-supply",
+        /// Between the tile's terminals.
+        OhmTile = "ohm tile",
+        /// Bridge IN1.
+        OhmIn1 = "ohm in1",
+        /// Bridge IN2.
+        OhmIn2 = "ohm in2",
+        /// Bridge enable.
+        OhmEnable = "ohm enable",
+        /// BOOT0 of the microcontroller.
+        OhmBoot0 = "ohm boot0",
+        /// Test line of the comparator.
+        OhmTest = "ohm test",
+        /// Line that selects the side of the test.
+        OhmSide = "ohm side",
+        /// nFAULT, against 3.3 V.
+        OhmNfault = "ohm nfault",
+        /// Across the fuse.
+        OhmFuse = "ohm fuse",
+        /// Across the emergency stop's contact in the 12 V line.
+        OhmStop = "ohm stop",
+        /// 12 V behind the fuse.
+        VoltSupply = "volt supply",
+        /// 5 V.
+        Volt5 = "volt 5v",
+        /// 3.3 V.
+        Volt3 = "volt 3v3",
+        /// Threshold of the comparator's cold side.
+        VoltCold = "volt cold",
+        /// Threshold of its hot side.
+        VoltHot = "volt hot",
+        /// Bridge supply.
+        VoltBridgeSupply = "volt bridge-supply",
+        /// Bridge IN1.
+        VoltIn1 = "volt in1",
+        /// Bridge IN2.
+        VoltIn2 = "volt in2",
+        /// Bridge enable.
+        VoltEnable = "volt enable",
+        /// Test line of the comparator.
+        VoltTest = "volt test",
+        /// BOOT0.
+        VoltBoot0 = "volt boot0",
+        /// Current out of the 12 V supply.
+        AmpereSupply = "ampere supply",
+        /// Voltage across the load in its last pulse, without its sign.
+        ScopeLoadVolt = "scope load-volt",
+        /// Its ripple, RMS.
+        ScopeLoadRipple = "scope load-ripple",
+        /// Ripple at the current input in that pulse, RMS.
+        ScopeMirrorRipple = "scope mirror-ripple",
+    }
 }
 
 impl MeterPoint {
     /// Unit of what is shown.
     pub fn unit(self) -> &'static str {
-        match self.word().split(' ').next() {
+        match self.name().split(' ').next() {
             Some("ohm") => "ohm",
             Some("ampere") => "A",
             _ => "V",
@@ -174,7 +147,7 @@ impl MeterPoint {
 impl fmt::Display for BenchRequest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Meter(point) => write!(f, "meter {}", point.word()),
+            Self::Meter(point) => write!(f, "meter {}", point.name()),
             Self::Fit(part) => match part {
                 Part::Usb => f.write_str("fit usb"),
                 Part::Supply => f.write_str("fit supply"),
@@ -194,10 +167,15 @@ impl fmt::Display for BenchRequest {
                 Removal::Load => f.write_str("remove load"),
                 Removal::Weight => f.write_str("remove weight"),
             },
-            Self::Press(button) => write!(f, "press {}", button.word()),
-            Self::Release(button) => write!(f, "release {}", button.word()),
+            Self::Press(button) => write!(f, "press {}", button.name()),
+            Self::Release(button) => write!(f, "release {}", button.name()),
         }
     }
+}
+
+/// The value of this word.
+fn one_of<T: Vocabulary>(word: &str) -> Result<T, String> {
+    T::of_word(word).ok_or_else(|| format!("'{word}'; known: {}", T::WORDS.words.join(", ")))
 }
 
 impl FromStr for BenchRequest {
@@ -219,9 +197,7 @@ impl FromStr for BenchRequest {
         };
         let words: Vec<_> = line.split_ascii_whitespace().collect();
         Ok(match *words.as_slice() {
-            ["meter", quantity, place] => {
-                Self::Meter(MeterPoint::from_word(&format!("{quantity} {place}"))?)
-            }
+            ["meter", quantity, place] => Self::Meter(one_of(&format!("{quantity} {place}"))?),
             ["fit", "usb"] => Self::Fit(Part::Usb),
             ["fit", "supply"] => Self::Fit(Part::Supply),
             ["fit", "load-cell"] => Self::Fit(Part::LoadCell),
@@ -238,8 +214,8 @@ impl FromStr for BenchRequest {
             ["remove", "resistor", word] => Self::Remove(Removal::Resistor(sensor(word)?)),
             ["remove", "load"] => Self::Remove(Removal::Load),
             ["remove", "weight"] => Self::Remove(Removal::Weight),
-            ["press", word] => Self::Press(Button::from_word(word)?),
-            ["release", word] => Self::Release(Button::from_word(word)?),
+            ["press", word] => Self::Press(one_of(word)?),
+            ["release", word] => Self::Release(one_of(word)?),
             _ => {
                 return Err(format!(
                     "'{line}'; known: meter POINT, fit PART, remove PART, press BUTTON, release BUTTON"

@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use thermal_client::client::{
-    BoardReport, Client, ClientError, DeviceRequest, EnrolPerson, FluxReport, PersonReport,
-    PersonRequest, QueryBoard, QueryCause, QueryDisplaySurface, QueryFlux, QueryIdentity,
-    QueryPerson, QueryPersons, QueryRaw, QuerySelfTest, QueryState, SessionRequest, StationRequest,
-    Telemetry, person_data, upload_course,
+    BoardReport, Client, ClientError, DeviceRequest, EnrolPerson, FluxReport, PersonData,
+    PersonReport, PersonRequest, QueryBoard, QueryCause, QueryDisplaySurface, QueryFlux,
+    QueryIdentity, QueryPerson, QueryPersons, QueryRaw, QuerySelfTest, QueryState, SessionRequest,
+    StationRequest, Telemetry, upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, Link, LinkError, ReceivedLine};
 use thermal_device::StateName;
@@ -566,7 +566,7 @@ fn persons_are_read_and_written() {
     let code = PersonCode::new("P07").unwrap();
     let person = Person { code, finger: Person::read_finger(DATA).unwrap() };
     assert_eq!(person.finger[..4], [0, 8, 0, 0]);
-    assert_eq!(person_data(&person), DATA);
+    assert_eq!(PersonData(person.finger).to_string(), DATA);
     for wrong in [&DATA[1..], &DATA[2..], "", &DATA.replace('4', "g")] {
         assert_eq!(Person::read_finger(wrong), None, "{wrong}");
     }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use thermal_client::client::{ReceivedTelemetry, Telemetry, TelemetryColumn};
 use thermal_client::text;
 use thermal_wire::host::COLUMNS;
-use thermal_wire::telemetry::ALL_FIELDS;
+use thermal_wire::telemetry::{ALL_FIELDS, UNKNOWN_WORD};
 
 use super::{RecordingError, unreadable};
 
@@ -15,8 +15,6 @@ use super::{RecordingError, unreadable};
 const BEFORE: [&str; 4] = ["t_s", "finger", "tick", "state"];
 /// Column between those that every device reports and those of a heat-flux sensor.
 const REMARK: &str = "remark";
-/// What the device writes for a value that is not known.
-const UNKNOWN: &str = "-";
 
 /// The first line, of a device with or without a heat-flux sensor.
 pub(super) fn header(has_flux_sensor: bool) -> String {
@@ -35,7 +33,7 @@ pub(super) fn row((t_s, finger, line): (f64, u8, &Telemetry), has_flux_sensor: b
         [format!("{t_s:.4}"), finger.to_string(), line.tick.to_string(), line.state.name().into()];
     let cells = (before.into_iter())
         .chain(TelemetryColumn::default_ones().iter().map(cell))
-        .chain([line.remark().unwrap_or(UNKNOWN).into()])
+        .chain([line.remark().unwrap_or(UNKNOWN_WORD).into()])
         .chain(TelemetryColumn::of_flux(has_flux_sensor).iter().map(cell));
     cells.collect::<Vec<_>>().join(",") + "\n"
 }
@@ -85,7 +83,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<(f64, ReceivedTelemetry)>, Recordi
 fn line_of(row: &csv::StringRecord, places: &[Option<usize>]) -> Option<(f64, ReceivedTelemetry)> {
     let cells = places.iter().map(|place| row.get((*place)?).filter(|cell| !cell.is_empty()));
     let words: Vec<_> =
-        ["T"].into_iter().chain(cells.map(|cell| cell.unwrap_or(UNKNOWN))).collect();
+        ["T"].into_iter().chain(cells.map(|cell| cell.unwrap_or(UNKNOWN_WORD))).collect();
     let t_s = row.get(0)?.parse().ok()?;
     let line = ReceivedTelemetry {
         finger: Some(row.get(1)?.parse().ok()?),

@@ -5,7 +5,6 @@ use std::path::Path;
 use contact_model::material::{MATERIALS, Material, Surface};
 use thermal_client::client::StationRequest;
 use thermal_protocol::check_line;
-use thermal_settings::DisplaySurface;
 
 use super::value::{Number, Whole};
 use super::{KEYS, design, materials, present, score, setup, trial};
@@ -965,7 +964,7 @@ fn the_device_accepts_the_same_materials() {
             specific_heat_j_kgk,
         };
         let line = StationRequest::custom_material(&material).to_string();
-        check_line(&line, DisplaySurface::NOMINAL.surface()).is_ok()
+        check_line(&line).is_ok()
     };
     let corner = |corner: usize| {
         let mut values = [0.0; 5];
