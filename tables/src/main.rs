@@ -28,11 +28,23 @@ fn run() -> Result<()> {
         ["--check"] => true,
         others => bail!("{others:?}; allowed is --check"),
     };
+    let (files, differing) = update(check)?;
+    ensure!(
+        !check || differing.is_empty(),
+        "{} differ from the code: cargo xtask tables",
+        differing.join(", ")
+    );
+    println!("{files} files with tables, {} written", differing.len());
+    Ok(())
+}
+
+/// Number of files with tables, and those whose tables differ from the code. They are written unless `check`.
+fn update(check: bool) -> Result<(usize, Vec<&'static str>)> {
     let mut by_file: BTreeMap<&str, Vec<Part>> = BTreeMap::new();
     for part in [faults::parts(), materials::parts(), wire::parts()].into_iter().flatten() {
         by_file.entry(part.file).or_default().push(part);
     }
-    let mut differ = Vec::new();
+    let mut differing = Vec::new();
     for (file, parts) in &by_file {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
         let content = std::fs::read_to_string(&path).with_context(|| file.to_string())?;
@@ -41,17 +53,22 @@ fn run() -> Result<()> {
         let new =
             parts.iter().try_fold(content.clone(), |content, part| part.put_into(&content))?;
         if new != content {
-            differ.push(*file);
+            differing.push(*file);
             if !check {
                 std::fs::write(&path, new).with_context(|| file.to_string())?;
             }
         }
     }
-    ensure!(
-        !check || differ.is_empty(),
-        "{} differ from the code: cargo xtask tables",
-        differ.join(", ")
-    );
-    println!("{} files with tables, {} written", by_file.len(), differ.len());
-    Ok(())
+    Ok((by_file.len(), differing))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_those_of_the_code() {
+        let (_, differing) = update(true).unwrap();
+        assert!(differing.is_empty(), "cargo xtask tables: {differing:?}");
+    }
 }

@@ -51,11 +51,6 @@ fn figures() -> Check {
     check("figures of the documentation", ["xtask docs --check"])
 }
 
-/// Tables in documents and other sources are those that the code declares.
-fn tables() -> Check {
-    check("generated tables", ["xtask tables --check"])
-}
-
 /// The package of `python/`, with the interpreter of its virtual environment, at simulated devices of the program that the tests
 /// of the workspace have built.
 fn package(python: Option<&str>) -> Check {
@@ -92,15 +87,17 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
     let small = vec![
         formatting(lints),
         figures(),
-        tables(),
         only_if(lints.clippy, NO_CLIPPY, check("lints of model, firmware and xtask", [&clippy])),
         units(members),
     ];
     // The power cuts and flipped bits of stored settings are left out for the sake of the quick suite's time.
     let native = format!(
-        "test --profile suite --quiet --workspace --features {VIEWS} --test native -- --skip settings_storage"
+        "test --profile suite --quiet --workspace --features {VIEWS} --bin generated-tables --test native -- --skip settings_storage"
     );
-    vec![vec![small, vec![check("native device on the simulated plant", [&native])]]]
+    vec![vec![
+        small,
+        vec![check("generated tables, and the native device on the simulated plant", [&native])],
+    ]]
 }
 
 /// All checks: phases, in each of which lanes run side by side. Programs of the host are compiled in the profile `suite` only,
@@ -149,7 +146,6 @@ fn whole(
     let host = vec![
         formatting(lints),
         figures(),
-        tables(),
         only_if(lints.clippy, NO_CLIPPY, check("lints of the host's code", lints_of_all)),
         check("hil-sim without the emulator", [without_emulator]),
         Check { title: "documentation", commands: Ok(vec![lints.share_with(documentation)]) },
