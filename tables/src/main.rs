@@ -1,4 +1,5 @@
 //! `cargo xtask tables`: writes tables of the code between markers of documents and of other sources; with `--check` it only compares.
+mod answers;
 mod faults;
 mod materials;
 mod part;
@@ -41,7 +42,9 @@ fn run() -> Result<()> {
 /// Number of files with tables, and those whose tables differ from the code. They are written unless `check`.
 fn update(check: bool) -> Result<(usize, Vec<&'static str>)> {
     let mut by_file: BTreeMap<&str, Vec<Part>> = BTreeMap::new();
-    for part in [faults::parts(), materials::parts(), wire::parts()].into_iter().flatten() {
+    for part in
+        [answers::parts(), faults::parts(), materials::parts(), wire::parts()].into_iter().flatten()
+    {
         by_file.entry(part.file).or_default().push(part);
     }
     let mut differing = Vec::new();

@@ -40,7 +40,9 @@ impl Part {
 /// The lines with the indentation at the end of `before`, also ahead of what follows.
 fn indented(lines: &str, before: &str) -> String {
     let indentation = before.rsplit('\n').next().unwrap_or_default();
-    let lines: String = lines.lines().map(|line| format!("{indentation}{line}\n")).collect();
+    let line =
+        |line: &str| if line.is_empty() { "\n".into() } else { format!("{indentation}{line}\n") };
+    let lines: String = lines.lines().map(line).collect();
     lines + indentation
 }
 

@@ -65,8 +65,8 @@ fn trigger_events() -> Vec<&'static str> {
 fn kind(column: &Column) -> &'static str {
     match column.form {
         ValueForm::Number => "number",
-        ValueForm::Count => "count",
         ValueForm::Word(_) => "word",
+        _ => "count",
     }
 }
 
@@ -77,8 +77,8 @@ fn column(column: &Column) -> String {
 fn attribute(column: &Column) -> String {
     let python = match column.form {
         ValueForm::Number => "float",
-        ValueForm::Count => "int",
         ValueForm::Word(_) => "str",
+        _ => "int",
     };
     format!("{}: {python}\n", column.name)
 }
@@ -91,10 +91,10 @@ fn fields() -> String {
         let only = if is_named { "only if named: " } else { "" };
         let unit = match (column.form, column.unit) {
             (ValueForm::Word(_), _) => "word",
-            (ValueForm::Count, _) => "count",
             (ValueForm::Number, "degC") => "°C",
             (ValueForm::Number, "W/m^2") => "W/m²",
             (ValueForm::Number, unit) => unit,
+            _ => "count",
         };
         format!("| {} | {unit} | {only}{} |\n", column.field, lower(column.description))
     });
@@ -106,7 +106,7 @@ fn fields() -> String {
 }
 
 /// A text with a small first letter.
-fn lower(text: &str) -> String {
+pub fn lower(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }

@@ -85,7 +85,7 @@ pub fn survey_device(draw: u64) -> anyhow::Result<IdentificationResult> {
     let phase_deg = (plant_rad - found_rad).to_degrees();
     Ok(IdentificationResult {
         draw,
-        tile,
+        tile: tile.clone(),
         flows,
         values: [
             percent(tile.gain_k_s_a, true_c.gain_k_s_a * flows),

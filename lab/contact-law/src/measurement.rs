@@ -196,7 +196,7 @@ impl<L: Link> Session<'_, L> {
         let finger = self.finger;
         let report = self.client.flux_report(finger)?;
         let sensor = report.ok_or(MeasurementError::NoSensor)?.sensor;
-        let display = self.client.ask_finger(finger, &QueryDisplaySurface)?;
+        let display = self.client.ask_finger(finger, &QueryDisplaySurface)?.surface;
         let state = self.client.ask_finger(finger, &QueryState)?.state;
         if let Some(fault) = state.fault() {
             return Err(MeasurementError::Tripped(fault.name()));

@@ -133,13 +133,13 @@ fn at_device<L: Link>(
         objects: arguments.objects.clone(),
     };
     let report = enrol(client, &options, guide).map_err(Failure::run)?;
-    let person = report.person.filter(|person| person.code == code);
+    let person = report.person().filter(|person| person.code == code);
     let person =
         person.ok_or_else(|| Failure::run(anyhow!("the device has enrolled somebody else")))?;
     let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
     let board = client.ask(&QueryBoard).ok();
     let surface = client.ask_finger(finger, &QueryDisplaySurface);
-    let surface = *surface.map_err(Failure::run)?.surface();
+    let surface = *surface.map_err(Failure::run)?.surface.surface();
     let file = PersonFile {
         code: code.to_string(),
         data: PersonData(person.finger).to_string(),

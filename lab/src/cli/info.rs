@@ -88,7 +88,7 @@ fn collect(
 }
 
 /// The reply to a query as JSON.
-fn ask<C: Command<Reply: serde::Serialize>>(
+fn ask<C: Command<Answer: serde::Serialize>>(
     client: &mut AnyClient<'_>,
     finger: Option<u8>,
     query: &C,

@@ -135,14 +135,14 @@ struct Session<'a, L> {
 }
 
 impl<L: Link> Session<'_, L> {
-    fn send(&mut self, command: &impl Command<Reply = ()>) -> Result<(), EnrolmentError> {
+    fn send(&mut self, command: &impl Command<Answer = ()>) -> Result<(), EnrolmentError> {
         Ok(self.client.ask_finger(self.finger, command)?)
     }
 
     fn enrol(&mut self, options: &EnrolmentOptions) -> Result<PersonReport, EnrolmentError> {
         let sensor = self.client.flux_report(self.finger)?;
         sensor.ok_or(EnrolmentError::NoSensor)?;
-        if self.client.ask_finger(self.finger, &QueryContactLaw)? != ContactLaw::NOMINAL {
+        if self.client.ask_finger(self.finger, &QueryContactLaw)?.law != ContactLaw::NOMINAL {
             return Err(EnrolmentError::OtherContactLaw);
         }
         self.send(&StationRequest::stream_fields(STREAM_MS, &FIELDS))?;
@@ -160,7 +160,7 @@ impl<L: Link> Session<'_, L> {
             self.touch(object)?;
             self.rest()?;
         }
-        Ok((self.client).ask_finger(self.finger, &EnrolPerson(options.code))?)
+        Ok((self.client).ask_finger(self.finger, &EnrolPerson { code: options.code })?)
     }
 
     /// The next line of telemetry, after the guide has been called.

@@ -13,7 +13,7 @@ use thermal_device::safety::ThermistorId;
 use thermal_lab::client::{
     Calibrate, Client, ClientError, Command, CountSettings, DeviceRequest, PointOrClear,
     QueryAssumedFinger, QueryBoard, QueryCause, QueryFlux, QueryIdentity, QueryLaw, QueryMargins,
-    QueryRaw, QuerySelfTest, QuerySettings, QueryState, SessionRequest, StationRequest, upload,
+    QueryRaw, QuerySelfTest, QuerySetting, QueryState, SessionRequest, StationRequest, upload,
 };
 use thermal_lab::commissioning::{arm, clear_calibration};
 use thermal_lab::link::{Link, SimulatedLink};
@@ -30,7 +30,7 @@ pub fn device() -> NativeEngine {
 /// The orders that the device refuses, with its answers.
 fn refusals<L: Link>(
     client: &mut Client<L>,
-    orders: &[impl Command<Reply = ()>],
+    orders: &[impl Command<Answer = ()>],
 ) -> Vec<(String, ClientError)> {
     let refused = |order: &_| Some((ToString::to_string(order), client.ask(order).err()?));
     orders.iter().filter_map(refused).collect()
@@ -42,7 +42,7 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     let mut client = Client::new(SimulatedLink::new(&mut engine));
     client.wait(Duration::from_millis(600)).unwrap();
     let copper = *find("copper").expect("copper");
-    let setting = client.ask(&QuerySettings(3)).unwrap();
+    let setting = client.ask(&QuerySetting { number: 3.into() }).unwrap();
     let relaxations = [Relaxation { rate_1_s: 2.0, gain_m2k_j: 4e-5 }];
     let object = Impedance { direct_m2k_w: 5e-7, relaxations: &relaxations };
     let mut refused = refusals(
@@ -84,8 +84,8 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     assert_eq!(status.state, StateName::Off);
     assert_eq!(status.material.as_deref(), Some("custom"));
     assert_eq!((status.mode, status.body.as_str()), (ContactModel::SemiInfinite, "upload"));
-    assert_eq!(client.ask(&QueryLaw).unwrap(), Law::Pi10Hz);
-    assert_eq!(client.ask(&QueryAssumedFinger).unwrap(), AssumedFinger::MeanOnPad);
+    assert_eq!(client.ask(&QueryLaw).unwrap().law, Law::Pi10Hz);
+    assert_eq!(client.ask(&QueryAssumedFinger).unwrap().finger, AssumedFinger::MeanOnPad);
     assert_eq!(client.ask(&QueryCause).unwrap(), None);
     // The board has no sensor.
     client.wait(Duration::from_millis(600)).unwrap();
@@ -102,16 +102,19 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     client.ask(&StationRequest::Abort).unwrap();
     let refused = client.ask(&StationRequest::Clear).unwrap_err();
     assert_eq!(refused.refusal(), Some("no fault to clear"));
-    let point = Calibrate { thermistor: ThermistorId::Room, reference_c: 24.0 };
+    let point =
+        Calibrate { thermistor: ThermistorId::Room, point: PointOrClear::Point(24.0.into()) };
     client.wait(Duration::from_millis(600)).unwrap();
     let fit = client.ask(&point).unwrap();
     assert_eq!(fit.points, 1);
     clear_calibration(&mut client, None).unwrap();
     assert_eq!(client.ask(&point).unwrap().points, 1);
-    let lines = client.ask(&CountSettings).unwrap();
-    let before: Vec<_> = (1..=lines).map(|n| client.ask(&QuerySettings(n)).unwrap()).collect();
+    let lines = client.ask(&CountSettings).unwrap().lines as usize;
+    let before: Vec<_> =
+        (1..=lines).map(|n| client.ask(&QuerySetting { number: n.into() }).unwrap()).collect();
     client.ask(&DeviceRequest::Save).unwrap();
-    let after: Vec<_> = (1..=lines).map(|n| client.ask(&QuerySettings(n)).unwrap()).collect();
+    let after: Vec<_> =
+        (1..=lines).map(|n| client.ask(&QuerySetting { number: n.into() }).unwrap()).collect();
     assert_eq!(before, after);
     client.ask(&DeviceRequest::ForgetAll).unwrap();
     assert!((client.ask(&QueryMargins).unwrap().gain_k_s_a - 2.957).abs() < 1e-9);

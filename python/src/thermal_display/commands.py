@@ -107,7 +107,7 @@ class Commands:
         """The codes of all stored persons."""
 
         def codes(reply: Fields) -> list[str]:
-            text = reply.word("persons")
+            text = reply.value("persons", str)
             return [] if text == "none" else text.split(",")
 
         return self._connection.ask("persons", codes)
@@ -209,7 +209,7 @@ class Commands:
     def assumed_finger(self) -> AssumedFinger:
         """The finger that is assumed."""
         return self._connection.ask(
-            "finger", lambda reply: cast(AssumedFinger, reply.word("finger")), self._finger
+            "finger", lambda reply: cast(AssumedFinger, reply.value("finger", str)), self._finger
         )
 
     def set_contact_law(self, law: ContactLaw | None) -> None:
@@ -238,7 +238,7 @@ class Commands:
 
     def law(self) -> Law:
         """The control law in use."""
-        return self._connection.ask("law", lambda reply: cast(Law, reply.word("law")), self._finger)
+        return self._connection.ask("law", lambda reply: cast(Law, reply.value("law", str)), self._finger)
 
     # Driving
 
@@ -413,7 +413,7 @@ class Commands:
         """The settings as lines `set …`, which `set_settings` takes."""
 
         def count(reply: Fields) -> int:
-            return reply.integer("lines")
+            return reply.value("lines", int)
 
         def text(reply: Fields) -> str:
             if not reply.text.startswith("set "):

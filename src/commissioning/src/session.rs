@@ -19,6 +19,7 @@ use thermal_settings::{
     FIRST_CALIBRATED_ADC_BORDER_INDEX, FluxSensor, Settings, Tile,
 };
 use thermal_wire::PointOrClear;
+use thermal_wire::answer::{PointsAndWorst, SensorWithState, SettingLines, TileWithMargins};
 use thermal_wire::request::SessionRequest;
 use thermal_wire::setting::{
     CONVERTER_STEPS_LINES, CONVERTER_STEPS_PER_LINE_MAX, SETTING_LINES_ALWAYS, Setting,
@@ -92,7 +93,10 @@ impl CommissioningSession {
                 let command::Reply::Flux(state) = execute(Command::Flux)? else {
                     return Ok(SessionReply::Flux(None));
                 };
-                return Ok(SessionReply::Flux(self.settings.flux_sensor.zip(state)));
+                let sensor_and_state = self.settings.flux_sensor.zip(state);
+                return Ok(SessionReply::Flux(
+                    sensor_and_state.map(|(sensor, state)| SensorWithState { sensor, state }),
+                ));
             }
             SessionRequest::QueryDisplaySurface => {
                 return Ok(SessionReply::DisplaySurface(self.settings.display));
@@ -107,7 +111,7 @@ impl CommissioningSession {
                 let flux_sensor = usize::from(self.settings.flux_sensor.is_some());
                 let display = usize::from(self.settings.display != DisplaySurface::NOMINAL);
                 let lines = SETTING_LINES_ALWAYS + flux_sensor + display;
-                return Ok(SessionReply::SettingsLines(lines));
+                return Ok(SessionReply::SettingsLines(SettingLines(lines as u32)));
             }
             SessionRequest::QuerySetting { number } => {
                 let index = number.get().saturating_sub(1);
@@ -240,7 +244,12 @@ impl CommissioningSession {
     #[inline(never)]
     fn tile_and_margins_reply(&self) -> SessionReply {
         let Settings { tile, gains, .. } = &self.settings;
-        SessionReply::Tile(*tile, StabilityMargins::new(tile, gains))
+        let margins = StabilityMargins::new(tile, gains);
+        SessionReply::Tile(TileWithMargins {
+            tile: *tile,
+            phase_margin_deg: margins.phase_deg,
+            gain_margin: margins.gain,
+        })
     }
 
     /// Replaces the calibration in the station and in this session's settings (in RAM; only `save` writes them to
@@ -341,10 +350,10 @@ impl CommissioningSession {
                 calibrated_temperature_c(&self.settings, sensor, point.sum) - point.reference_c,
             )
         });
-        Ok(SessionReply::PointAdded {
-            points: points.len(),
+        Ok(SessionReply::PointAdded(PointsAndWorst {
+            points: points.len() as u32,
             worst_mk: 1e3 * errors_k.fold(0.0, f64::max),
-        })
+        }))
     }
 
     /// The content of one line of the settings by its index, 0 to 9: two lines of converter steps, five corrections,

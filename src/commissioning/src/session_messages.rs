@@ -1,13 +1,14 @@
 //! Replies of a commissioning session, and its errors.
 
 use contact_model::fixed_point::ContactPairError;
-use thermal_device::command::{FluxState, Refused};
-use thermal_settings::{DisplaySurface, FluxSensor, Tile};
+use thermal_device::command::Refused;
+use thermal_settings::DisplaySurface;
+use thermal_wire::answer::{PointsAndWorst, SensorWithState, SettingLines, TileWithMargins};
 #[cfg(doc)]
 use thermal_wire::request::SessionRequest;
 use thermal_wire::setting::Setting;
 
-use crate::{IdentificationError, PointError, StabilityMargins};
+use crate::{IdentificationError, PointError};
 
 /// What a commissioning session replies to a request that it has executed; [`SessionError`] is the reply to the others.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,22 +18,16 @@ pub enum SessionReply {
     Done,
     /// The present parameters of the tile, and with them the stability margins of the temperature loop that the law
     /// `pi` closes: reply to [`SessionRequest::TuneResult`] and [`SessionRequest::Margins`].
-    Tile(Tile, StabilityMargins),
+    Tile(TileWithMargins),
     /// The calibration point was added, and the calibration fitted again is in use: reply to
     /// [`SessionRequest::Calibrate`].
-    PointAdded {
-        /// Number of calibration points that this thermistor has now, the new one included.
-        points: usize,
-        /// Largest difference in magnitude, mK, between this thermistor's reading with the new calibration and the
-        /// reference thermometer, over all its calibration points.
-        worst_mk: f64,
-    },
+    PointAdded(PointsAndWorst),
     /// The heat-flux sensor with what its station knows by it; `None` if it is not fitted: reply to [`SessionRequest::QueryFlux`].
-    Flux(Option<(FluxSensor, FluxState)>),
+    Flux(Option<SensorWithState>),
     /// The surface of the display: reply to [`SessionRequest::QueryDisplaySurface`].
     DisplaySurface(DisplaySurface),
     /// Number of lines that hold the settings: reply to [`SessionRequest::CountSettings`].
-    SettingsLines(usize),
+    SettingsLines(SettingLines),
     /// One line of the settings: reply to [`SessionRequest::QuerySetting`].
     Setting(Setting),
 }

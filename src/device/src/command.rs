@@ -282,8 +282,8 @@ pub enum Reply {
     Law(Law),
     /// Answer to [`Command::MaterialProperties`]; `None` before a material is chosen.
     Material(Option<Material>),
-    /// Answer to [`Command::Finger`] with `None`: the assumed finger's word in the protocol.
-    Finger(&'static str),
+    /// Answer to [`Command::Finger`] with `None`: the assumed finger.
+    Finger(AssumedFinger),
     /// Answer to [`Command::ContactLaw`] with `None`: the law in use.
     ContactLaw(ContactLaw),
     /// Answer to [`Command::Cause`]: cause of the present trip or, after `clear`, of the last one. `None` if the

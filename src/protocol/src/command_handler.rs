@@ -15,16 +15,19 @@ use thermal_settings::{
     Person, PersonCode, Persons, Settings, SettingsRecord, StoredDevice, StoredSettings, WordList,
     encode_settings_record,
 };
+use thermal_wire::answer::{BoardStatus, DeviceIdentity, PersonCodes, PersonReply};
 use thermal_wire::request::{DeviceRequest, PersonRequest, SessionRequest};
 use thermal_wire::words::{expect_end, read_word};
 use thermal_wire::{PersonData, PointOrClear, ReadError, Request};
 
 use crate::finger_address::{legible_address, split_address};
 use crate::line_checksum::{ChecksumError, line_checksum, strip_checksum, write_line};
-use crate::person::{ENROL_CONTACTS, PersonCodes, PersonReply};
 use crate::station_command::{StationWork, station_work};
 use crate::upload::{Upload, UploadStep};
-use crate::{BoardStatus, Error, OutgoingLine, Reply, UploadError};
+use crate::{Error, OutgoingLine, Reply, UploadError};
+
+/// Contacts of 8 s or more from which a finger must have been learnt to be stored by `person enrol`.
+pub const ENROL_CONTACTS: u8 = 2;
 
 /// A function that executes a command in the station (the control) of the given finger, or in the stations of all
 /// fingers for `None`, and returns the reply or the refusal, in bounded and short time. [`CommandHandler::answer`]
@@ -209,7 +212,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         let number = finger.map(FingerIndex::index_u8);
         let content = match request {
-            DeviceRequest::Identify => Reply::Identity { fingers: FINGERS as u8 },
+            DeviceRequest::Identify => Reply::Identity(DeviceIdentity { fingers: FINGERS as u8 }),
             DeviceRequest::Board => Reply::Board(self.board),
             DeviceRequest::Checksum { .. } if finger.is_some() && FINGERS > 1 => {
                 let content = Error::WholeDevice("checksum");

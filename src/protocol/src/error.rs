@@ -18,11 +18,10 @@ use thermal_device::stimulus::{
     COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, CourseError,
 };
 use thermal_settings::{PersonCode, Persons, Range};
-use thermal_wire::{QuotedWordExcerpt, ReadError};
+use thermal_wire::answer::DeviceAnswer as _;
+use thermal_wire::{QuotedWordExcerpt, ReadError, TwoHexDigits};
 
-use crate::line_checksum::TwoHexDigits;
-use crate::person::ENROL_CONTACTS;
-use crate::reply::write_contact_law;
+use crate::command_handler::ENROL_CONTACTS;
 use crate::upload::UploadError;
 use crate::{ChecksumError, LINE_MAX_BYTES, LineError};
 
@@ -255,8 +254,7 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
             );
         }
         Refused::OtherContactLaw(law) => {
-            f.write_str("person needs contact nominal first; told is ")?;
-            return write_contact_law(f, law);
+            return law.write_after("person needs contact nominal first; told is", f);
         }
         Refused::AlreadyStarted => "already started; arm takes the object away",
         Refused::NeedsDrivenDisplay(command) => {

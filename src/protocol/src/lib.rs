@@ -5,28 +5,25 @@
 #[cfg(test)]
 extern crate std;
 
-mod board_status;
 mod command_handler;
 mod error;
 mod finger_address;
 mod line_checksum;
 mod line_reader;
-mod person;
 mod pulse;
 mod reply;
 mod station_command;
 mod telemetry;
 mod upload;
 
-pub use board_status::BoardStatus;
 pub use command_handler::{CommandHandler, ExecuteOnStations, ExecutionResult};
 pub use error::{Error, StorageFailureText};
 pub use line_checksum::{ChecksumError, OutgoingLine, line_checksum, strip_checksum, write_line};
 pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
-pub use person::{PersonCodes, PersonReply};
 pub use reply::Reply;
 pub use station_command::check_line;
 pub use telemetry::UnsolicitedLine;
+pub use thermal_wire::answer::{BoardStatus, PersonCodes, PersonReply};
 pub use upload::UploadError;
 
 #[cfg(test)]

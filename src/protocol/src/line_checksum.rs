@@ -3,7 +3,7 @@
 use core::fmt::{self, Write as _};
 use core::ops::Deref;
 
-use thermal_wire::QuotedWordExcerpt;
+use thermal_wire::{QuotedWordExcerpt, TwoHexDigits};
 
 use crate::ANSWER_MAX_BYTES;
 
@@ -87,18 +87,6 @@ pub fn strip_checksum(line: &str) -> Result<&str, ChecksumError> {
     };
     let actual = line_checksum(content.as_bytes());
     if received == actual { Ok(content) } else { Err(ChecksumError::Wrong(received, actual)) }
-}
-
-/// A byte, written with two upper-case digits. `{:02X}` would add 0.9 KB to the image.
-pub struct TwoHexDigits(pub u8);
-
-impl fmt::Display for TwoHexDigits {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        [self.0 >> 4, self.0 & 0x0f].into_iter().try_for_each(|digit| {
-            let first = if digit < 10 { b'0' } else { b'A' - 10 };
-            f.write_char(char::from(first + digit))
-        })
-    }
 }
 
 /// Replaces `line` by this content, a checksum if it shall have one, and a line feed.

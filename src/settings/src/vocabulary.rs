@@ -16,6 +16,9 @@ pub trait Vocabulary: Copy + PartialEq + 'static {
     /// All values.
     const ALL: &'static [Self];
 
+    /// The word that stands for the value.
+    fn word(self) -> &'static str;
+
     /// The value that a word stands for.
     fn of_word(word: &str) -> Option<Self> {
         let place = Self::WORDS.words.iter().position(|known| *known == word);
@@ -49,6 +52,10 @@ macro_rules! vocabulary {
             const WORDS: &'static $crate::WordList =
                 &$crate::WordList { kind: $kind, words: &[$($word),+] };
             const ALL: &'static [Self] = Self::ALL;
+
+            fn word(self) -> &'static str {
+                self.name()
+            }
         }
     };
 }

@@ -149,6 +149,6 @@ impl Argument for PersonData {
 /// Writes two hexadecimal digits for each byte.
 impl fmt::Display for PersonData {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.iter().try_for_each(|byte| write!(f, "{byte:02X}"))
+        self.0.iter().try_for_each(|byte| crate::TwoHexDigits(*byte).fmt(f))
     }
 }

@@ -1,42 +1,88 @@
 //! What a host needs beside the device: readers of lines, and the declarations as tables.
 
+mod answers;
+mod fields;
 mod read_telemetry;
 mod requests;
+mod settings_line;
 
 use std::boxed::Box;
 use std::string::String;
 use std::string::ToString as _;
 use std::vec::Vec;
 
+use serde::{Serialize, Serializer};
 use thermal_device::StateName;
-use thermal_device::learning::FingerKnowledge;
 use thermal_device::safety::Fault;
-use thermal_settings::Range;
+use thermal_settings::{Range, Vocabulary as _};
 
 use crate::telemetry::FIELDS_OF_EVERY_LINE;
 pub use crate::telemetry::{COLUMNS, Telemetry};
+pub use answers::{
+    Answer, AnswerForm, Command, FieldForm, FieldRow, NamedValues, SIMULATED_UNIQUE_ID,
+};
+pub use fields::Fields;
 pub use requests::{upload, upload_course};
+pub use settings_line::SettingsLine;
 
-/// What a word from the device can be, beside `-`.
+/// What a word from the device can be.
 #[derive(Clone, Copy, Debug)]
 pub enum ValueForm {
     /// A decimal number.
     Number,
     /// A whole number, 0 or more.
     Count,
+    /// A whole number, both limits included.
+    CountWithin(u32, u32),
     /// One of these words.
     Word(fn() -> Vec<&'static str>),
+    /// `1` or `0`.
+    Bit,
+    /// The first word if it is so, the second one if not.
+    Whether(&'static str, &'static str),
+    /// Any word.
+    Text,
+    /// A decimal number, or this word.
+    NumberOr(&'static str),
+    /// Any word; this one stands for none.
+    TextOr(&'static str),
+    /// Words with commas between them; this word stands for none.
+    ListOr(&'static str),
+    /// That, or `-` if the device does not know it.
+    OrUnknown(&'static Self),
 }
 
 /// A value from the device.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A number.
     Number(f64),
     /// A count.
     Count(u32),
-    /// A word.
+    /// Whether it is so.
+    Flag(bool),
+    /// A word of which a host knows all.
     Word(&'static str),
+    /// Another word.
+    Text(String),
+    /// Words.
+    List(Vec<String>),
+    /// There is none.
+    Unknown,
+}
+
+impl Serialize for Value {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Number(number) => number.serialize(serializer),
+            Self::Count(count) => count.serialize(serializer),
+            Self::Flag(flag) => flag.serialize(serializer),
+            Self::Word(word) => word.serialize(serializer),
+            Self::Text(text) => text.serialize(serializer),
+            Self::List(words) => words.serialize(serializer),
+            Self::Unknown => serializer.serialize_none(),
+        }
+    }
 }
 
 /// A field of telemetry as the column of a table.
@@ -78,18 +124,19 @@ impl Column {
 
     /// The value in a line as text: a number, a count or a word.
     pub fn text(&self, line: &Telemetry) -> Option<String> {
-        self.value(line).map(|value| match value {
-            Value::Number(number) => number.to_string(),
-            Value::Count(count) => count.to_string(),
-            Value::Word(word) => word.into(),
-        })
+        match self.value(line)? {
+            Value::Number(number) => Some(number.to_string()),
+            Value::Count(count) => Some(count.to_string()),
+            Value::Word(word) => Some(word.into()),
+            _ => None,
+        }
     }
 
     /// The words of a column with words; none for one with numbers.
     pub fn words(&self) -> Vec<&'static str> {
         match self.form {
             ValueForm::Word(words) => words(),
-            ValueForm::Number | ValueForm::Count => Vec::new(),
+            _ => Vec::new(),
         }
     }
 
@@ -102,6 +149,7 @@ impl Column {
                 let index = self.words().iter().position(|known| *known == word);
                 index.map(|index| index as f64)
             }
+            _ => None,
         }
     }
 }
@@ -134,6 +182,8 @@ pub struct RequestForm {
     pub effect: &'static [&'static str],
     /// The arguments in their order.
     pub arguments: &'static [NamedArgument],
+    /// The type of the answer if it has values.
+    pub answer: Option<&'static str>,
 }
 
 /// An argument in a form of a line.
@@ -150,21 +200,11 @@ pub fn finite(word: &str) -> Option<f64> {
     word.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
-/// The fault with this word.
-pub fn fault(word: &str) -> Option<Fault> {
-    Fault::ALL.iter().copied().find(|fault| fault.name() == word)
-}
-
-/// What is known of a finger, by its word.
-pub fn knowledge(word: &str) -> Option<FingerKnowledge> {
-    FingerKnowledge::ALL.into_iter().find(|known| known.name() == word)
-}
-
 /// The state with this word; a tripped one needs the word of its fault.
 pub fn state(word: &str, fault_word: &str) -> Option<StateName> {
     // Every line of telemetry comes here, and the faults are many: they are searched only for a word that no other state has.
     let mut without_fault = StateName::WITHOUT_FAULT.into_iter();
-    without_fault
-        .find(|state| state.name() == word)
-        .or_else(|| fault(fault_word).map(StateName::Tripped).filter(|state| state.name() == word))
+    without_fault.find(|state| state.name() == word).or_else(|| {
+        Fault::of_word(fault_word).map(StateName::Tripped).filter(|state| state.name() == word)
+    })
 }

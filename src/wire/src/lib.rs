@@ -5,11 +5,13 @@
 #[cfg(any(test, feature = "host"))]
 extern crate std;
 
+pub mod answer;
 mod argument;
 mod decimal_number;
+mod hex;
 #[cfg(feature = "host")]
 pub mod host;
-mod kind;
+pub mod kind;
 mod line_buffer;
 mod number;
 pub mod quantity;
@@ -22,6 +24,7 @@ mod upload;
 pub mod words;
 
 pub use argument::{Argument, PersonData, Switch};
+pub use hex::TwoHexDigits;
 pub use kind::Kind;
 pub use line_buffer::LineBuffer;
 pub use number::{Number, Quantity, Whole};

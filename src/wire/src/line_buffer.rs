@@ -4,7 +4,7 @@
 //! types takes ten times as long. What telemetry calls is `#[inline]`: it is then compiled in the package that sends it, whose code is
 //! not for the smallest size.
 
-use core::fmt;
+use core::fmt::{self, Write as _};
 
 use contact_model::fixed_point::{Celsius, Force};
 
@@ -35,10 +35,22 @@ impl LineBuffer {
         Self { bytes: [0; LINE_CAPACITY_BYTES], length: 0 }
     }
 
+    /// Removes all characters.
+    pub const fn clear(&mut self) {
+        self.length = 0;
+    }
+
     /// Appends a text of ASCII characters.
     #[inline]
     pub fn push_str_if_fits(&mut self, ascii: &str) {
         self.push_if_fits(ascii.as_bytes());
+    }
+
+    /// Appends what is written, each part as a whole if it fits.
+    #[inline(never)]
+    pub fn push_display(&mut self, value: &dyn fmt::Display) {
+        // Nothing fails but what is written.
+        let _ = write!(Parts(self), "{value}");
     }
 
     #[inline]
@@ -83,38 +95,16 @@ impl LineBuffer {
         );
     }
 
-    /// Appends a current in A with three decimals, after a `-` if it is negative.
+    /// Appends a current in A with so many decimals, after a `-` if it is negative.
     #[inline]
-    pub fn push_current(&mut self, value: Current) {
-        self.push_fixed_point_or_dash(Some(value.to_bits().into()), Current::FRAC_NBITS, 3);
+    pub fn push_current(&mut self, digits: usize, value: Current) {
+        self.push_fixed_point_or_dash(Some(value.to_bits().into()), Current::FRAC_NBITS, digits);
     }
 
-    /// Appends a current in A with two decimals, or `-` for `None`.
+    /// Appends the bridge's supply in V with one decimal.
     #[inline]
-    pub fn push_current_or_dash(&mut self, value: Option<Current>) {
-        self.push_fixed_point_or_dash(
-            value.map(|value| value.to_bits().into()),
-            Current::FRAC_NBITS,
-            2,
-        );
-    }
-
-    /// Appends the bridge's supply in V with one decimal, or `-` for `None`.
-    #[inline]
-    pub fn push_supply_or_dash(&mut self, value: Option<SupplyVoltage>) {
-        match value {
-            Some(value) => self.push_scaled_integer(value.decivolts(), 1),
-            None => self.push_str_if_fits("-"),
-        }
-    }
-
-    /// Appends a number, or `-` for `None`.
-    #[inline]
-    pub fn push_integer_or_dash(&mut self, value: Option<u8>) {
-        match value {
-            Some(value) => self.push_integer(value.into()),
-            None => self.push_str_if_fits("-"),
-        }
+    pub fn push_supply(&mut self, value: SupplyVoltage) {
+        self.push_scaled_integer(value.decivolts(), 1);
     }
 
     /// Appends a sum of 16 conversions as their mean with two decimals, 0.00 to 4095.94.
@@ -166,6 +156,16 @@ impl LineBuffer {
         }
         put_digits(value, whole);
         self.length = end;
+    }
+}
+
+/// A line to which parts of a text are appended.
+struct Parts<'a>(&'a mut LineBuffer);
+
+impl fmt::Write for Parts<'_> {
+    fn write_str(&mut self, ascii: &str) -> fmt::Result {
+        self.0.push_str_if_fits(ascii);
+        Ok(())
     }
 }
 
@@ -224,7 +224,7 @@ mod tests {
         }
         assert_eq!(text(|text| text.push_celsius_or_dash(2, None)), "-");
         assert_eq!(text(|text| text.push_force_or_dash(Some(Force::MAX))), "256.000");
-        assert_eq!(text(|text| text.push_current(Current::lit("-1.25"))), "-1.250");
+        assert_eq!(text(|text| text.push_current(3, Current::lit("-1.25"))), "-1.250");
         for count in [0, 9, 10, 12_345, u32::MAX] {
             assert_eq!(text(|text| text.push_integer(count)), count.to_string());
         }

@@ -14,9 +14,11 @@ use thermal_device::stimulus::PlayOrder;
 use thermal_settings::{DisplaySurface, FluxSensor, PersonCode};
 
 use crate::ReadError;
+#[cfg(feature = "host")]
+use crate::answer::*;
 use crate::argument::{Argument, PersonData, Switch};
 #[cfg(feature = "host")]
-use crate::host::{NamedArgument, RequestForm};
+use crate::host::{Command, NamedArgument, RequestForm, SettingsLine};
 use crate::number::{Number, Whole};
 use crate::quantity::*;
 use crate::setting::{Setting, SettingNumber};
@@ -37,14 +39,52 @@ impl Form {
     }
 }
 
-/// Declares requests from their rows: the words of the line, the name of the request, and its arguments. Who executes a request
-/// is its group.
+/// Declares the type of a query, whose answer has values.
+#[cfg(feature = "host")]
+macro_rules! query {
+    ([$($doc:tt)+] [] $requests:ident::$request:ident { $($arguments:tt)* }) => {};
+    ([$($doc:tt)+] [$query:ident -> $answer:ty] $requests:ident::$request:ident {}) => {
+        $($doc)+
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct $query;
+
+        query!(@query $query, $answer, |_query| $requests::$request);
+    };
+    ([$($doc:tt)+] [$query:ident -> $answer:ty] $requests:ident::$request:ident {
+        $($argument:ident: $kind:ty),+
+    }) => {
+        $($doc)+
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[allow(missing_docs, reason = "name and type say it")]
+        pub struct $query { $(pub $argument: $kind),+ }
+
+        query!(@query $query, $answer, |query| $requests::$request {
+            $($argument: query.$argument),+
+        });
+    };
+    (@query $query:ident, $answer:ty, |$from:ident| $request:expr) => {
+        impl fmt::Display for $query {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                let $from = self;
+                $request.fmt(f)
+            }
+        }
+
+        impl Command for $query {
+            type Answer = $answer;
+        }
+    };
+}
+
+/// Declares requests from their rows: the words of the line, the name of the request, its arguments, and if it is answered with
+/// values, the name of the query and what answers it. Who executes a request is its group.
 macro_rules! requests {
     ($(
         $(#[$group_doc:meta])+
         $group:ident($requests:ident) {$(
             $(#[doc = $doc:literal])+
-            $($word:literal)+ => $request:ident $({ $($argument:ident: $kind:ty),+ $(,)? })?;
+            $($word:literal)+ => $request:ident $({ $($argument:ident: $kind:ty),+ $(,)? })?
+                $([$query:ident -> $answer:ty])?;
         )+}
     )+) => {
         $(
@@ -70,6 +110,13 @@ macro_rules! requests {
             }
         )+
 
+        $(
+            #[cfg(feature = "host")]
+            impl Command for $requests {
+                type Answer = ();
+            }
+        )+
+
         /// A line from the host: its words and arguments, which are within their ranges.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Request {
@@ -90,11 +137,20 @@ macro_rules! requests {
         pub const TABLE: &[RequestForm] = &[$($(RequestForm {
             words: concat!($($word, " "),+),
             effect: &[$($doc),+],
+            answer: [$(Some(stringify!($answer)),)? None][0],
             arguments: &[$($(NamedArgument {
                 name: stringify!($argument),
                 form: <$kind as Argument>::form,
             }),+)?],
         },)+)+];
+
+        $($(
+            #[cfg(feature = "host")]
+            query! {
+                [$(#[doc = $doc])+] [$($query -> $answer)?]
+                $requests::$request { $($($argument: $kind),+)? }
+            }
+        )+)+
 
         fn read_arguments(place: usize, words: &mut Words<'_>) -> Result<Request, ReadError> {
             $($(if place == Place::$request as usize {
@@ -124,9 +180,9 @@ requests! {
     /// Requests that the device as a whole answers.
     Device(DeviceRequest) {
         /// Name and version of the firmware, number of fingers, rates, version and capabilities of the protocol.
-        "id" => Identify;
+        "id" => Identify [QueryIdentity -> Identity];
         /// State of microcontroller and serial line.
-        "board" => Board;
+        "board" => Board [QueryBoard -> BoardReport];
         /// Whether lines end with a checksum from now on.
         "checksum" => Checksum { switch: Switch };
         /// Restart, and store the present settings of all fingers.
@@ -137,7 +193,7 @@ requests! {
     /// Requests that the stations (the control) of the addressed fingers execute.
     Station(StationRequest) {
         /// State, object and set-point.
-        "state" => State;
+        "state" => State [QueryState -> Status];
         /// Telemetry at this interval, with these fields; an interval of 0 ends it.
         "stream" => Stream { interval_ms: Number<StreamInterval>, fields: TelemetryFields };
         /// Report events, or none.
@@ -164,11 +220,11 @@ requests! {
         /// Temperature of the object before contact.
         "object" => ObjectAtTemperature { celsius: Number<ObjectTemperature> };
         /// The finger that is assumed for the one that touches.
-        "finger" => QueryFinger;
+        "finger" => QueryFinger [QueryAssumedFinger -> FingerReport];
         /// Assume this finger for the one that touches.
         "finger" => Finger { finger: AssumedFinger };
         /// The contact law in use.
-        "contact" => QueryContactLaw;
+        "contact" => QueryContactLaw [QueryContactLaw -> ContactLawReport];
         /// Take Eq. 6-8 for the finger's contact law.
         "contact" "nominal" => NominalContactLaw;
         /// Take this for the finger's contact law.
@@ -180,7 +236,7 @@ requests! {
         /// Contact model of the set-point: with contact resistance, or for perfect contact.
         "mode" => Mode { model: ContactModel };
         /// The control law in use.
-        "law" => QueryLaw;
+        "law" => QueryLaw [QueryLaw -> LawReport];
         /// Choose the control law.
         "law" => Law { law: Law };
 
@@ -211,11 +267,11 @@ requests! {
         "clear" => Clear;
 
         /// Why the device tripped, now or the last time.
-        "cause" => Cause;
+        "cause" => Cause [QueryCause -> Option<Cause>];
         /// What the last self-test measured.
-        "self-test" => SelfTest;
+        "self-test" => SelfTest [QuerySelfTest -> SelfTestReport];
         /// The converter's counts and the fault inputs in the last tick.
-        "raw" => Raw;
+        "raw" => Raw [QueryRaw -> RawReadings];
         /// Begin to identify the tile.
         "tune" => Tune;
     }
@@ -226,21 +282,21 @@ requests! {
         /// reference thermometer shows at it. The calibration that fits all points is used from then on. Or clear the
         /// thermistor's points and correction; if the corrections of both display thermistors are zero then, the converter's
         /// steps are set to zero, too.
-        "calibrate" => Calibrate { thermistor: ThermistorId, point: PointOrClear };
+        "calibrate" => Calibrate { thermistor: ThermistorId, point: PointOrClear } [Calibrate -> CalibrationFit];
         /// Compute the tile's parameters from the response that the station has recorded during a complete `tune`, and use them
         /// in place of the present ones.
-        "tune" "result" => TuneResult;
+        "tune" "result" => TuneResult [TuneResult -> IdentifiedTile];
         /// The tile in use, and the stability margins of the loop that the law `pi` closes.
-        "margins" => Margins;
+        "margins" => Margins [QueryMargins -> IdentifiedTile];
         /// Number of lines that hold the settings.
-        "settings" => CountSettings;
+        "settings" => CountSettings [CountSettings -> SettingsCount];
         /// One line of the settings, by its number.
-        "settings" => QuerySetting { number: Whole<SettingNumber> };
+        "settings" => QuerySetting { number: Whole<SettingNumber> } [QuerySetting -> SettingsLine];
         /// Replace the part of the settings that the line holds, from the next tick on. A line with a correction also removes
         /// the calibration points of its thermistor; a line with steps those of both display thermistors.
         "set" => Set { setting: Setting };
         /// The heat-flux sensor, its flux, and what is known of the finger by it.
-        "flux" => QueryFlux;
+        "flux" => QueryFlux [QueryFlux -> Option<FluxReport>];
         /// Use this heat-flux sensor.
         "flux" "set" => SetFluxSensor { sensor: FluxSensor };
         /// Use no heat-flux sensor.
@@ -248,7 +304,7 @@ requests! {
         /// Take the mean of the heat-flux sensor's code over the last half second as its zero.
         "flux" "zero" => FluxZero;
         /// The surface of the display.
-        "surface" => QueryDisplaySurface;
+        "surface" => QueryDisplaySurface [QueryDisplaySurface -> SurfaceReport];
         /// The display has this surface.
         "surface" "set" => SetDisplaySurface { surface: DisplaySurface };
         /// The display has the surface of the reference design.
@@ -257,15 +313,15 @@ requests! {
     /// Requests about persons, who are those of the whole device; who is chosen, and what was learnt, is a finger's.
     Person(PersonRequest) {
         /// The chosen person, and from how many contacts the finger is learnt.
-        "person" => QueryPerson;
+        "person" => QueryPerson [QueryPerson -> PersonReport];
         /// Begin to learn with an unknown person.
         "person" "none" => ChooseNobody;
         /// Store what was learnt as that of a person.
-        "person" "enrol" => Enrol { code: PersonCode };
+        "person" "enrol" => Enrol { code: PersonCode } [EnrolPerson -> PersonReport];
         /// Begin to learn with a stored person; with data, store the person.
         "person" => Person { code: PersonCode, data: Option<PersonData> };
         /// Codes of all stored persons.
-        "persons" => List;
+        "persons" => List [QueryPersons -> StoredPersons];
         /// Forget a stored person.
         "forget" "person" => Forget { code: PersonCode };
     }

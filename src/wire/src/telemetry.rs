@@ -127,8 +127,8 @@ fields! {
         "skin" skin_c: Temperature<2>, "degC", "Thermistor on the skin at the edge of the contact" = line.telemetry.skin;
         "room" room_c: Temperature<2>, "degC", "Thermistor of the room" = line.telemetry.room;
         "force" force_n: Newtons, "N", "Force of the finger" = line.telemetry.force;
-        "demand" demand_a: Amperes, "A", "Demanded current of the Peltier module; positive cools" = Some(line.telemetry.demand);
-        "current" current_a: Amperes, "A", "Magnitude of the measured current" = Some(line.telemetry.current);
+        "demand" demand_a: Amperes<3>, "A", "Demanded current of the Peltier module; positive cools" = Some(line.telemetry.demand);
+        "current" current_a: Amperes<3>, "A", "Magnitude of the measured current" = Some(line.telemetry.current);
         "evaluations" evaluations: Count, "", "Evaluations of erfcx since the device's reset" = Some(line.telemetry.evaluations);
     }
     named {

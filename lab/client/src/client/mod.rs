@@ -1,27 +1,23 @@
 //! Typed client of the serial protocol.
 //!
-//! A [`Command`] writes its line and reads its reply; [`Client`] sends it, waits for its answer, keeps telemetry apart from
+//! A [`Command`] writes its line, and its answer is read; [`Client`] sends it, waits for its answer, keeps telemetry apart from
 //! answers, and sends the sign of life that a streaming device needs.
 
 mod clock;
 mod error;
 mod event;
-mod fields;
 mod off;
-mod person;
-mod query;
-mod reply;
 mod streams;
 mod telemetry;
 
 use std::borrow::Cow;
 use std::collections::VecDeque;
-use std::fmt;
 use std::hash::{BuildHasher, RandomState};
 use std::time::Duration;
 
 use thermal_device::TelemetryFields;
 use thermal_protocol::{LINE_MAX_BYTES, line_checksum, strip_checksum};
+use thermal_wire::host::{Answer as _, Fields};
 use thermal_wire::telemetry::{NO_FIELDS, chosen_or_default, place_of_field};
 
 use crate::link::{Link, LinkError, ReceivedLine};
@@ -31,22 +27,20 @@ use streams::{Stream, TelemetryStreams};
 pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
 pub use event::ReceivedEvent;
-pub use fields::Fields;
-pub use person::{EnrolPerson, PersonReport};
-pub use query::{
-    Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryContactLaw,
-    QueryDisplaySurface, QueryFlux, QueryIdentity, QueryLaw, QueryMargins, QueryPerson,
-    QueryPersons, QueryRaw, QuerySelfTest, QuerySettings, QueryState, TuneResult,
-};
-pub use reply::{
-    BoardReport, CalibrationFit, Cause, FluxReport, IdentifiedTile, Identity, RawReadings,
-    SIMULATED_UNIQUE_ID, SelfTestReport, SettingsLine, Status,
-};
 pub use streams::longest_gap;
 pub use telemetry::{ReceivedTelemetry, Telemetry};
+pub use thermal_wire::answer::{
+    BoardReport, CalibrationFit, Cause, ClockSource, FluxReport, IdentifiedTile, Identity,
+    PersonReport, RawReadings, SelfTestReport, Status, Watchdogs,
+};
 pub use thermal_wire::host::Column as TelemetryColumn;
-pub use thermal_wire::host::{upload, upload_course};
-pub use thermal_wire::request::{DeviceRequest, PersonRequest, SessionRequest, StationRequest};
+pub use thermal_wire::host::{Command, SIMULATED_UNIQUE_ID, SettingsLine, upload, upload_course};
+pub use thermal_wire::request::{
+    Calibrate, CountSettings, DeviceRequest, EnrolPerson, PersonRequest, QueryAssumedFinger,
+    QueryBoard, QueryCause, QueryContactLaw, QueryDisplaySurface, QueryFlux, QueryIdentity,
+    QueryLaw, QueryMargins, QueryPerson, QueryPersons, QueryRaw, QuerySelfTest, QuerySetting,
+    QueryState, SessionRequest, StationRequest, TuneResult,
+};
 pub use thermal_wire::{PersonData, PointOrClear, UploadLine};
 
 /// Timeout of an answer.
@@ -62,30 +56,6 @@ const CHECKSUM_BYTES: usize = "*00".len();
 const FIELD_CHANGE_TIME: Duration = Duration::from_millis(10);
 /// Telemetry lines that are kept until they are fetched; then the oldest is dropped.
 const TELEMETRY_KEPT_MAX: usize = 100_000;
-
-/// A command: its `Display` is the line without the address of a finger.
-pub trait Command: fmt::Display {
-    /// What the device reports.
-    type Reply;
-
-    /// Reads the answer after `ok`; `None` if it is not understood.
-    fn read_reply(&self, reply: &Fields<'_>) -> Option<Self::Reply>;
-}
-
-/// Requests whose answer is `ok` alone.
-macro_rules! requests_without_reply {
-    ($($requests:ty),+) => {$(
-        impl Command for $requests {
-            type Reply = ();
-
-            fn read_reply(&self, reply: &Fields<'_>) -> Option<()> {
-                reply.text().is_empty().then_some(())
-            }
-        }
-    )+};
-}
-
-requests_without_reply!(DeviceRequest, PersonRequest, SessionRequest, StationRequest, UploadLine);
 
 /// Numbers of lines that a client did not receive as they were sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -197,7 +167,7 @@ impl<L: Link> Client<L> {
     ///
     /// # Errors
     /// The device refuses it, does not answer or answers something else, or the link is gone.
-    pub fn ask<C: Command>(&mut self, command: &C) -> Result<C::Reply, ClientError> {
+    pub fn ask<C: Command>(&mut self, command: &C) -> Result<C::Answer, ClientError> {
         self.ask_finger(None, command)
     }
 
@@ -209,7 +179,7 @@ impl<L: Link> Client<L> {
         &mut self,
         finger: Option<u8>,
         command: &C,
-    ) -> Result<C::Reply, ClientError> {
+    ) -> Result<C::Answer, ClientError> {
         let line = match finger {
             Some(finger) => format!("@{finger} {command}"),
             None => command.to_string(),
@@ -219,7 +189,7 @@ impl<L: Link> Client<L> {
             attempt += 1;
             let (answered, reply) = self.accepted(&line)?;
             let understood = finger.is_none() || finger == answered;
-            if let Some(read) = command.read_reply(&Fields::new(&reply)).filter(|_| understood) {
+            if let Some(read) = C::Answer::read(&Fields::new(&reply)).filter(|_| understood) {
                 return Ok(read);
             }
             // It may be that of another line, which came late or twice.

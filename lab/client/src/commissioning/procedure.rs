@@ -12,7 +12,7 @@ use super::{
 };
 use crate::client::{
     Calibrate, Client, ClientError, CountSettings, DeviceRequest, IdentifiedTile, PointOrClear,
-    QueryMargins, QuerySettings, QueryState, SessionRequest, StationRequest, TuneResult,
+    QueryMargins, QuerySetting, QueryState, SessionRequest, StationRequest, TuneResult,
 };
 use crate::link::Link;
 
@@ -138,10 +138,10 @@ pub fn settings<L: Link>(
     client: &mut Client<L>,
     finger: Option<u8>,
 ) -> Result<Vec<String>, ClientError> {
-    let lines = client.ask_finger(finger, &CountSettings)?;
-    (1..=lines)
+    let lines = client.ask_finger(finger, &CountSettings)?.lines;
+    (1..=lines as usize)
         .map(|number| {
-            let line = client.ask_finger(finger, &QuerySettings(number))?;
+            let line = client.ask_finger(finger, &QuerySetting { number: number.into() })?;
             Ok(line.to_string())
         })
         .collect()
@@ -250,7 +250,7 @@ impl<L: Link> Procedure<'_, L> {
             self.wait_ms(1000)?;
             match self.client.ask_finger(self.finger, &TuneResult) {
                 Ok(tile) => {
-                    self.surroundings.notice(&CommissioningEvent::TileIdentified(tile));
+                    self.surroundings.notice(&CommissioningEvent::TileIdentified(tile.clone()));
                     return Ok(tile);
                 }
                 Err(error)
@@ -336,7 +336,7 @@ impl<L: Link> Procedure<'_, L> {
     ) -> Result<Option<String>, CommissionError> {
         let reference_c = self.reference_c(thermistor)?;
         let sensor = thermistor.name();
-        let command = Calibrate { thermistor, reference_c };
+        let command = Calibrate { thermistor, point: PointOrClear::Point(reference_c.into()) };
         match self.client.ask_finger(self.finger, &command) {
             Ok(fit) => {
                 let point = CalibrationPoint {

@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use thermal_client::client::{
-    BoardReport, Client, ClientError, DeviceRequest, EnrolPerson, FluxReport, PersonData,
-    PersonReport, PersonRequest, QueryBoard, QueryCause, QueryDisplaySurface, QueryFlux,
-    QueryIdentity, QueryPerson, QueryPersons, QueryRaw, QuerySelfTest, QueryState, SessionRequest,
-    StationRequest, Telemetry, upload_course,
+    BoardReport, Client, ClientError, ClockSource, DeviceRequest, EnrolPerson, FluxReport,
+    PersonData, PersonReport, PersonRequest, QueryBoard, QueryCause, QueryDisplaySurface,
+    QueryFlux, QueryIdentity, QueryPerson, QueryPersons, QueryRaw, QuerySelfTest, QueryState,
+    SessionRequest, StationRequest, Telemetry, Watchdogs, upload_course,
 };
 use thermal_client::link::{Interruptible, LineSplitter, Link, LinkError, ReceivedLine};
 use thermal_device::StateName;
@@ -474,20 +474,20 @@ fn the_answers_for_diagnosis_are_read() {
     )]);
     let test = newer.ask(&QuerySelfTest).unwrap();
     assert_eq!(test.side, Some(SideLine::StuckLow));
-    assert_eq!(test.flux_sensor, None, "a device without the sensor");
+    assert_eq!(test.flux, None, "a device without the sensor");
     let mut fitted = knows(&[(
         "self-test",
         "ok hot_cut_ms=1 hot_supply_v=4.1 hot_release_ms=1 cold_cut_ms=1 cold_supply_v=4.1 cold_release_ms=1 side=ok supply_v=12.0 cool_a=1.00 warm_a=1.00 display_k=0.54 check_k=0.54 result=passed flux=zero",
     )]);
     let test = fitted.ask(&QuerySelfTest).unwrap();
-    assert_eq!(test.flux_sensor, Some(FluxSensorTest::Zero));
+    assert_eq!(test.flux, Some(FluxSensorTest::Zero));
     let raw = client.ask(&QueryRaw).unwrap();
     assert_eq!((raw.display, raw.supply), (2048.25, 2730.0));
     assert!(raw.fault_line && !raw.stop);
     let board = BoardReport {
         bor: 3,
-        watchdogs_frozen: false,
-        clock_external: true,
+        watchdogs: Watchdogs::Running,
+        clock: ClockSource::External,
         pwm_lock: 1,
         reset: "power".into(),
         rx_overruns: 0,
@@ -521,7 +521,7 @@ fn the_answers_for_diagnosis_are_read() {
         answers("ok conductivity_w_mk=30.000 roughness_um=1.2500 slope_rad=0.11000")
     });
     let surface = DisplaySurface::from_array_rounded([30.0, 1.25, 0.11]);
-    assert_eq!(rough.ask(&QueryDisplaySurface).unwrap(), surface);
+    assert_eq!(rough.ask(&QueryDisplaySurface).unwrap().surface, surface);
     let lines = [surface, DisplaySurface::NOMINAL].map(SessionRequest::display_surface);
     let lines = lines.map(|line| line.to_string());
     assert_eq!(lines, ["surface set 30 1.25 0.11", "surface nominal"]);
@@ -581,11 +581,12 @@ fn persons_are_read_and_written() {
         ("person none", "ok"),
         ("forget person P07", "ok"),
     ]);
-    let enrolled = PersonReport { person: Some(person), contacts: 2 };
-    assert_eq!(client.ask(&EnrolPerson(code)).unwrap(), enrolled);
-    let unknown = PersonReport { person: None, contacts: 1 };
+    let enrolled =
+        PersonReport { code: Some(code), contacts: 2, data: Some(PersonData(person.finger)) };
+    assert_eq!(client.ask(&EnrolPerson { code }).unwrap(), enrolled);
+    let unknown = PersonReport { code: None, contacts: 1, data: None };
     assert_eq!(client.ask(&QueryPerson).unwrap(), unknown);
-    let codes = client.ask(&QueryPersons).unwrap();
+    let codes = client.ask(&QueryPersons).unwrap().codes;
     assert_eq!(codes, [code, PersonCode::new("X").unwrap()]);
     for command in
         [PersonRequest::store(&person), PersonRequest::ChooseNobody, PersonRequest::Forget { code }]

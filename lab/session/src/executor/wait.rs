@@ -176,7 +176,7 @@ impl<L: Link> Executor<'_, L> {
     pub(super) fn command(
         &mut self,
         finger: Option<u8>,
-        command: &impl Command<Reply = ()>,
+        command: &impl Command<Answer = ()>,
     ) -> Result<(), TrialEnd> {
         let address = finger.and_then(|finger| self.fingers.address(finger));
         (self.client.ask_finger(address, command)).map_err(trial_end_of)

@@ -29,7 +29,7 @@ pub const CHIP: Stage = Stage {
         read(
             "clock",
             "clock",
-            Reading::Board(|board| Value::Word(if board.clock_external { "hse" } else { "hsi" }.into())),
+            Reading::Board(|board| Value::Word(board.clock.name().into())),
         )
             .words(&["hse"])
             .basis("8 MHz from the probe")
@@ -41,7 +41,7 @@ pub const CHIP: Stage = Stage {
         read(
             "watchdogs",
             "watchdogs",
-            Reading::Board(|board| Value::Word(if board.watchdogs_frozen { "frozen" } else { "running" }.into())),
+            Reading::Board(|board| Value::Word(board.watchdogs.name().into())),
         )
             .words(&["running"])
             .basis("DBGMCU_APB1_FZ has no bit of IWDG or WWDG")

@@ -95,7 +95,7 @@ pub const LATCH: Stage = Stage {
         cut(
             "hot-cut",
             "comparator's test at its hot side until nFAULT falls",
-            |report| report.hot_cut_ms.map(Value::Number),
+            |report| report.hot_cut_ms.map(|ms| Value::Number(ms.into())),
             "the comparator does not cut when its hot side is tested: hot side X3 (half of the \
                  TLV1702, block comparator) dead or without 5 V, test switch X1 (74LVC1G3157), PC3 \
                  (CN7-37) or PB2 (CN10-22) not connected, latch X6 (74HCT74) dead",
@@ -104,12 +104,12 @@ pub const LATCH: Stage = Stage {
             report.hot_supply_v.map(Value::Number)
         }),
         release("hot-release", "end of that test until nFAULT rises", |report| {
-            report.hot_release_ms.map(Value::Number)
+            report.hot_release_ms.map(|ms| Value::Number(ms.into()))
         }),
         cut(
             "cold-cut",
             "comparator's test at its cold side until nFAULT falls",
-            |report| report.cold_cut_ms.map(Value::Number),
+            |report| report.cold_cut_ms.map(|ms| Value::Number(ms.into())),
             "the comparator does not cut when its cold side is tested: cold side X4 (half of the \
                  TLV1702, block comparator) dead, or PB2 (CN10-22) not connected to R7 (6.34 kΩ)",
         ),
@@ -117,7 +117,7 @@ pub const LATCH: Stage = Stage {
             report.cold_supply_v.map(Value::Number)
         }),
         release("cold-release", "end of that test until nFAULT rises", |report| {
-            report.cold_release_ms.map(Value::Number)
+            report.cold_release_ms.map(|ms| Value::Number(ms.into()))
         }),
         read(
             "supply",

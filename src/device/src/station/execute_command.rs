@@ -35,7 +35,7 @@ impl Station {
                 let material = self.object.material.as_ref();
                 return Ok(Reply::Material(material.map(|material| material.properties)));
             }
-            Command::Finger(None) => return Ok(Reply::Finger(self.object.assumed_finger().name())),
+            Command::Finger(None) => return Ok(Reply::Finger(self.object.assumed_finger())),
             Command::Finger(Some(finger)) => {
                 let before = self.object.assumed_finger();
                 if finger != before {

@@ -30,7 +30,7 @@ fn tested(
     bench.ask(&sensor).expect("a sensor");
     wait(&mut bench, 100);
     arm(&mut bench, None).expect("armed: the sensor trips nothing");
-    bench.ask(&QuerySelfTest).expect("a report").flux_sensor
+    bench.ask(&QuerySelfTest).expect("a report").flux
 }
 
 #[test]
@@ -68,5 +68,5 @@ fn flux_of_the_air_and_of_a_finger_do_not_fail_the_test() {
     let mut bench = bench(&mut engine, &[]);
     wait(&mut bench, 100);
     arm(&mut bench, None).expect("armed");
-    assert_eq!(bench.ask(&QuerySelfTest).expect("a report").flux_sensor, None);
+    assert_eq!(bench.ask(&QuerySelfTest).expect("a report").flux, None);
 }

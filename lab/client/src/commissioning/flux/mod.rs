@@ -223,7 +223,7 @@ struct Session<'a, L> {
 }
 
 impl<L: Link> Session<'_, L> {
-    fn send(&mut self, command: &impl Command<Reply = ()>) -> Result<(), CommissionError> {
+    fn send(&mut self, command: &impl Command<Answer = ()>) -> Result<(), CommissionError> {
         Ok(self.client.ask_finger(self.finger, command)?)
     }
 

@@ -4,10 +4,7 @@ use core::fmt;
 
 use thermal_settings::{Person, PersonCode, Persons};
 
-use crate::line_checksum::TwoHexDigits;
-
-/// Contacts of 8 s or more from which a finger must have been learnt to be stored by `person enrol`.
-pub const ENROL_CONTACTS: u8 = 2;
+use crate::kind::NOBODY_WORD;
 
 /// A person in the answers to `person` and `person enrol`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,19 +13,6 @@ pub struct PersonReply {
     pub person: Option<Person>,
     /// Contacts of 8 s or more, trusted to their end, since the person was chosen or the finger was last distrusted.
     pub contacts: u8,
-}
-
-impl fmt::Display for PersonReply {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Some(person) = &self.person else {
-            return write!(f, "ok person=none contacts={}", self.contacts);
-        };
-        write!(f, "ok person={} contacts={} data=", person.code, self.contacts)?;
-        for byte in person.finger {
-            TwoHexDigits(byte).fmt(f)?;
-        }
-        Ok(())
-    }
 }
 
 /// The codes of all persons.
@@ -51,7 +35,7 @@ impl PersonCodes {
 impl fmt::Display for PersonCodes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.0.is_empty() {
-            return f.write_str("none");
+            return f.write_str(NOBODY_WORD);
         }
         for (index, code) in self.0.iter().enumerate() {
             f.write_str(if index > 0 { "," } else { "" })?;

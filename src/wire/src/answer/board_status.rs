@@ -1,8 +1,6 @@
 //! State of the board, which the control of the fingers does not know.
 
-use core::fmt;
-
-use crate::line_checksum::TwoHexDigits;
+use thermal_settings::vocabulary;
 
 /// What the board tells of the microcontroller and of the serial line, for bring-up and diagnosis: the answer to the
 /// command `board`. The default is that of a prepared board after power-on.
@@ -50,29 +48,24 @@ impl Default for BoardStatus {
     }
 }
 
-/// Writes the answer to `board`.
-impl fmt::Display for BoardStatus {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            brown_out_level,
-            pwm_lock_level,
-            reset,
-            receive_overruns,
-            receive_framing_errors,
-            receive_noise,
-            telemetry_dropped,
-            unique_id,
-            program_digest,
-            ..
-        } = self;
-        let watchdogs = if self.watchdogs_may_freeze { "frozen" } else { "running" };
-        let clock = if self.clock_is_external { "hse" } else { "hsi" };
-        write!(f, "ok bor={brown_out_level} watchdogs={watchdogs} clock={clock}")?;
-        write!(f, " pwm_lock={pwm_lock_level} reset={reset}")?;
-        write!(f, " rx_overruns={receive_overruns} rx_framing={receive_framing_errors}")?;
-        write!(f, " rx_noise={receive_noise} tx_dropped={telemetry_dropped} uid=")?;
-        let mut bytes = unique_id.iter().flat_map(|word| word.to_be_bytes());
-        bytes.try_for_each(|byte| TwoHexDigits(byte).fmt(f))?;
-        program_digest.map_or(Ok(()), |digest| write!(f, " program={digest:08x}"))
+vocabulary! {
+    /// Whether the watchdogs run.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Watchdogs: "watchdogs" {
+        /// They do, whatever the program does.
+        Running = "running",
+        /// A debugger has selected that they, or the PWM timers, stand still while it halts the core.
+        Frozen = "frozen",
+    }
+}
+
+vocabulary! {
+    /// Where the clocks come from.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum ClockSource: "clock" {
+        /// The external clock.
+        External = "hse",
+        /// The internal oscillator.
+        Internal = "hsi",
     }
 }

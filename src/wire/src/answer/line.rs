@@ -1,0 +1,81 @@
+//! An answer that is being written.
+
+use core::fmt::{self, Display as _};
+
+use contact_model::decimal::Rounded;
+
+use crate::LineBuffer;
+
+/// An answer that is being written: a beginning, then words.
+pub struct AnswerLine<'a, 'b> {
+    formatter: &'a mut fmt::Formatter<'b>,
+    buffer: LineBuffer,
+    names: &'static str,
+    result: fmt::Result,
+}
+
+impl<'a, 'b> AnswerLine<'a, 'b> {
+    /// An answer that begins so, with `ok` or why something is refused. `names` are those of its values, each with a space behind it:
+    /// an address and a length for each of them would take 0.7 KB of flash.
+    #[inline(never)]
+    pub fn new(
+        formatter: &'a mut fmt::Formatter<'b>,
+        beginning: &str,
+        names: &'static str,
+    ) -> Self {
+        let mut buffer = LineBuffer::new();
+        buffer.push_str_if_fits(beginning);
+        Self { formatter, buffer, names, result: Ok(()) }
+    }
+
+    /// Appends a word.
+    #[inline(never)]
+    pub fn word(&mut self, word: &str) -> &mut LineBuffer {
+        // An answer can be longer than the buffer, a value cannot.
+        self.result = self.result.and(self.buffer.fmt(self.formatter));
+        self.buffer.clear();
+        self.buffer.push_str_if_fits(" ");
+        self.buffer.push_str_if_fits(word);
+        &mut self.buffer
+    }
+
+    /// The name of the next value.
+    #[inline(never)]
+    pub fn next_name(&mut self) -> &'static str {
+        let (name, others) = self.names.split_once([' ']).unwrap_or_default();
+        self.names = others;
+        name
+    }
+
+    /// Appends a name and `=`; the value is to be appended to the buffer.
+    #[inline(never)]
+    pub fn name(&mut self, name: &str) -> &mut LineBuffer {
+        self.word(name).push_str_if_fits("=");
+        &mut self.buffer
+    }
+
+    /// The same with the name of the next value.
+    #[inline(never)]
+    pub fn named(&mut self) -> &mut LineBuffer {
+        let name = self.next_name();
+        self.name(name)
+    }
+
+    /// Appends numbers behind names of their own, with so many decimals; the next name stands for all of them.
+    #[inline(never)]
+    pub fn numbers(&mut self, names: &[&str], numbers: &[f64], decimals: &[i32]) {
+        self.next_name();
+        for ((name, number), decimals) in names.iter().zip(numbers).zip(decimals) {
+            self.name(name).push_display(&Rounded(*number, *decimals as usize));
+        }
+    }
+
+    /// Ends the answer.
+    ///
+    /// # Errors
+    /// That of the formatter.
+    #[inline(never)]
+    pub fn end(self) -> fmt::Result {
+        self.result.and(self.buffer.fmt(self.formatter))
+    }
+}
