@@ -1,14 +1,16 @@
-//! What the procedure is made of: stages, steps and checks. All of it is data.
+//! What the procedure is made of: stages, steps and checks. All of it is data, read from the files of `stages/`.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
-use thermal_client::client::{BoardReport, RawReadings, SelfTestReport};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::Value as Json;
 
 use super::unit::Unit;
 
 /// A stage, in the order of power: what an earlier one has found unsafe keeps a later one from being started.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum StageId {
     /// Everything unpowered and unplugged.
     BareBoard,
@@ -65,64 +67,107 @@ pub enum Step {
 }
 
 /// Something to do by hand.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ManualStep {
     /// What the person is told.
+    #[serde(rename = "do", deserialize_with = "text")]
     pub say: &'static str,
     /// The same in the words of the line to the surroundings of an emulated board.
+    #[serde(rename = "bench", default, deserialize_with = "texts")]
     pub lines: &'static [&'static str],
+    /// How long the device runs after that before the next step, ms.
+    #[serde(default)]
+    pub wait_ms: u64,
 }
 
 /// A value to measure and to compare.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Check {
     /// Name, unique in the procedure.
+    #[serde(rename = "check", deserialize_with = "text")]
     pub name: &'static str,
     /// What is measured.
+    #[serde(deserialize_with = "text")]
     pub what: &'static str,
     /// How it is measured.
+    #[serde(rename = "reads")]
     pub reading: Reading,
+    /// Words for a field that is true or false.
+    pub shown_as: Option<FlagWords>,
     /// What is expected.
     pub expected: Expected,
     /// Where the limits come from.
+    #[serde(deserialize_with = "text")]
     pub basis: &'static str,
     /// What is broken if the value is too low, is another word, or is missing.
+    #[serde(default, deserialize_with = "text")]
     pub low: &'static str,
     /// What is broken if it is too high.
+    #[serde(default, deserialize_with = "text")]
     pub high: &'static str,
     /// The first stage that is unsafe or pointless if the check fails; `None` if all others can still be done.
     pub blocks: Option<StageId>,
 }
 
-/// Where a value comes from.
-#[derive(Clone, Copy, Debug)]
+/// Where a value comes from. Of an answer of the device it is the field with this name, or the sum of fields with ` + ` between.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Reading {
     /// A meter or an oscilloscope.
     Meter {
         /// Name of the point on the line to the surroundings.
+        #[serde(deserialize_with = "text")]
         point: &'static str,
         /// What the person does with the instrument.
+        #[serde(deserialize_with = "text")]
         how: &'static str,
     },
     /// The device's answer to `raw`.
-    Raw(fn(&RawReadings) -> Value),
+    Raw(#[serde(deserialize_with = "text")] &'static str),
     /// The last self-test.
-    SelfTest(fn(&SelfTestReport) -> Option<Value>),
+    SelfTest(#[serde(deserialize_with = "text")] &'static str),
     /// The device's answer to `board`.
-    Board(fn(&BoardReport) -> Value),
+    Board(#[serde(deserialize_with = "text")] &'static str),
     /// The value that a routine has left under the check's name.
     Kept,
     /// A value worked out from those that checks and routines have left.
-    Derived(fn(&Kept) -> Option<f64>),
+    Derived(Formula),
+}
+
+/// A value worked out from others, by their names: `(value - less) / over * times / per`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Formula {
+    #[serde(deserialize_with = "text")]
+    value: &'static str,
+    #[serde(default, deserialize_with = "some_text")]
+    less: Option<&'static str>,
+    #[serde(default, deserialize_with = "some_text")]
+    over: Option<&'static str>,
+    times: Option<f64>,
+    per: Option<f64>,
+}
+
+/// Words for a field that is true or false.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FlagWords {
+    #[serde(rename = "true", deserialize_with = "text")]
+    set: &'static str,
+    #[serde(rename = "false", deserialize_with = "text")]
+    clear: &'static str,
 }
 
 /// What is expected of a value.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Expected {
     /// A number from the first to the second, in this unit.
     Range(f64, f64, Unit),
     /// One of these words.
-    Words(&'static [&'static str]),
+    Words(#[serde(deserialize_with = "texts")] &'static [&'static str]),
 }
 
 /// A value.
@@ -135,10 +180,9 @@ pub enum Value {
 }
 
 /// Something that the program does with the device.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Routine {
-    /// Lets the device run for this time, ms.
-    Wait(u64),
     /// Identifies the device.
     Identify,
     /// `clear` and `arm`; keeps what the self-test reports, and switches the bridge off again.
@@ -147,19 +191,23 @@ pub enum Routine {
     /// second until nFAULT falls, and keeps the value there.
     Edge {
         /// Name under which the value is kept.
+        #[serde(deserialize_with = "text")]
         keep: &'static str,
         /// Begin and end, ohm.
         ohm: (f64, f64),
     },
-    /// Compares the counts of the five known resistors with what they must be.
-    KnownResistors,
+    /// Compares the counts of the five known resistors, ohm, in the order of the converter's channels, with what they must be.
+    #[serde(rename = "known_resistors_ohm")]
+    KnownResistors([f64; 5]),
     /// Streams telemetry with checksums for this time, ms, and keeps how many lines were lost and damaged.
+    #[serde(rename = "serial_line_ms")]
     SerialLine(u64),
     /// Compares thermistors with the reference thermometer.
     Thermistors,
     /// Holds the display at a temperature, °C; keeps readings, reference and current.
     Hold {
         /// Prefix of the names under which they are kept.
+        #[serde(deserialize_with = "text")]
         keep: &'static str,
         /// Temperature, °C.
         celsius: f64,
@@ -173,6 +221,54 @@ pub enum Routine {
 
 /// Measured values, each by the name of its check or by the name that a routine gives it.
 pub type Kept = BTreeMap<String, f64>;
+
+/// Text of a step: it is read once, and lives as long as the program.
+fn text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<&'static str, D::Error> {
+    String::deserialize(deserializer).map(|text| &*text.leak())
+}
+
+fn some_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<&'static str>, D::Error> {
+    text(deserializer).map(Some)
+}
+
+fn texts<'de, D>(deserializer: D) -> Result<&'static [&'static str], D::Error>
+where
+    D: Deserializer<'de>,
+{
+    let texts = Vec::<String>::deserialize(deserializer)?.into_iter();
+    Ok(texts.map(|text| &*text.leak()).collect::<Vec<_>>().leak())
+}
+
+impl Formula {
+    /// The value; `None` if one of the others is missing.
+    pub(super) fn value(&self, kept: &Kept) -> Option<f64> {
+        let or = |name: Option<&str>, otherwise| match name {
+            Some(name) => kept.get(name).copied(),
+            None => Some(otherwise),
+        };
+        let value = (kept.get(self.value)? - or(self.less, 0.0)?) / or(self.over, 1.0)?;
+        Some(value * self.times.unwrap_or(1.0) / self.per.unwrap_or(1.0))
+    }
+}
+
+impl Check {
+    /// The value in an answer of the device; `None` if the device has none, or the answer no such field.
+    pub(super) fn value_in(&self, answer: &impl Serialize, fields: &str) -> Option<Value> {
+        let answer = serde_json::to_value(answer).ok()?;
+        if let Expected::Range(..) = self.expected {
+            let numbers = fields.split(" + ").map(|field| answer.get(field)?.as_f64());
+            return numbers.sum::<Option<f64>>().map(Value::Number);
+        }
+        let word = match answer.get(fields)? {
+            Json::String(word) => word.clone(),
+            Json::Number(number) => number.to_string(),
+            Json::Bool(true) => self.shown_as?.set.into(),
+            Json::Bool(false) => self.shown_as?.clear.into(),
+            _ => return None,
+        };
+        Some(Value::Word(word))
+    }
+}
 
 impl Expected {
     /// Whether a value is as expected; otherwise whether it is too low.

@@ -66,7 +66,7 @@ fn write_page(html: &mut String, report: &Report) -> std::fmt::Result {
         }
         html.write_str("</ol>\n")?;
     }
-    for stage in &STAGES {
+    for stage in STAGES.iter() {
         write_stage(html, report, stage.name, stage.title)?;
     }
     if !report.settings.is_empty() {

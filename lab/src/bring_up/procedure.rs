@@ -192,19 +192,25 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     }
 
     pub(super) fn act(&mut self, manual: &ManualStep) -> Result<(), Interruption> {
-        Ok(self.bench.act(self.client, manual)?)
+        self.bench.act(self.client, manual)?;
+        if manual.wait_ms > 0 {
+            self.client.wait(Duration::from_millis(manual.wait_ms))?;
+        }
+        Ok(())
     }
 
     fn check(&mut self, stage: &Stage, check: &'static Check) -> Result<(), Interruption> {
         let value = match check.reading {
             Reading::Meter { point, how } => Some(Value::Number(self.meter(check, point, how)?)),
-            Reading::Raw(read) => Some(read(&self.client.ask(&QueryRaw)?)),
-            Reading::Board(read) => Some(read(&self.client.ask(&QueryBoard)?)),
+            Reading::Raw(field) => check.value_in(&self.client.ask(&QueryRaw)?, field),
+            Reading::Board(field) => check.value_in(&self.client.ask(&QueryBoard)?, field),
             Reading::Kept => self.kept.get(check.name).copied().map(Value::Number),
-            Reading::Derived(read) => {
-                read(&self.kept).filter(|value| value.is_finite()).map(Value::Number)
+            Reading::Derived(formula) => {
+                formula.value(&self.kept).filter(|value| value.is_finite()).map(Value::Number)
             }
-            Reading::SelfTest(read) => self.self_test.as_ref().and_then(read),
+            Reading::SelfTest(field) => {
+                self.self_test.as_ref().and_then(|report| check.value_in(report, field))
+            }
         };
         let is_self_test = matches!(check.reading, Reading::SelfTest(_));
         let tells = match check.reading {

@@ -15,7 +15,6 @@ use super::bench::{Bench, BenchError};
 use super::check::{Expected, ManualStep, Routine, Stage, StageId};
 use super::procedure::{Interruption, OtherDevice, Procedure};
 use super::report::{Record, Verdict};
-use super::stages::KNOWN_OHM;
 use super::unit::Unit;
 
 /// Counts of the converter.
@@ -52,11 +51,10 @@ const STOP_POLL_MS: u64 = 5;
 impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
     pub(super) fn routine(&mut self, stage: &Stage, routine: &Routine) -> Result<(), Interruption> {
         match *routine {
-            Routine::Wait(ms) => Ok(self.client.wait(Duration::from_millis(ms))?),
             Routine::Identify => self.identify(stage),
             Routine::SelfTest => self.self_test(stage),
             Routine::Edge { keep, ohm } => self.edge(stage, keep, ohm),
-            Routine::KnownResistors => self.known_resistors(stage),
+            Routine::KnownResistors(ohm) => self.known_resistors(stage, &ohm),
             Routine::SerialLine(ms) => self.serial_line(ms),
             Routine::Thermistors => self.thermistors(),
             Routine::Hold { keep, celsius } => self.hold(keep, celsius),
@@ -138,8 +136,8 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         self.act(&ManualStep {
             say: "Set the variable resistor to 10 kΩ.",
             lines: &["fit resistor check 10000"],
+            wait_ms: 300,
         })?;
-        self.client.wait(Duration::from_millis(300))?;
         self.self_test(stage)?;
         if self.client.ask(&QueryRaw)?.fault_line {
             // The latch cannot be cleared; the check finds no value, and the self-test's own checks say why.
@@ -155,12 +153,16 @@ impl<L: Link, B: Bench<L>> Procedure<'_, L, B> {
         Ok(())
     }
 
-    fn known_resistors(&mut self, stage: &Stage) -> Result<(), Interruption> {
+    fn known_resistors(
+        &mut self,
+        stage: &Stage,
+        known_ohm: &[f64; INPUTS.len()],
+    ) -> Result<(), Interruption> {
         let found = counts(&self.client.ask(&QueryRaw)?);
-        let expected = KNOWN_OHM.map(|ohm| CODES * ohm / (ohm + PULL_UP_OHM));
+        let expected = known_ohm.map(|ohm| CODES * ohm / (ohm + PULL_UP_OHM));
         let fits = |found: f64, expected: f64| (found - expected).abs() <= KNOWN_COUNTS;
         for (index, (thermistor, name, pin)) in INPUTS.iter().enumerate() {
-            let (counts, ohm) = (found[index], KNOWN_OHM[index]);
+            let (counts, ohm) = (found[index], known_ohm[index]);
             let swapped = (0..INPUTS.len()).find(|other| {
                 let is_its = fits(counts, expected[*other]);
                 *other != index && is_its && fits(found[*other], expected[index])

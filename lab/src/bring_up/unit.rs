@@ -2,31 +2,40 @@
 
 use std::fmt;
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 /// Unit of a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Unit {
     /// Resistance, Ω. An open circuit is an infinite one.
+    #[serde(rename = "ohm")]
     Ohm,
     /// Voltage, V.
+    #[serde(rename = "V")]
     Volt,
     /// Current, A.
+    #[serde(rename = "A")]
     Ampere,
     /// Temperature, °C.
+    #[serde(rename = "C")]
     Celsius,
     /// Difference of temperatures, K.
+    #[serde(rename = "K")]
     Kelvin,
     /// Time, ms.
+    #[serde(rename = "ms")]
     Millisecond,
     /// Counts of the converter, of 4096.
+    #[serde(rename = "counts")]
     Count,
     /// Gain of the force sensor, counts/N.
+    #[serde(rename = "counts/N")]
     CountPerNewton,
     /// Number of lines or bytes.
+    #[serde(rename = "pieces")]
     Piece,
     /// Ratio of two values.
+    #[serde(rename = "ratio")]
     Ratio,
 }
 

@@ -124,7 +124,7 @@ fn the_document_lists_every_broken_board_with_its_stage() {
         let row = row.unwrap_or_else(|| panic!("no row of {name}"));
         assert!(row.ends_with(&format!("| `{stage}` |")), "{row}");
     }
-    for stage in &STAGES {
+    for stage in STAGES.iter() {
         assert!(document.contains(&format!("| `{}` |", stage.name)));
     }
 }
