@@ -41,18 +41,28 @@ impl fmt::Display for Rounded {
         if value.is_infinite() {
             return f.write_str("inf");
         }
-        let decimals = decimals.min(DECIMALS_MAX);
-        let power = u64::from(POWERS_OF_TEN[decimals]);
-        let scaled = nearest_multiple(value, decimals);
-        let (whole, fraction) = match u32::try_from(scaled / power) {
-            Ok(whole) => (whole, (scaled % power) as u32),
-            Err(_) => (u32::MAX, 0),
-        };
+        let (whole, fraction) = self.whole_and_fraction();
         whole.fmt(f)?;
+        let decimals = decimals.min(DECIMALS_MAX);
         if decimals > 0 {
             write!(f, ".{fraction:0decimals$}")?;
         }
         Ok(())
+    }
+}
+
+impl Rounded {
+    /// The digits of the magnitude before the decimal point and behind it, for code that writes them itself; of infinity and NaN those
+    /// of the largest number.
+    #[inline(never)]
+    pub fn whole_and_fraction(&self) -> (u32, u32) {
+        let decimals = self.1.min(DECIMALS_MAX);
+        let power = u64::from(POWERS_OF_TEN[decimals]);
+        let scaled = nearest_multiple(self.0, decimals);
+        match u32::try_from(scaled / power) {
+            Ok(whole) => (whole, (scaled % power) as u32),
+            Err(_) => (u32::MAX, 0),
+        }
     }
 }
 

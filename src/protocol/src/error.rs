@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use contact_model::contact_law::ContactLaw;
 use contact_model::decimal::{Rounded, Shortest};
 use contact_model::fixed_point::{BodyError, Celsius, ContactPairError, units_to_f64};
 use thermal_commissioning::{
@@ -18,7 +19,7 @@ use thermal_device::stimulus::{
     COURSE_DURATION_MAX_MS, COURSE_POINTS_MAX, COURSE_RATE_MAX_K_S, CourseError,
 };
 use thermal_settings::{PersonCode, Persons, Range};
-use thermal_wire::answer::DeviceAnswer as _;
+use thermal_wire::answer::{AnswerLine, DeviceAnswer as _};
 use thermal_wire::{QuotedWordExcerpt, ReadError, TwoHexDigits};
 
 use crate::command_handler::ENROL_CONTACTS;
@@ -242,6 +243,14 @@ fn write_dose(f: &mut fmt::Formatter<'_>, dose_ms: u32) -> fmt::Result {
     )
 }
 
+/// Not inlined, so that only this refusal takes the stack of an answer.
+#[inline(never)]
+fn write_needs_nominal_law(f: &mut fmt::Formatter<'_>, law: &ContactLaw) -> fmt::Result {
+    let mut line = AnswerLine::new(f, "person needs contact nominal first; told is");
+    law.write_values(&mut line);
+    line.end()
+}
+
 fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::Result {
     f.write_str(match refused {
         Refused::NotArmed => "start needs arm first",
@@ -254,7 +263,7 @@ fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::
             );
         }
         Refused::OtherContactLaw(law) => {
-            return law.write_after("person needs contact nominal first; told is", f);
+            return write_needs_nominal_law(f, law);
         }
         Refused::AlreadyStarted => "already started; arm takes the object away",
         Refused::NeedsDrivenDisplay(command) => {

@@ -4,9 +4,8 @@ use core::fmt;
 
 use thermal_commissioning::{SessionReply, StorageOrder};
 use thermal_device::command;
-use thermal_wire::Argument as _;
 use thermal_wire::answer::{
-    BoardStatus, DeviceAnswer as _, DeviceIdentity, PersonCodes, PersonReply,
+    AnswerLine, BoardStatus, DeviceAnswer as _, DeviceIdentity, PersonCodes, PersonReply,
 };
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
@@ -40,51 +39,53 @@ impl Reply {
 
 impl fmt::Display for Reply {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut line = AnswerLine::new(f, "ok");
+        self.write_values(&mut line);
+        line.end()
+    }
+}
+
+impl Reply {
+    fn write_values(&self, line: &mut AnswerLine<'_, '_>) {
         match self {
-            Self::Identity(identity) => identity.write_answer(f),
-            Self::Board(status) => status.write_answer(f),
-            Self::Station(reply) => write_station_reply(f, reply),
-            Self::Commissioning(reply) => write_session_reply(f, reply),
-            Self::Person(reply) => reply.write_answer(f),
-            Self::Persons(codes) => codes.write_answer(f),
-            Self::Restart(_) => f.write_str("ok"),
+            Self::Identity(identity) => identity.write_values(line),
+            Self::Board(status) => status.write_values(line),
+            Self::Station(reply) => match reply {
+                command::Reply::Status(status) => status.write_values(line),
+                command::Reply::Law(law) => law.write_values(line),
+                command::Reply::Cause(cause) => cause.write_values(line),
+                command::Reply::SelfTest(report) => report.write_values(line),
+                command::Reply::Raw(samples) => samples.write_values(line),
+                command::Reply::Finger(finger) => finger.write_values(line),
+                command::Reply::ContactLaw(law) => law.write_values(line),
+                // No line from the host requests a material's properties. Averages, normal equations and flux are evaluated by
+                // commissioning sessions, persons by the handler.
+                command::Reply::Done
+                | command::Reply::Material(_)
+                | command::Reply::Average(_)
+                | command::Reply::Flux(_)
+                | command::Reply::Person(_)
+                | command::Reply::FluxZero(_)
+                | command::Reply::NormalEquation(_) => {}
+            },
+            Self::Commissioning(reply) => match reply {
+                SessionReply::Tile(tile) => tile.write_values(line),
+                SessionReply::PointAdded(fit) => fit.write_values(line),
+                SessionReply::Flux(flux) => flux.write_values(line),
+                SessionReply::DisplaySurface(surface) => surface.write_values(line),
+                SessionReply::SettingsLines(count) => count.write_values(line),
+                SessionReply::Setting(setting) => setting.write_values(line),
+                SessionReply::Done => {}
+            },
+            Self::Person(reply) => reply.write_values(line),
+            Self::Persons(codes) => write_persons(codes, line),
+            Self::Restart(_) => {}
         }
     }
 }
 
-fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fmt::Result {
-    match reply {
-        command::Reply::Status(status) => status.write_answer(f),
-        command::Reply::Law(law) => law.write_answer(f),
-        command::Reply::Cause(cause) => cause.write_answer(f),
-        command::Reply::SelfTest(report) => report.write_answer(f),
-        command::Reply::Raw(samples) => samples.write_answer(f),
-        command::Reply::Finger(finger) => finger.write_answer(f),
-        command::Reply::ContactLaw(law) => law.write_answer(f),
-        // No line from the host requests a material's properties. Averages, normal equations and flux are evaluated by commissioning
-        // sessions, persons by the handler.
-        command::Reply::Done
-        | command::Reply::Material(_)
-        | command::Reply::Average(_)
-        | command::Reply::Flux(_)
-        | command::Reply::Person(_)
-        | command::Reply::FluxZero(_)
-        | command::Reply::NormalEquation(_) => f.write_str("ok"),
-    }
-}
-
-fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt::Result {
-    match reply {
-        SessionReply::Done => f.write_str("ok"),
-        SessionReply::Tile(tile) => tile.write_answer(f),
-        SessionReply::PointAdded(fit) => fit.write_answer(f),
-        SessionReply::Flux(flux) => flux.write_answer(f),
-        SessionReply::DisplaySurface(surface) => surface.write_answer(f),
-        SessionReply::SettingsLines(count) => count.write_answer(f),
-        // The host can restore this part later by sending the line that follows `ok`.
-        SessionReply::Setting(setting) => {
-            f.write_str("ok set")?;
-            setting.write(f)
-        }
-    }
+/// Not inlined, so that only this answer takes stack for the codes.
+#[inline(never)]
+fn write_persons(codes: &PersonCodes, line: &mut AnswerLine<'_, '_>) {
+    codes.write_values(line);
 }

@@ -2,7 +2,6 @@
 
 use core::marker::PhantomData;
 
-use contact_model::decimal::Rounded;
 use contact_model::fixed_point::{Celsius, Force};
 use thermal_device::Flux;
 use thermal_device::drive::Current;
@@ -15,7 +14,7 @@ use crate::answer::PersonCodes;
 #[cfg(feature = "host")]
 use crate::host::{Value, ValueForm, finite};
 use crate::telemetry::{TUNED_WORD, UNKNOWN_WORD, UNTUNED_WORD};
-use crate::{LineBuffer, PersonData, TwoHexDigits};
+use crate::{LineBuffer, PersonData};
 #[cfg(feature = "host")]
 use std::string::{String, ToString};
 #[cfg(feature = "host")]
@@ -104,7 +103,7 @@ kinds! {
         |line, value| line.push_mean_of_16(value), |word| finite(word), Value::Number;
     /// Number with so many decimals.
     Decimal<const DIGITS>: f64 => f64, ValueForm::Number,
-        |line, value| line.push_display(&Rounded(value, DIGITS)), |word| finite(word), Value::Number;
+        |line, value| line.push_decimal(value, DIGITS), |word| finite(word), Value::Number;
     /// A count.
     Count: u32 => u32, ValueForm::Count,
         |line, value| line.push_integer(value), |word| word.parse().ok(), Value::Count;
@@ -148,29 +147,33 @@ kinds! {
     UniqueId: [u32; 3] => String, ValueForm::Text,
         |line, value| for word in value {
             for byte in word.to_be_bytes() {
-                line.push_display(&TwoHexDigits(byte));
+                line.push_hexadecimal(byte, b'A');
             }
         },
         |word| Some(word.into()), Value::Text;
     /// A word, as eight hexadecimal digits.
     Digest: u32 => String, ValueForm::Text,
-        |line, value| line.push_display(&format_args!("{value:08x}")), |word| Some(word.into()), Value::Text;
+        |line, value| for byte in value.to_be_bytes() {
+            line.push_hexadecimal(byte, b'a');
+        }, |word| Some(word.into()), Value::Text;
     /// A person's code; `none` for an unknown person.
     Person: Option<PersonCode> => Option<PersonCode>, ValueForm::TextOr(NOBODY_WORD),
         |line, value| match value {
-            Some(code) => line.push_display(&code),
+            Some(code) => line.push_person_code(code),
             None => line.push_str_if_fits(NOBODY_WORD),
         },
         |word| if word == NOBODY_WORD { Some(None) } else { PersonCode::new(word).map(Some) },
         |code: Option<PersonCode>| code.map_or(Value::Unknown, |code| Value::Text(code.to_string()));
     /// What was learnt of a finger, as hexadecimal digits.
     LearntFinger: PersonData => PersonData, ValueForm::Text,
-        |line, value| line.push_display(&value),
+        |line, value| for byte in value.0 {
+            line.push_hexadecimal(byte, b'A');
+        },
         |word| thermal_settings::Person::read_finger(word).map(PersonData),
         |data: PersonData| Value::Text(data.to_string());
     /// Codes of persons with commas between them; `none` without any.
     Codes: PersonCodes => Vec<PersonCode>, ValueForm::ListOr(NOBODY_WORD),
-        |line, value| line.push_display(&value),
+        |line, value| value.write(line),
         |word| match word {
             NOBODY_WORD => Some(Vec::new()),
             codes => codes.split(',').map(PersonCode::new).collect(),

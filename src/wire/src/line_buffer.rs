@@ -4,13 +4,15 @@
 //! types takes ten times as long. What telemetry calls is `#[inline]`: it is then compiled in the package that sends it, whose code is
 //! not for the smallest size.
 
-use core::fmt::{self, Write as _};
+use core::fmt;
 
+use contact_model::decimal::Rounded;
 use contact_model::fixed_point::{Celsius, Force};
 
 use thermal_device::Flux;
 use thermal_device::drive::Current;
 use thermal_device::sense::SupplyVoltage;
+use thermal_settings::PersonCode;
 
 /// Capacity of a [`LineBuffer`], bytes: enough for the longest telemetry and the longest answer to `state`.
 const LINE_CAPACITY_BYTES: usize = 160;
@@ -46,11 +48,39 @@ impl LineBuffer {
         self.push_if_fits(ascii.as_bytes());
     }
 
-    /// Appends what is written, each part as a whole if it fits.
+    /// Appends a number with so many decimals, nine at most.
     #[inline(never)]
-    pub fn push_display(&mut self, value: &dyn fmt::Display) {
-        // Nothing fails but what is written.
-        let _ = write!(Parts(self), "{value}");
+    pub fn push_decimal(&mut self, value: f64, digits: usize) {
+        let (whole, fraction) = Rounded(value, digits).whole_and_fraction();
+        if value.is_sign_negative() {
+            self.push_str_if_fits("-");
+        }
+        self.push_integer(whole);
+        let mut decimals = [b'.'; 10];
+        if let Some(places) = decimals.get_mut(..=digits).filter(|_| digits > 0) {
+            put_digits(fraction, places.get_mut(1..).unwrap_or_default());
+            self.push_if_fits(places);
+        }
+    }
+
+    /// Appends a byte as two hexadecimal digits, `A` or `a` being the first letter.
+    #[inline(never)]
+    pub fn push_hexadecimal(&mut self, byte: u8, first_letter: u8) {
+        let digits = [byte >> 4, byte & 0x0f];
+        self.push_if_fits(&digits.map(|digit| {
+            let first = if digit < 10 { b'0' } else { first_letter - 10 };
+            first + digit
+        }));
+    }
+
+    /// Appends a person's code.
+    #[inline(never)]
+    pub fn push_person_code(&mut self, code: PersonCode) {
+        for byte in code.to_bytes() {
+            if byte != 0 {
+                self.push_if_fits(&[byte]);
+            }
+        }
     }
 
     #[inline]
@@ -156,16 +186,6 @@ impl LineBuffer {
         }
         put_digits(value, whole);
         self.length = end;
-    }
-}
-
-/// A line to which parts of a text are appended.
-struct Parts<'a>(&'a mut LineBuffer);
-
-impl fmt::Write for Parts<'_> {
-    fn write_str(&mut self, ascii: &str) -> fmt::Result {
-        self.0.push_str_if_fits(ascii);
-        Ok(())
     }
 }
 

@@ -2,9 +2,7 @@
 
 use core::fmt::{self, Display as _};
 
-use contact_model::decimal::Rounded;
-
-use crate::LineBuffer;
+use crate::{Argument, LineBuffer};
 
 /// An answer that is being written: a beginning, then words.
 pub struct AnswerLine<'a, 'b> {
@@ -15,25 +13,24 @@ pub struct AnswerLine<'a, 'b> {
 }
 
 impl<'a, 'b> AnswerLine<'a, 'b> {
-    /// An answer that begins so, with `ok` or why something is refused. `names` are those of its values, each with a space behind it:
-    /// an address and a length for each of them would take 0.7 KB of flash.
-    #[inline(never)]
-    pub fn new(
-        formatter: &'a mut fmt::Formatter<'b>,
-        beginning: &str,
-        names: &'static str,
-    ) -> Self {
+    /// An answer that begins so, with `ok` or why something is refused.
+    pub fn new(formatter: &'a mut fmt::Formatter<'b>, beginning: &str) -> Self {
         let mut buffer = LineBuffer::new();
         buffer.push_str_if_fits(beginning);
-        Self { formatter, buffer, names, result: Ok(()) }
+        Self { formatter, buffer, names: "", result: Ok(()) }
+    }
+
+    /// The values that follow have these names, each with a space behind it: an address and a length for each of them would take
+    /// 0.7 KB of flash.
+    pub const fn begin_values(&mut self, names: &'static str) {
+        self.names = names;
     }
 
     /// Appends a word.
     #[inline(never)]
     pub fn word(&mut self, word: &str) -> &mut LineBuffer {
         // An answer can be longer than the buffer, a value cannot.
-        self.result = self.result.and(self.buffer.fmt(self.formatter));
-        self.buffer.clear();
+        self.hand_on();
         self.buffer.push_str_if_fits(" ");
         self.buffer.push_str_if_fits(word);
         &mut self.buffer
@@ -66,16 +63,28 @@ impl<'a, 'b> AnswerLine<'a, 'b> {
     pub fn numbers(&mut self, names: &[&str], numbers: &[f64], decimals: &[i32]) {
         self.next_name();
         for ((name, number), decimals) in names.iter().zip(numbers).zip(decimals) {
-            self.name(name).push_display(&Rounded(*number, *decimals as usize));
+            self.name(name).push_decimal(*number, *decimals as usize);
         }
+    }
+
+    /// Appends an argument, as a host would send it.
+    pub fn argument(&mut self, argument: &impl Argument) {
+        self.hand_on();
+        self.result = self.result.and(argument.write(self.formatter));
+    }
+
+    #[inline(never)]
+    fn hand_on(&mut self) {
+        self.result = self.result.and(self.buffer.fmt(self.formatter));
+        self.buffer.clear();
     }
 
     /// Ends the answer.
     ///
     /// # Errors
     /// That of the formatter.
-    #[inline(never)]
-    pub fn end(self) -> fmt::Result {
-        self.result.and(self.buffer.fmt(self.formatter))
+    pub fn end(mut self) -> fmt::Result {
+        self.hand_on();
+        self.result
     }
 }

@@ -22,10 +22,11 @@ use crate::PersonData;
 #[cfg(feature = "host")]
 use crate::host::{Answer, AnswerForm, FieldRow, Fields, NamedValues};
 use crate::kind::*;
+use crate::setting::Setting;
 use field::*;
 
 pub use board_status::{BoardStatus, ClockSource, Watchdogs};
-use line::AnswerLine;
+pub use line::AnswerLine;
 pub use person::{PersonCodes, PersonReply};
 
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
@@ -39,33 +40,28 @@ pub trait DeviceAnswer {
     /// Name of the first value, and the word that stands there for an answer that the device does not have.
     const NONE: (&'static str, &'static str);
 
-    /// Writes the values after a beginning, without a line ending.
-    ///
-    /// # Errors
-    /// Those of the formatter.
-    fn write_after(&self, beginning: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result;
-
-    /// Writes the answer: the values after `ok`.
-    ///
-    /// # Errors
-    /// Those of the formatter.
-    fn write_answer(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.write_after("ok", f)
-    }
+    /// Appends the values.
+    fn write_values(&self, line: &mut AnswerLine<'_, '_>);
 }
 
 impl<A: DeviceAnswer> DeviceAnswer for Option<A> {
     const NONE: (&'static str, &'static str) = A::NONE;
 
-    fn write_after(&self, beginning: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn write_values(&self, line: &mut AnswerLine<'_, '_>) {
         match self {
-            Some(answer) => answer.write_after(beginning, f),
-            None => {
-                let mut line = AnswerLine::new(f, beginning, "");
-                line.name(A::NONE.0).push_str_if_fits(A::NONE.1);
-                line.end()
-            }
+            Some(answer) => answer.write_values(line),
+            None => line.name(A::NONE.0).push_str_if_fits(A::NONE.1),
         }
+    }
+}
+
+/// Answer to `settings N`: the line that restores this part of the settings.
+impl DeviceAnswer for Setting {
+    const NONE: (&'static str, &'static str) = ("", "");
+
+    fn write_values(&self, line: &mut AnswerLine<'_, '_>) {
+        line.word("set");
+        line.argument(self);
     }
 }
 
@@ -83,12 +79,11 @@ macro_rules! answers {
             impl DeviceAnswer for $device {
                 const NONE: (&'static str, &'static str) = [$(($first, $none),)? ("", "")][0];
 
-                fn write_after(&self, beginning: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                fn write_values(&self, line: &mut AnswerLine<'_, '_>) {
                     let $from = self;
-                    let mut line = AnswerLine::new(f, beginning, concat!($($name, " "),+));
+                    line.begin_values(concat!($($name, " "),+));
                     $($(line.name($first).push_str_if_fits($some);)?)?
-                    $(<$kind as Field>::write(&mut line, $value);)+
-                    line.end()
+                    $(<$kind as Field>::write(line, $value);)+
                 }
             }
 

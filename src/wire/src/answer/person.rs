@@ -1,9 +1,8 @@
 //! Answers about persons.
 
-use core::fmt;
-
 use thermal_settings::{Person, PersonCode, Persons};
 
+use crate::LineBuffer;
 use crate::kind::NOBODY_WORD;
 
 /// A person in the answers to `person` and `person enrol`.
@@ -31,16 +30,17 @@ impl PersonCodes {
     }
 }
 
-/// Writes the codes with commas; `none` without any.
-impl fmt::Display for PersonCodes {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl PersonCodes {
+    /// Appends the codes with commas; `none` without any.
+    pub(crate) fn write(&self, line: &mut LineBuffer) {
+        let mut separator = "";
+        for code in &self.0 {
+            line.push_str_if_fits(separator);
+            line.push_person_code(*code);
+            separator = ",";
+        }
         if self.0.is_empty() {
-            return f.write_str(NOBODY_WORD);
+            line.push_str_if_fits(NOBODY_WORD);
         }
-        for (index, code) in self.0.iter().enumerate() {
-            f.write_str(if index > 0 { "," } else { "" })?;
-            code.fmt(f)?;
-        }
-        Ok(())
     }
 }
