@@ -17,31 +17,42 @@ pub struct Entry<'a> {
     pub source: Source,
 }
 
-/// The entry of a field, bound to a variable of the same name: unit, meaning, tolerance, allowed range, source. The part's
-/// name is [prefixed](prefixed) later.
-macro_rules! entry {
-    ($field:ident, $unit:expr, $meaning:expr, $tolerance:expr, $allowed:expr, $source:expr $(,)?) => {
-        $crate::parameters::entry::Entry {
-            key: stringify!($field).into(),
-            value: $field,
-            unit: $unit,
-            meaning: $meaning,
-            tolerance: $tolerance,
-            allowed: $allowed,
-            may_be_infinite: false,
-            source: $source,
+/// Declares the parameters of parts from their rows: a function for each part that returns their entries. A field without a row is an
+/// error of the compiler.
+macro_rules! parameters {
+    ($(
+        $(#[$doc:meta])*
+        fn $entries:ident($part:ident $(, $argument:ident: $kind:ty)*) named $name:tt {$(
+            $field:ident
+            $(: $unit:literal, $tolerance:expr, $allowed:tt $($or_infinite:ident)?, $meaning:literal, $source:expr)?
+            $(=> $of_field:expr)?;
+        )+}
+    )+) => {$(
+        $(#[$doc])*
+        pub fn $entries<'a>(part: &'a mut $part $(, $argument: $kind)*) -> Vec<Entry<'a>> {
+            // The error of a field without a row names the field and its struct; that of an exhaustive pattern in a macro does not.
+            let _ = |part: $part| $part { $($field: part.$field),+ };
+            let $part { $($field,)+ .. } = part;
+            let mut all = Vec::new();
+            $(
+                // The field is a number, or an option of one.
+                $(all.extend(Option::from($field).map(|value: &'a mut f64| Entry {
+                    key: format!("{}.{}", $name, stringify!($field)),
+                    value,
+                    unit: $unit,
+                    meaning: $meaning,
+                    tolerance: $tolerance,
+                    allowed: $allowed,
+                    may_be_infinite: false,
+                    source: $source,
+                }$(.$or_infinite())?));)?
+                $(all.extend($of_field);)?
+            )+
+            all
         }
-    };
+    )+};
 }
-pub(super) use entry;
-
-/// The entries of a part with its name in front of their keys.
-pub fn prefixed<'a>(
-    part: &str,
-    entries: impl IntoIterator<Item = Entry<'a>>,
-) -> impl Iterator<Item = Entry<'a>> {
-    entries.into_iter().map(move |entry| Entry { key: format!("{part}.{}", entry.key), ..entry })
-}
+pub(super) use parameters;
 
 impl Entry<'_> {
     /// Allows an infinite value, too.

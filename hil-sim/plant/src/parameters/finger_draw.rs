@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::finger::{SKIN, entries};
+use super::table::{self, SKIN};
 use super::tolerance::{Tolerance, between, factor, relative};
 use crate::finger::FingerParams;
 
@@ -88,9 +88,8 @@ pub fn draw_finger(finger: &mut FingerParams, seed: u64, with_tissue: bool) -> F
     // Uniform from 0 to 1.
     let part = |name| drawn(between(0.0, 1.0), 0.0, name);
     let tissue = with_tissue.then(|| {
-        let skin = format!("{SKIN}.");
-        for entry in &mut entries(finger) {
-            if !entry.key.starts_with(&skin) {
+        for mut entry in table::finger(finger) {
+            if !entry.is_of(SKIN) {
                 entry.draw(seed);
             }
         }

@@ -1,21 +1,12 @@
 //! All parameters of the plant by key, with tolerance, allowed range and source.
 //!
-//! There is one table for each part; the nominal values are only in [`Params`]. Parameters are drawn from their tolerances
-//! independently, also those that are correlated in reality (the conductivity of the skin in the contact and below it), so
-//! the drawn devices differ somewhat more than real ones.
+//! The table in `table.rs` has a row for each; the nominal values are only in [`Params`]. Parameters are drawn from their
+//! tolerances independently, also those that are correlated in reality (the conductivity of the skin in the contact and below
+//! it), so the drawn devices differ somewhat more than real ones.
 
-mod bridge;
-mod comparator;
-mod contact;
 mod entry;
-mod finger;
 mod finger_draw;
-mod flux;
-mod host;
-mod sensors;
-mod supply;
-mod surface;
-mod tile;
+mod table;
 mod tolerance;
 
 use serde::Serialize;
@@ -157,14 +148,14 @@ pub fn set(params: &mut Params, key: &str, value: f64) -> Result<(), ParameterEr
 /// others.
 pub fn draw(params: &mut Params, seed: u64) {
     let mut entries = entries(params);
-    for entry in entries.iter_mut().filter(|entry| !entry.is_of(contact::PART)) {
+    for entry in entries.iter_mut().filter(|entry| !entry.is_of(table::CONTACT)) {
         entry.draw(seed);
     }
 }
 
 /// Draws the parameters of the contact in the same way.
 pub fn draw_contact(params: &mut Params, seed: u64) {
-    for mut entry in contact::entries(&mut params.contact) {
+    for mut entry in table::contact(&mut params.contact) {
         entry.draw(seed);
     }
 }
@@ -178,20 +169,20 @@ pub fn check(params: &Params) -> Result<(), ParameterError> {
     entries(&mut params).iter().try_for_each(Entry::check)
 }
 
-/// Entries of all parameters. The structs are destructured, so the compiler reports a field without an entry.
+/// Entries of all parameters.
 fn entries(params: &mut Params) -> Vec<Entry<'_>> {
     let Params { finger, display, contact, tile, sensors, flux, bridge, comparator, supply, host } =
         params;
-    let mut all = finger::entries(finger);
-    all.extend(surface::entries("display", display, surface::DISPLAY));
-    all.extend(contact::entries(contact));
-    all.extend(tile::entries(tile));
-    all.extend(bridge::entries(bridge));
-    all.extend(comparator::entries(comparator));
-    all.extend(supply::entries(supply));
-    all.extend(sensors::entries(sensors));
-    all.extend(flux.iter_mut().flat_map(flux::entries));
-    all.extend(host::entries(host));
+    let mut all = table::finger(finger);
+    all.extend(table::display(display));
+    all.extend(table::contact(contact));
+    all.extend(table::tile(tile));
+    all.extend(table::bridge(bridge));
+    all.extend(table::comparator(comparator));
+    all.extend(table::supply(supply));
+    all.extend(table::sensors(sensors));
+    all.extend(flux.iter_mut().flat_map(table::flux));
+    all.extend(table::host(host));
     all
 }
 
