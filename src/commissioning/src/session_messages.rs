@@ -3,7 +3,9 @@
 use contact_model::fixed_point::ContactPairError;
 use thermal_device::command::Refused;
 use thermal_settings::DisplaySurface;
-use thermal_wire::answer::{PointsAndWorst, SensorWithState, SettingLines, TileWithMargins};
+use thermal_wire::answer::{
+    AnswerLine, DeviceAnswer, PointsAndWorst, SensorWithState, SettingLines, TileWithMargins,
+};
 #[cfg(doc)]
 use thermal_wire::request::SessionRequest;
 use thermal_wire::setting::Setting;
@@ -30,6 +32,21 @@ pub enum SessionReply {
     SettingsLines(SettingLines),
     /// One line of the settings: reply to [`SessionRequest::QuerySetting`].
     Setting(Setting),
+}
+
+impl DeviceAnswer for SessionReply {
+    fn write_values(&self, line: &mut AnswerLine<'_, '_>) {
+        match self {
+            Self::Done => {}
+            Self::Tile(tile) => tile.write_values(line),
+            Self::PointAdded(fit) => fit.write_values(line),
+            Self::Flux(flux) => flux.write_values(line),
+            Self::DisplaySurface(surface) => surface.write_values(line),
+            Self::SettingsLines(count) => count.write_values(line),
+            // The host can restore this part later by sending the line that follows `ok`.
+            Self::Setting(setting) => setting.write_values(line),
+        }
+    }
 }
 
 /// Why a commissioning session rejects a request. The settings are unchanged then.

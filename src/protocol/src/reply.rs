@@ -50,33 +50,8 @@ impl Reply {
         match self {
             Self::Identity(identity) => identity.write_values(line),
             Self::Board(status) => status.write_values(line),
-            Self::Station(reply) => match reply {
-                command::Reply::Status(status) => status.write_values(line),
-                command::Reply::Law(law) => law.write_values(line),
-                command::Reply::Cause(cause) => cause.write_values(line),
-                command::Reply::SelfTest(report) => report.write_values(line),
-                command::Reply::Raw(samples) => samples.write_values(line),
-                command::Reply::Finger(finger) => finger.write_values(line),
-                command::Reply::ContactLaw(law) => law.write_values(line),
-                // No line from the host requests a material's properties. Averages, normal equations and flux are evaluated by
-                // commissioning sessions, persons by the handler.
-                command::Reply::Done
-                | command::Reply::Material(_)
-                | command::Reply::Average(_)
-                | command::Reply::Flux(_)
-                | command::Reply::Person(_)
-                | command::Reply::FluxZero(_)
-                | command::Reply::NormalEquation(_) => {}
-            },
-            Self::Commissioning(reply) => match reply {
-                SessionReply::Tile(tile) => tile.write_values(line),
-                SessionReply::PointAdded(fit) => fit.write_values(line),
-                SessionReply::Flux(flux) => flux.write_values(line),
-                SessionReply::DisplaySurface(surface) => surface.write_values(line),
-                SessionReply::SettingsLines(count) => count.write_values(line),
-                SessionReply::Setting(setting) => setting.write_values(line),
-                SessionReply::Done => {}
-            },
+            Self::Station(reply) => reply.write_values(line),
+            Self::Commissioning(reply) => reply.write_values(line),
             Self::Person(reply) => reply.write_values(line),
             Self::Persons(codes) => write_persons(codes, line),
             Self::Restart(_) => {}

@@ -5,11 +5,9 @@ mod field;
 mod line;
 mod person;
 
-use core::fmt;
-
 use contact_model::contact_law::ContactLaw;
 use contact_model::fixed_point::units_to_f64;
-use thermal_device::command::{AssumedFinger, FluxState, Status as StationStatus};
+use thermal_device::command::{self, AssumedFinger, FluxState, Status as StationStatus};
 use thermal_device::control::Law;
 use thermal_device::learning::FluxSensorTest;
 use thermal_device::reference::ContactModel;
@@ -37,8 +35,8 @@ const CAPABILITIES: &str =
 
 /// What the device answers when it has done what was asked.
 pub trait DeviceAnswer {
-    /// Name of the first value, and the word that stands there for an answer that the device does not have.
-    const NONE: (&'static str, &'static str);
+    /// Name of the first value, and the word that stands there for an answer that the device may not have.
+    const NONE: (&'static str, &'static str) = ("", "");
 
     /// Appends the values.
     fn write_values(&self, line: &mut AnswerLine<'_, '_>);
@@ -57,11 +55,33 @@ impl<A: DeviceAnswer> DeviceAnswer for Option<A> {
 
 /// Answer to `settings N`: the line that restores this part of the settings.
 impl DeviceAnswer for Setting {
-    const NONE: (&'static str, &'static str) = ("", "");
-
     fn write_values(&self, line: &mut AnswerLine<'_, '_>) {
         line.word("set");
         line.argument(self);
+    }
+}
+
+/// What a station replies to a command from the host.
+impl DeviceAnswer for command::Reply {
+    fn write_values(&self, line: &mut AnswerLine<'_, '_>) {
+        match self {
+            Self::Status(status) => status.write_values(line),
+            Self::Law(law) => law.write_values(line),
+            Self::Cause(cause) => cause.write_values(line),
+            Self::SelfTest(report) => report.write_values(line),
+            Self::Raw(samples) => samples.write_values(line),
+            Self::Finger(finger) => finger.write_values(line),
+            Self::ContactLaw(law) => law.write_values(line),
+            // No line from the host requests a material's properties. Averages, normal equations and flux are evaluated by commissioning
+            // sessions, persons by the handler.
+            Self::Done
+            | Self::Material(_)
+            | Self::Average(_)
+            | Self::Flux(_)
+            | Self::Person(_)
+            | Self::FluxZero(_)
+            | Self::NormalEquation(_) => {}
+        }
     }
 }
 
