@@ -386,12 +386,18 @@ fn place_of_form(command: &str, words: &mut Words<'_>) -> Result<usize, ReadErro
         known = form.words.get(..command.len());
         let mut rest = words.clone();
         let has_second_word = others.clone().next().is_some();
+        // Of forms with the same second word the one without arguments comes first.
+        if !has_second_word && matches!(too_long, Some((_, _, true))) {
+            continue;
+        }
         if others.all(|word| rest.next() == Some(word)) {
-            if has_second_word || form.has_arguments || rest.clone().next().is_none() {
+            if form.has_arguments || rest.clone().next().is_none() {
                 *words = rest;
                 return Ok(place);
             }
-            too_long = too_long.or(Some((place, rest)));
+            if has_second_word || too_long.is_none() {
+                too_long = Some((place, rest, has_second_word));
+            }
         } else {
             has_second_words = true;
         }
@@ -399,7 +405,7 @@ fn place_of_form(command: &str, words: &mut Words<'_>) -> Result<usize, ReadErro
     match (known, too_long) {
         (None, _) => Err(ReadError::UnknownCommand(command.into())),
         // What is too much is reported after the arguments.
-        (Some(_), Some((place, rest))) if !has_second_words => {
+        (Some(_), Some((place, rest, has_second_word))) if has_second_word || !has_second_words => {
             *words = rest;
             Ok(place)
         }
