@@ -308,6 +308,9 @@ def test_all_questions_are_understood(hil_sim: str) -> None:
         display.skin(33)
         display.trigger_out("land", "start")
         display.trigger_out()
+        assert display.trigger_pulse() == 10
+        display.set_trigger_pulse(25)
+        assert display.trigger_pulse() == 25
         display.object_temperature(20)
         status = display.state()
         assert (status.mode, status.object_c, status.state) == ("semi-infinite", 20.0, State.ARMED)

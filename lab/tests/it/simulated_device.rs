@@ -13,7 +13,8 @@ use thermal_device::safety::ThermistorId;
 use thermal_lab::client::{
     Calibrate, Client, ClientError, Command, CountSettings, DeviceRequest, PointOrClear,
     QueryAssumedFinger, QueryBoard, QueryCause, QueryFlux, QueryIdentity, QueryLaw, QueryMargins,
-    QueryRaw, QuerySelfTest, QuerySetting, QueryState, SessionRequest, StationRequest, upload,
+    QueryRaw, QuerySelfTest, QuerySetting, QueryState, QueryTriggerPulse, SessionRequest,
+    StationRequest, upload,
 };
 use thermal_lab::commissioning::{arm, clear_calibration};
 use thermal_lab::link::{Link, SimulatedLink};
@@ -86,6 +87,11 @@ fn the_device_takes_every_order_in_the_form_that_the_client_writes() {
     assert_eq!((status.mode, status.body.as_str()), (ContactModel::SemiInfinite, "upload"));
     assert_eq!(client.ask(&QueryLaw).unwrap().law, Law::Pi10Hz);
     assert_eq!(client.ask(&QueryAssumedFinger).unwrap().finger, AssumedFinger::MeanOnPad);
+    assert_eq!(client.ask(&QueryTriggerPulse).unwrap().pulse_ms, 10);
+    client.ask(&StationRequest::TriggerPulse { pulse_ms: 200.into() }).unwrap();
+    assert_eq!(client.ask(&QueryTriggerPulse).unwrap().pulse_ms, 200);
+    let too_long = client.ask(&StationRequest::TriggerPulse { pulse_ms: 201.into() }).unwrap_err();
+    assert!(too_long.refusal().unwrap().starts_with("pulse '201' out of range; 1 to 200 ms"));
     assert_eq!(client.ask(&QueryCause).unwrap(), None);
     // The board has no sensor.
     client.wait(Duration::from_millis(600)).unwrap();

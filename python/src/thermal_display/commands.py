@@ -335,8 +335,16 @@ class Commands:
         self._connection.set_stream(self._finger, Stream.of(int(interval_ms), chosen))
 
     def trigger_out(self, *kinds: TriggerEvent) -> None:
-        """The events that give a pulse of 10 ms at the trigger output; without any, none does."""
+        """The events that give a pulse at the trigger output; without any, none does."""
         self._tell(f"trigger-out {','.join(kinds) or 'none'}")
+
+    def set_trigger_pulse(self, pulse_ms: int) -> None:
+        """Length of each pulse at the trigger output from now on, 1 to 200 ms. It is 10 ms after a restart."""
+        self._tell(f"trigger-out pulse {int(pulse_ms)}")
+
+    def trigger_pulse(self) -> int:
+        """Length of a pulse at the trigger output, ms."""
+        return self._connection.ask("trigger-out pulse", lambda reply: reply.value("pulse_ms", int), self._finger)
 
     # Commissioning
 

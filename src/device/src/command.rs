@@ -15,7 +15,7 @@ use thermal_learner::Flux;
 use thermal_settings::Person;
 
 use crate::control::{ControlParameters, Law};
-use crate::events::EventKinds;
+use crate::events::{EventKinds, TriggerPulse};
 use crate::identification::{AbortReason, NormalEquationRow};
 use crate::learning::{FingerKnowledge, FluxParameters, NoContactCodeSum, PersonState};
 use crate::reference::ContactModel;
@@ -208,6 +208,8 @@ pub enum Command<'a> {
     ReportEvents(bool),
     /// Give a pulse at the trigger output at events of these kinds. Never refused.
     TriggerOutput(EventKinds),
+    /// Give pulses of this length at the trigger output from the next event on; `None` asks for the present one. Never refused.
+    TriggerPulse(Option<TriggerPulse>),
     /// Assume this temperature of the skin before contact, °C, for set-points, or that of the sensor for `None`. If a
     /// finger touches, a new contact begins. Limits, dose and detectors keep the sensor.
     AssumeSkin(Option<Celsius>),
@@ -286,6 +288,8 @@ pub enum Reply {
     Finger(AssumedFinger),
     /// Answer to [`Command::ContactLaw`] with `None`: the law in use.
     ContactLaw(ContactLaw),
+    /// Answer to [`Command::TriggerPulse`] with `None`.
+    TriggerPulse(TriggerPulse),
     /// Answer to [`Command::Cause`]: cause of the present trip or, after `clear`, of the last one. `None` if the
     /// station has not tripped since the start of the program, and was not tripped when it started.
     Cause(Option<TripCause>),

@@ -5,8 +5,20 @@ use thermal_settings::vocabulary;
 use crate::command::WithSourceFinger;
 use crate::telemetry::Telemetry;
 
-/// Length of a pulse at the trigger output, ticks of 1 ms. Recorders that sample at 250 Hz or more see it.
-pub const TRIGGER_PULSE_TICKS: u8 = 10;
+/// Length of a pulse at the trigger output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TriggerPulse {
+    /// Length, ms, above 0.
+    pub ms: u8,
+}
+
+impl Default for TriggerPulse {
+    /// Recorders that sample at 250 Hz or more see it.
+    fn default() -> Self {
+        Self { ms: 10 }
+    }
+}
+
 /// Events that are kept until they are fetched; a tick has at most four.
 const EVENTS_KEPT_MAX: usize = 8;
 // The counts of the ring wrap at 256.
@@ -85,6 +97,8 @@ pub struct EventReporter {
     reports: bool,
     /// Events that give a pulse at the trigger output.
     pub marked: EventKinds,
+    /// Length of such a pulse.
+    pub pulse: TriggerPulse,
     pulse_ticks_left: u8,
     /// A ring; a queue with a loop or a `memmove` would be code of the control path to argue for.
     kept: [Option<DeviceEvent>; EVENTS_KEPT_MAX],
@@ -108,7 +122,7 @@ impl EventReporter {
     #[inline(never)]
     pub fn note(&mut self, kind: DeviceEventKind, tick: u32, microseconds: u16) {
         if self.marked.contains(kind) {
-            self.pulse_ticks_left = TRIGGER_PULSE_TICKS;
+            self.pulse_ticks_left = self.pulse.ms;
         }
         let place = &mut self.kept[usize::from(self.end) % EVENTS_KEPT_MAX];
         if self.reports && place.is_none() {
@@ -181,16 +195,20 @@ mod tests {
     }
 
     #[test]
-    fn a_marked_event_gives_a_pulse_of_10_ticks_and_another_one_none() {
+    fn a_marked_event_gives_a_pulse_of_the_chosen_length_and_another_one_none() {
         let mut reporter = EventReporter {
             marked: EventKinds::NONE.with(DeviceEventKind::CourseEnded),
             ..EventReporter::default()
         };
-        for (kind, ticks) in
-            [(DeviceEventKind::CourseStarted, 0), (DeviceEventKind::CourseEnded, 10)]
-        {
+        for (kind, pulse, ticks) in [
+            (DeviceEventKind::CourseStarted, TriggerPulse::default(), 0),
+            (DeviceEventKind::CourseEnded, TriggerPulse::default(), 10),
+            (DeviceEventKind::CourseEnded, TriggerPulse { ms: 1 }, 1),
+            (DeviceEventKind::CourseEnded, TriggerPulse { ms: 200 }, 200),
+        ] {
+            reporter.pulse = pulse;
             reporter.note(kind, 5, 0);
-            let high = (0..30).filter(|_| reporter.next_trigger_output()).count();
+            let high = (0..300).filter(|_| reporter.next_trigger_output()).count();
             assert_eq!(high, ticks, "{kind:?}");
         }
     }

@@ -4,6 +4,7 @@ use contact_model::contact_law::ContactLaw;
 use contact_model::material::{Material, Surface};
 use contact_model::slab::Back;
 use thermal_device::command::{ChosenContactLaw, ChosenMaterial, Command, ObjectBody};
+use thermal_device::events::TriggerPulse;
 use thermal_device::safety::Setpoint;
 use thermal_device::stimulus::{Hold, PlayOrder};
 use thermal_settings::DisplaySurface;
@@ -45,6 +46,10 @@ pub fn station_work(request: &StationRequest, display: &Surface) -> Result<Stati
         }
         StationRequest::Events { switch } => Command::ReportEvents(switch.is_on()),
         StationRequest::TriggerOutput { kinds } => Command::TriggerOutput(kinds),
+        StationRequest::QueryTriggerPulse => Command::TriggerPulse(None),
+        StationRequest::TriggerPulse { pulse_ms } => {
+            Command::TriggerPulse(Some(TriggerPulse { ms: pulse_ms.get() as u8 }))
+        }
         StationRequest::CustomMaterial {
             conductivity_w_mk,
             density_kg_m3,

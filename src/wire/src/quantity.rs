@@ -24,6 +24,9 @@ quantities! {
     /// Time from one line of telemetry to the next, ms; 0 switches telemetry off.
     StreamInterval = "interval", "ms", 0.0, 60_000.0;
 
+    /// Length of a pulse at the trigger output, ms.
+    PulseLength = "pulse", "ms", 1.0, 200.0;
+
     /// Temperature of an object before contact, °C.
     ObjectTemperature = "object temperature", "C", -20.0, 60.0;
     /// Thickness of a slab, mm.

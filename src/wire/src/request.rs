@@ -198,6 +198,10 @@ requests! {
         "stream" => Stream { interval_ms: Number<StreamInterval>, fields: TelemetryFields };
         /// Report events, or none.
         "events" => Events { switch: Switch };
+        /// Length of a pulse at the trigger output.
+        "trigger-out" "pulse" => QueryTriggerPulse [QueryTriggerPulse -> TriggerPulseReport];
+        /// Length of each pulse at the trigger output from now on.
+        "trigger-out" "pulse" => TriggerPulse { pulse_ms: Whole<PulseLength> };
         /// Mark these events at the trigger output.
         "trigger-out" => TriggerOutput { kinds: EventKinds };
 

@@ -39,7 +39,7 @@ pub use thermal_wire::request::{
     Calibrate, CountSettings, DeviceRequest, EnrolPerson, PersonRequest, QueryAssumedFinger,
     QueryBoard, QueryCause, QueryContactLaw, QueryDisplaySurface, QueryFlux, QueryIdentity,
     QueryLaw, QueryMargins, QueryPerson, QueryPersons, QueryRaw, QuerySelfTest, QuerySetting,
-    QueryState, SessionRequest, StationRequest, TuneResult,
+    QueryState, QueryTriggerPulse, SessionRequest, StationRequest, TuneResult,
 };
 pub use thermal_wire::{PersonData, PointOrClear, UploadLine};
 

@@ -27,6 +27,8 @@ impl Station {
             Command::Law(Some(law)) => self.controller.select_law(law),
             Command::ReportEvents(on) => self.events.switch_reports(on),
             Command::TriggerOutput(kinds) => self.events.marked = kinds,
+            Command::TriggerPulse(None) => return Ok(Reply::TriggerPulse(self.events.pulse)),
+            Command::TriggerPulse(Some(pulse)) => self.events.pulse = pulse,
             Command::Stream { interval_ms, fields } => {
                 self.telemetry_fields = fields;
                 self.telemetry_ticks = interval_ms * (TICK_HZ / 1000);

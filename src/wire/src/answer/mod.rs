@@ -9,6 +9,7 @@ use contact_model::contact_law::ContactLaw;
 use contact_model::fixed_point::units_to_f64;
 use thermal_device::command::{self, AssumedFinger, FluxState, Status as StationStatus};
 use thermal_device::control::Law;
+use thermal_device::events::TriggerPulse;
 use thermal_device::learning::FluxSensorTest;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::{Fault, SelfTestReport as StationSelfTest, SideLine, TripCause};
@@ -72,6 +73,7 @@ impl DeviceAnswer for command::Reply {
             Self::Raw(samples) => samples.write_values(line),
             Self::Finger(finger) => finger.write_values(line),
             Self::ContactLaw(law) => law.write_values(line),
+            Self::TriggerPulse(pulse) => pulse.write_values(line),
             // No line from the host requests a material's properties. Averages, normal equations and flux are evaluated by commissioning
             // sessions, persons by the handler.
             Self::Done
@@ -240,6 +242,10 @@ answers! {
     /// Answer to `contact`.
     ContactLawReport from ContactLaw as law {
         "law" law: ContactLawNumbers, "Contact law in use" = *law;
+    }
+    /// Answer to `trigger-out pulse`.
+    TriggerPulseReport from TriggerPulse as pulse {
+        "pulse_ms" pulse_ms: SmallCount, "Length of a pulse at the trigger output, ms" = pulse.ms;
     }
     /// Answer to `cause`: why the device tripped, now or the last time.
     Cause from TripCause as cause, or "cause" = "-" {
