@@ -3,6 +3,7 @@
 //! A [`Command`] writes its line, and its answer is read; [`Client`] sends it, waits for its answer, keeps telemetry apart from
 //! answers, and sends the sign of life that a streaming device needs.
 
+mod available_fields;
 mod clock;
 mod error;
 mod event;
@@ -24,6 +25,7 @@ use crate::link::{Link, LinkError, ReceivedLine};
 use crate::text::escaped_line;
 use streams::{Stream, TelemetryStreams};
 
+pub use available_fields::AvailableFields;
 pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
 pub use event::ReceivedEvent;
