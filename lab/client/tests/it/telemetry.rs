@@ -194,6 +194,20 @@ fn a_line_that_waited_while_its_fields_were_changed_is_dropped() {
     assert_eq!((counts.dropped, counts.damaged, counts.lost), (2, 0, 0));
 }
 
+#[test]
+fn a_stream_that_was_ended_goes_on_with_the_same_fields_without_a_loss() {
+    let mut client = FakeDevice::client(|_| answers("ok"));
+    for tick in [5, 11] {
+        client.ask(&StationRequest::stream_fields(5, &["setpoint"])).unwrap();
+        client.link().sends(5, &format!("T {tick} armed 33.00000 -"));
+        client.wait(Duration::from_millis(6)).unwrap();
+        let taken = client.next_telemetry(Duration::ZERO).unwrap();
+        assert_eq!(taken.map(|line| line.telemetry.tick), Some(tick));
+        client.ask(&StationRequest::stream(0)).unwrap();
+    }
+    assert_eq!(client.counts().dropped, 0);
+}
+
 /// What a finger of a device has whose firmware has these capabilities.
 fn available(capabilities: &str, has_flux_sensor: bool) -> AvailableFields {
     let id = format!(
