@@ -41,6 +41,7 @@ COLUMNS: tuple[Column, ...] = (
     Column("flux", "flux_w_m2", "number"),
     Column("surface", "surface_c", "number"),
     Column("finger", "known", "word"),
+    Column("check", "check_c", "number"),
     # /generated
 )
 """The fields in the order of a line."""
@@ -103,6 +104,7 @@ class Sample:
     flux_w_m2: float
     surface_c: float
     known: str
+    check_c: float
     # /generated
 
     @property

@@ -155,6 +155,9 @@ fields! {
         "surface" surface_c: Temperature<4>, "degC", "Estimate of the display's surface under the finger" = line.flux.and_then(|state| state.surface);
         "finger" known: Knowledge, "", "What is known of the finger by its flux" = line.flux.map(|state| state.knowledge);
     }
+    since "check" {
+        "check" check_c: Temperature<4>, "degC", "Second thermistor of the display, which checks the first one" = line.telemetry.check;
+    }
 }
 
 pub(crate) use capabilities_of_fields;

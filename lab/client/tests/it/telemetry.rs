@@ -281,6 +281,7 @@ fn the_fields_of_a_heat_flux_sensor_are_read_into_their_columns() {
         ("flux_w_m2", "2103.5"),
         ("surface_c", "30.125"),
         ("known", "trusted"),
+        ("check_c", ""),
     ];
     assert_eq!(cells, expected.map(|(name, text)| (name, text.to_owned())));
     let numbers: Vec<_> = fields.further_columns().map(|column| column.number(&line)).collect();
