@@ -7,6 +7,7 @@ import pytest
 
 from thermal_display import (
     FLUX_FIELDS,
+    TELEMETRY_DTYPE,
     TELEMETRY_FIELDS,
     EventKind,
     State,
@@ -197,7 +198,9 @@ def test_replies_are_read() -> None:
 
 
 def _row(tick: int) -> tuple[object, ...]:
-    return (tick, 0, "off", *[0.0] * 8, 0, "-", 0.0, 0.0, 0, 0.0, 0.0, "")
+    row = np.zeros(1, dtype=TELEMETRY_DTYPE)
+    row["tick"] = tick
+    return tuple(row[0])
 
 
 def test_the_ring_keeps_the_newest_rows_and_counts_the_others() -> None:

@@ -364,6 +364,6 @@ fn the_host_chooses_the_fields_of_telemetry() {
     bench.send_ok(&["stream 1"]);
     let line = bench.step_and_line();
     assert_eq!(line.split(' ').count(), 13, "{line}");
-    let unknown = "err unknown field 'heat'; known: setpoint display sink skin room force demand current evaluations flux surface finger";
+    let unknown = "err unknown field 'heat'; known: setpoint display sink skin room force demand current evaluations flux surface finger check";
     assert_eq!(bench.send("stream 1 heat"), unknown);
 }

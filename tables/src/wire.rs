@@ -8,7 +8,7 @@ use thermal_device::reference::ContactModel;
 use thermal_device::safety::ThermistorId;
 use thermal_device::stimulus::{CourseEnd, CourseStart};
 use thermal_device::{TelemetryFields, Vocabulary};
-use thermal_wire::host::{ArgumentForm, COLUMNS, Column, RequestForm, ValueForm};
+use thermal_wire::host::{ArgumentForm, COLUMNS, Column, Need, RequestForm, ValueForm};
 use thermal_wire::request::TABLE;
 use thermal_wire::telemetry::{DEFAULT_FIELDS, FLUX_FIELDS, NAMES};
 
@@ -85,10 +85,12 @@ fn attribute(column: &Column) -> String {
 
 /// Rows of the fields: those of every line, and those that are there if they are named.
 fn fields() -> String {
-    let named_only = &COLUMNS[Column::default_ones().len()..];
     let rows = COLUMNS.iter().map(|column| {
-        let is_named = named_only.iter().any(|other| other.name == column.name);
-        let only = if is_named { "only if named: " } else { "" };
+        let only = match column.need {
+            Need::Nothing => "",
+            Need::FluxSensor => "only if named: ",
+            Need::Capability(word) => &format!("only if named, with the capability `{word}`: "),
+        };
         let unit = match (column.form, column.unit) {
             (ValueForm::Word(_), _) => "word",
             (ValueForm::Number, "degC") => "°C",

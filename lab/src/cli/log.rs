@@ -8,7 +8,8 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use anyhow::Context;
 use clap::Args;
 use thermal_client::client::{
-    ClientError, QueryIdentity, ReceivedTelemetry, StationRequest, TelemetryColumn, TickTime,
+    AvailableFields, ClientError, QueryIdentity, ReceivedTelemetry, StationRequest,
+    TelemetryColumn, TickTime,
 };
 use thermal_client::link::{Link, LinkError};
 use thermal_sim::commissioning::flux_sensor_line;
@@ -43,11 +44,11 @@ fn duration(text: &str) -> Result<Duration, String> {
 struct Table {
     /// Time of the link's zero, s.
     zero_s: f64,
-    /// Whether a finger of the device has a heat-flux sensor, whose columns come last.
-    has_flux_sensor: bool,
+    /// The fields that a finger of the device has; the columns of those that not every line has come last.
+    fields: AvailableFields,
 }
 
-/// Columns before those of the telemetry, and between them and those of a heat-flux sensor.
+/// Columns before those of every line, and between them and the further ones.
 const BEFORE: [&str; 8] =
     ["received_s", "tick_at_s", "tick_error_s", "lost_before", "finger", "tick", "state", "fault"];
 const AFTER: [&str; 1] = ["limited"];
@@ -58,7 +59,7 @@ impl Table {
         (BEFORE.into_iter())
             .chain(TelemetryColumn::default_ones().iter().map(name))
             .chain(AFTER)
-            .chain(TelemetryColumn::of_flux(self.has_flux_sensor).iter().map(name))
+            .chain(self.fields.further_columns().map(name))
     }
 
     /// The cells of a row; what is not known is empty.
@@ -79,7 +80,7 @@ impl Table {
         (before.into_iter())
             .chain(TelemetryColumn::default_ones().iter().map(cell))
             .chain(after)
-            .chain(TelemetryColumn::of_flux(self.has_flux_sensor).iter().map(cell))
+            .chain(self.fields.further_columns().map(cell))
             .collect()
     }
 }
@@ -95,7 +96,7 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
         {
             client.command(&line).map_err(Failure::run)?;
         }
-        let has_flux_sensor = has_flux_sensor(client).map_err(Failure::run)?;
+        let fields = available_fields(client).map_err(Failure::run)?;
         // Only now, so that a device that is not there leaves no empty file.
         let out: Box<dyn Write> = match &arguments.out {
             Some(path) => {
@@ -112,14 +113,9 @@ pub fn run(target: &Target, arguments: &Arguments) -> Result<(), Failure> {
             let unix = SystemTime::now().duration_since(UNIX_EPOCH);
             unix.map_err(Failure::run)?.as_secs_f64() - client.link().now().as_secs_f64()
         };
-        let table = Table { zero_s, has_flux_sensor };
+        let table = Table { zero_s, fields };
         out.write_record(table.header()).map_err(Failure::run)?;
-        let stream = if has_flux_sensor {
-            StationRequest::stream_with_flux(arguments.interval)
-        } else {
-            StationRequest::stream(arguments.interval)
-        };
-        client.ask(&stream).map_err(Failure::run)?;
+        client.ask(&fields.stream(arguments.interval)).map_err(Failure::run)?;
         let end = arguments.duration.map(|time| client.link().now() + time);
         let logged = log(client, end, &table, &mut out);
         let counts = client.counts();
@@ -165,13 +161,13 @@ fn log(
     Ok(LogEnd::Time)
 }
 
-/// Whether any finger of the device has a heat-flux sensor.
-fn has_flux_sensor(client: &mut AnyClient<'_>) -> Result<bool, ClientError> {
-    let fingers = client.ask(&QueryIdentity)?.fingers;
-    for finger in 0..fingers {
-        if client.flux_report((fingers > 1).then_some(finger))?.is_some() {
-            return Ok(true);
-        }
+/// The fields that any finger of the device has.
+fn available_fields(client: &mut AnyClient<'_>) -> Result<AvailableFields, ClientError> {
+    let identity = client.ask(&QueryIdentity)?;
+    let mut has_flux_sensor = false;
+    for finger in 0..identity.fingers {
+        let address = (identity.fingers > 1).then_some(finger);
+        has_flux_sensor = has_flux_sensor || client.flux_report(address)?.is_some();
     }
-    Ok(false)
+    Ok(AvailableFields::of(&identity, has_flux_sensor))
 }

@@ -196,9 +196,10 @@ fn telemetry_is_logged_with_the_time_of_its_ticks() {
 fn a_log_has_the_columns_of_a_heat_flux_sensor_at_its_end_if_the_device_has_one() {
     const ALWAYS: &str = "received_s,tick_at_s,tick_error_s,lost_before,finger,tick,state,fault,setpoint_c,display_c,sink_c,\
                           skin_c,room_c,force_n,demand_a,current_a,evaluations,limited";
-    for (sensor, header) in
-        [(false, ALWAYS.to_owned()), (true, format!("{ALWAYS},flux_w_m2,surface_c,known"))]
-    {
+    for (sensor, header) in [
+        (false, format!("{ALWAYS},check_c")),
+        (true, format!("{ALWAYS},flux_w_m2,surface_c,known,check_c")),
+    ] {
         let scene = command::scene_file(&format!("log-{sensor}.toml"), "copper", sensor, "");
         let logged =
             run(&format!("log --simulated --scene {} --duration 0.5", scene.to_str().unwrap()));

@@ -161,9 +161,10 @@ fn a_heat_flux_sensor_is_in_the_telemetry_of_a_session_and_in_its_physiological_
     const ALWAYS: &str = "t_s,finger,tick,state,setpoint_c,display_c,sink_c,skin_c,room_c,force_n,demand_a,current_a,\
                           evaluations,remark";
     let (folder, session) = with_session("flux");
-    for (has_flux_sensor, header, columns) in
-        [(false, ALWAYS.to_owned(), 10), (true, format!("{ALWAYS},flux_w_m2,surface_c,known"), 13)]
-    {
+    for (has_flux_sensor, header, columns) in [
+        (false, format!("{ALWAYS},check_c"), 11),
+        (true, format!("{ALWAYS},flux_w_m2,surface_c,known,check_c"), 14),
+    ] {
         let out = folder.join(format!("sensor-{has_flux_sensor}"));
         let options = BenchOptions { has_flux_sensor, ..BenchOptions::default() };
         // The cable is pulled between, and the columns go on.

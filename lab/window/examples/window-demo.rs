@@ -209,8 +209,6 @@ fn line(tick: u32, t_s: f64, screen: &str) -> ReceivedTelemetry {
     ReceivedTelemetry {
         finger: None,
         telemetry: Telemetry {
-            tick,
-            state,
             setpoint_c: Some(32.0 - fall_k),
             display_c: Some(32.0 - fall_k + wobble),
             sink_c: Some(27.4),
@@ -219,12 +217,7 @@ fn line(tick: u32, t_s: f64, screen: &str) -> ReceivedTelemetry {
             force_n: Some(force_n),
             demand_a: Some(if touches { 2.0 } else { -0.6 }),
             current_a: Some(if touches { 2.0 + wobble } else { 0.6 + wobble }),
-            evaluations: None,
-            flux_w_m2: None,
-            surface_c: None,
-            known: None,
-            limited: false,
-            is_untuned: false,
+            ..Telemetry::new(tick, state)
         },
         at: Duration::from_millis(tick.into()),
         lost_before: u32::from(tick == 5000),

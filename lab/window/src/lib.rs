@@ -31,4 +31,4 @@ pub use participant::{Follow, ParticipantView, ShownCue};
 pub use people::{WindowPeople, WindowSide};
 pub use stop::StopFlag;
 pub use tone::{Tones, wav};
-pub use trace::{Sample, Trace};
+pub use trace::Trace;

@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{Client, ClientError, QueryIdentity, ReceivedEvent, StationRequest};
+use thermal_client::client::{
+    AvailableFields, Client, ClientError, QueryIdentity, ReceivedEvent, StationRequest,
+};
 use thermal_client::link::{Link, LinkError};
 use thermal_session::{People, Update};
 
@@ -102,7 +104,8 @@ fn watch<L: Link>(
         Err(error) if error.refusal().is_some() => {}
         Err(error) => return Err(error),
     }
-    client.ask(&StationRequest::stream(interval_ms))?;
+    let fields = AvailableFields::of(&identity, false);
+    client.ask(&fields.stream(interval_ms))?;
     let mut silence = Silence::new(interval_ms, client);
     while !people.is_closing() {
         let notice = match client.next_telemetry(POLL_INTERVAL) {

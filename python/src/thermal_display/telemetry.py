@@ -41,6 +41,7 @@ COLUMNS: tuple[Column, ...] = (
     Column("flux", "flux_w_m2", "number"),
     Column("surface", "surface_c", "number"),
     Column("finger", "known", "word"),
+    Column("check", "check_c", "number"),
     # /generated
 )
 """The fields in the order of a line."""
@@ -66,9 +67,9 @@ TELEMETRY_DTYPE: np.dtype[Any] = np.dtype(
 )
 """Rows of telemetry. `tick` in ms since the device's reset; temperatures in °C, force in N, currents in A; NaN, and -1 for
 `evaluations`, is what the device does not know or was not asked for. `host_s` is when the tick happened and `received_s` when the
-line arrived, both s of `time.perf_counter()`. `lost_before` lines are missing before this one. What the heat-flux sensor shows
-comes last: flux out of the skin, W/m², estimate of the display's surface, and what is known of the finger, a word that is empty if
-it was not asked for or there is no sensor."""
+line arrived, both s of `time.perf_counter()`. `lost_before` lines are missing before this one. The fields that a line has only if
+they are named come last, first what the heat-flux sensor shows: flux out of the skin, W/m², estimate of the display's surface, and
+what is known of the finger, a word that is empty if it was not asked for or there is no sensor."""
 
 TelemetryArray = np.ndarray[Any, np.dtype[np.void]]
 """One-dimensional structured array of `TELEMETRY_DTYPE`."""
@@ -103,6 +104,7 @@ class Sample:
     flux_w_m2: float
     surface_c: float
     known: str
+    check_c: float
     # /generated
 
     @property

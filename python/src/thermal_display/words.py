@@ -170,6 +170,7 @@ TelemetryField = Literal[
     "flux",
     "surface",
     "finger",
+    "check",
     # /generated
 ]
 """Fields of telemetry that `stream` can choose, in the order of a line."""

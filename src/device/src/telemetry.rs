@@ -68,6 +68,9 @@ pub struct Telemetry {
     /// Reading of the first display thermistor, °C, which the control laws use; `None` if the thermistor is open or
     /// shorted.
     pub display: Option<Celsius>,
+    /// Reading of the second display thermistor, °C, which checks the first one: a difference that grows shows a calibration that
+    /// is no longer right before it trips. `None` if the thermistor is open or shorted.
+    pub check: Option<Celsius>,
     /// Reading of the heat sink's thermistor, °C; `None` if the thermistor is open or shorted.
     pub sink: Option<Celsius>,
     /// Reading of the thermistor on the skin beside the contact, °C; the room's temperature if no finger is there.

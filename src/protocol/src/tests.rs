@@ -338,6 +338,7 @@ fn the_longest_answers_fit_their_limit() {
         limited: true,
         is_tuned: true,
         display: Some(Celsius::MIN),
+        check: Some(Celsius::MIN),
         sink: Some(Celsius::MIN),
         skin: Some(Celsius::MIN),
         room: Some(Celsius::MIN),
@@ -361,7 +362,7 @@ fn the_longest_answers_fit_their_limit() {
     let all = Telemetry { fields: ALL_FIELDS, ..longest };
     assert_eq!(
         write(all),
-        line.replace(" display-short", " -524288.0 -512.0000 sensor-range display-short")
+        line.replace(" display-short", " -524288.0 -512.0000 sensor-range -512.0000 display-short")
     );
 }
 

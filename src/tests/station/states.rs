@@ -3,6 +3,8 @@
 use super::TestBench;
 use crate::device::StateName;
 use crate::device::drive::Drive;
+use std::string::ToString as _;
+use thermal_wire::telemetry::TelemetryLine;
 
 #[test]
 fn a_station_is_off_until_it_is_armed() {
@@ -101,7 +103,7 @@ fn state_and_id_report_the_station_and_the_device() {
     );
     assert_eq!(
         bench.send("id"),
-        "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000 protocol=1 capabilities=upload,checksum,board,self-test,raw,course,flux,contact,surface,person,untuned"
+        "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000 protocol=1 capabilities=upload,checksum,board,self-test,raw,course,flux,contact,surface,person,untuned,check"
     );
 }
 
@@ -125,6 +127,15 @@ fn telemetry_is_streamed_at_its_interval() {
         bench.station.step(&samples);
         assert_eq!(bench.station.telemetry_if_due(), None);
     }
+}
+
+#[test]
+fn telemetry_shows_by_how_much_the_second_thermistor_of_the_display_is_off() {
+    let mut bench = TestBench::new();
+    bench.send_ok(&["stream 1 display check"]);
+    bench.check_c = 30.5;
+    let (_, telemetry) = bench.step();
+    assert_eq!(TelemetryLine { telemetry, flux: None }.to_string(), "T 1 off 30.0006 30.4994 -");
 }
 
 #[test]

@@ -85,6 +85,17 @@ impl Serialize for Value {
     }
 }
 
+/// What a device needs to have so that its telemetry can have a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// Nothing: every device has the field.
+    Nothing,
+    /// A heat-flux sensor.
+    FluxSensor,
+    /// Firmware with this capability.
+    Capability(&'static str),
+}
+
 /// A field of telemetry as the column of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Column {
@@ -96,6 +107,8 @@ pub struct Column {
     pub unit: &'static str,
     /// What it is.
     pub description: &'static str,
+    /// What a device needs to have for it.
+    pub need: Need,
     /// What its words can be.
     pub form: ValueForm,
     pub(crate) value: fn(&Telemetry) -> Option<Value>,
@@ -105,11 +118,6 @@ impl Column {
     /// The columns of lines in which the host has named no field: those that every device reports.
     pub fn default_ones() -> &'static [Self] {
         &COLUMNS[..FIELDS_OF_EVERY_LINE]
-    }
-
-    /// The columns of the heat-flux sensor; none without one. They stand at the end of a table.
-    pub fn of_flux(has_sensor: bool) -> &'static [Self] {
-        if has_sensor { &COLUMNS[FIELDS_OF_EVERY_LINE..] } else { &[] }
     }
 
     /// The quantity without its unit, as `display`.

@@ -9,7 +9,7 @@ use thermal_device::command::FluxState;
 
 use crate::LineBuffer;
 #[cfg(feature = "host")]
-use crate::host::Column;
+use crate::host::{Column, Need};
 use crate::kind::{Amperes, Count, Kind, Knowledge, Newtons, Temperature, WattsPerSquareMetre};
 
 /// Word for a value that the device does not know.
@@ -35,14 +35,29 @@ pub struct TelemetryLine {
     pub flux: Option<FluxState>,
 }
 
-/// Declares the fields from their rows: those of every line, and those of lines in which the host has named them.
+/// Declares the fields from their rows, in groups by what a device needs to have for them. Those of `every` line are there if the
+/// host names no field, the others only if it names them.
 macro_rules! fields {
-    (|$line:ident| every { $($every:tt)+ } named { $($named:tt)+ }) => {
+    (|$line:ident|
+     every { $($every:tt)+ }
+     flux_sensor { $($flux:tt)+ }
+     $(since $capability:literal { $($since:tt)+ })*) => {
         /// Number of the fields that a line has if the host names none.
         pub(crate) const FIELDS_OF_EVERY_LINE: usize = fields!(@count $($every)+);
-        fields!(@device |$line| $($every)+ $($named)+);
+        /// The fields of the heat-flux sensor.
+        pub const FLUX_FIELDS: TelemetryFields =
+            TelemetryFields::of_first(fields!(@count $($every)+ $($flux)+)).without(DEFAULT_FIELDS);
+        /// The capabilities of the groups, each with a comma before it, for the answer to `id`.
+        macro_rules! capabilities_of_fields {
+            () => { concat!($(",", $capability),*) };
+        }
+        fields!(@device |$line| $($every)+ $($flux)+ $($($since)+)*);
         #[cfg(feature = "host")]
-        fields!(@host $($every)+ $($named)+);
+        fields!(@host
+            [Need::Nothing] { $($every)+ }
+            [Need::FluxSensor] { $($flux)+ }
+            $([Need::Capability($capability)] { $($since)+ })*
+        );
     };
     (@count $($name:literal $column:ident: $kind:ty, $unit:literal, $what:literal = $value:expr;)+) => {
         [$($name),+].len()
@@ -66,7 +81,9 @@ macro_rules! fields {
             })+
         }
     };
-    (@host $($name:literal $column:ident: $kind:ty, $unit:literal, $what:literal = $value:expr;)+) => {
+    (@host $([$need:expr] {
+        $($name:literal $column:ident: $kind:ty, $unit:literal, $what:literal = $value:expr;)+
+    })+) => {
         /// A telemetry line as a host reads it; what the device does not know, or was not asked for, is `None`.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Telemetry {
@@ -74,8 +91,8 @@ macro_rules! fields {
             pub tick: u32,
             /// State of the device, with its fault if it is tripped.
             pub state: StateName,
-            $(#[doc = concat!($what, ".")]
-            pub $column: Option<<$kind as Kind>::Host>,)+
+            $($(#[doc = concat!($what, ".")]
+            pub $column: Option<<$kind as Kind>::Host>,)+)+
             /// Whether the set-point was limited to its range.
             pub limited: bool,
             /// Whether the line says that the tile was never identified; a line that says `limited` does not tell.
@@ -85,7 +102,7 @@ macro_rules! fields {
         impl Telemetry {
             /// A line without fields and remark.
             pub const fn new(tick: u32, state: StateName) -> Self {
-                Self { tick, state, $($column: None,)+ limited: false, is_untuned: false }
+                Self { tick, state, $($($column: None,)+)+ limited: false, is_untuned: false }
             }
 
             /// Takes these fields from the front of `words`; `None` if one is missing or not of its kind.
@@ -94,30 +111,32 @@ macro_rules! fields {
                 fields: TelemetryFields,
                 words: &mut impl Iterator<Item = &'a str>,
             ) -> Option<()> {
-                $(if fields.contains(Index::$column as usize) {
+                $($(if fields.contains(Index::$column as usize) {
                     let word = words.next()?;
                     if word != UNKNOWN_WORD {
                         self.$column = Some(<$kind>::read(word)?);
                     }
-                })+
+                })+)+
                 Some(())
             }
         }
 
         /// The fields as columns of tables, in the order of a line.
-        pub const COLUMNS: &[Column; NAMES.len()] = &[$(Column {
+        pub const COLUMNS: &[Column; NAMES.len()] = &[$($(Column {
             field: $name,
             name: stringify!($column),
             unit: $unit,
             description: $what,
+            need: $need,
             form: <$kind as Kind>::FORM,
             value: |line| line.$column.map(<$kind>::value),
-        },)+];
+        },)+)+];
     };
 }
 
-// A row: name on the line, column of tables, kind, unit as BIDS writes it, what it is, and its value. New fields are appended to
-// those that are named.
+// A row: name on the line, column of tables, kind, unit as BIDS writes it, what it is, and its value. A new field is
+// appended after all others: to the last group, or as a group of its own, `since` the capability by which hosts know that firmware
+// has it; the answer to `id` takes the word from there.
 fields! {
     |line|
     every {
@@ -131,12 +150,17 @@ fields! {
         "current" current_a: Amperes<3>, "A", "Magnitude of the measured current" = Some(line.telemetry.current);
         "evaluations" evaluations: Count, "", "Evaluations of erfcx since the device's reset" = Some(line.telemetry.evaluations);
     }
-    named {
+    flux_sensor {
         "flux" flux_w_m2: WattsPerSquareMetre, "W/m^2", "Heat flux out of the skin by the heat-flux sensor" = line.flux.and_then(|state| state.flux);
         "surface" surface_c: Temperature<4>, "degC", "Estimate of the display's surface under the finger" = line.flux.and_then(|state| state.surface);
         "finger" known: Knowledge, "", "What is known of the finger by its flux" = line.flux.map(|state| state.knowledge);
     }
+    since "check" {
+        "check" check_c: Temperature<4>, "degC", "Second thermistor of the display, which checks the first one" = line.telemetry.check;
+    }
 }
+
+pub(crate) use capabilities_of_fields;
 
 /// No field beside tick, state and remark.
 pub const NO_FIELDS: TelemetryFields = TelemetryFields::NONE;
@@ -144,11 +168,6 @@ pub const NO_FIELDS: TelemetryFields = TelemetryFields::NONE;
 pub const DEFAULT_FIELDS: TelemetryFields = TelemetryFields::of_first(FIELDS_OF_EVERY_LINE);
 /// All fields.
 pub const ALL_FIELDS: TelemetryFields = TelemetryFields::of_first(NAMES.len());
-/// The fields of the heat-flux sensor.
-pub const FLUX_FIELDS: TelemetryFields = NO_FIELDS
-    .with(Index::flux_w_m2 as usize)
-    .with(Index::surface_c as usize)
-    .with(Index::known as usize);
 
 /// The chosen fields, or the default ones if there is none.
 pub fn chosen_or_default(chosen: TelemetryFields) -> TelemetryFields {

@@ -3,6 +3,7 @@
 //! A [`Command`] writes its line, and its answer is read; [`Client`] sends it, waits for its answer, keeps telemetry apart from
 //! answers, and sends the sign of life that a streaming device needs.
 
+mod available_fields;
 mod clock;
 mod error;
 mod event;
@@ -24,6 +25,7 @@ use crate::link::{Link, LinkError, ReceivedLine};
 use crate::text::escaped_line;
 use streams::{Stream, TelemetryStreams};
 
+pub use available_fields::AvailableFields;
 pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
 pub use event::ReceivedEvent;
@@ -529,8 +531,8 @@ impl<L: Link> Client<L> {
                 let interval_ms = interval.parse().map_or(0.0, f64::ceil);
                 let named = words.filter_map(place_of_field);
                 let fields = chosen_or_default(named.fold(NO_FIELDS, TelemetryFields::with));
-                let stream = Stream { interval_ms: interval_ms as u32, fields };
-                self.streams.set(finger, stream, self.link.now());
+                let since = self.link.now();
+                self.streams.set(finger, Stream { interval_ms: interval_ms as u32, fields, since });
             }
             (Some("checksum"), Some(switch)) => self.checksums = switch == "on",
             (Some("abort"), None) if finger.is_none() => self.may_be_driven = false,

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use thermal_client::client::{Client, StationRequest, Telemetry, TelemetryColumn};
+use thermal_client::client::{AvailableFields, Client, QueryIdentity, StationRequest, Telemetry};
 use thermal_device::StateName;
 use thermal_device::safety::Fault;
-use thermal_wire::host::COLUMNS;
+use thermal_wire::host::{COLUMNS, Need};
 
 use crate::fake_device::{FakeDevice, answers, knows};
 
@@ -194,16 +194,75 @@ fn a_line_that_waited_while_its_fields_were_changed_is_dropped() {
     assert_eq!((counts.dropped, counts.damaged, counts.lost), (2, 0, 0));
 }
 
-/// The longest interval, of a finger that is addressed, with a checksum (docs/protocol.md).
 #[test]
-fn a_stream_with_the_fields_of_a_heat_flux_sensor_fits_into_a_line_and_is_read_into_its_columns() {
-    let stream = StationRequest::stream_with_flux(60_000).to_string();
-    assert!(format!("@4 {stream}*00").len() <= 96, "{stream}");
+fn a_stream_that_was_ended_goes_on_with_the_same_fields_without_a_loss() {
+    let mut client = FakeDevice::client(|_| answers("ok"));
+    for tick in [5, 11] {
+        client.ask(&StationRequest::stream_fields(5, &["setpoint"])).unwrap();
+        client.link().sends(5, &format!("T {tick} armed 33.00000 -"));
+        client.wait(Duration::from_millis(6)).unwrap();
+        let taken = client.next_telemetry(Duration::ZERO).unwrap();
+        assert_eq!(taken.map(|line| line.telemetry.tick), Some(tick));
+        client.ask(&StationRequest::stream(0)).unwrap();
+    }
+    assert_eq!(client.counts().dropped, 0);
+}
+
+/// What a finger of a device has whose firmware has these capabilities.
+fn available(capabilities: &str, has_flux_sensor: bool) -> AvailableFields {
+    let id = format!(
+        "ok thermal-display 0.2.0 fingers=1 tick_hz=1000 scan_hz=16000 protocol=1 capabilities={capabilities}"
+    );
+    let identity = FakeDevice::client(move |_| answers(&id)).ask(&QueryIdentity).unwrap();
+    AvailableFields::of(&identity, has_flux_sensor)
+}
+
+/// The device answers with the fields that it knows only, and refuses a line with another one (docs/protocol.md).
+#[test]
+fn fields_of_a_capability_are_asked_for_of_firmware_that_has_it_only() {
+    let older = "upload,checksum,flux";
+    assert_eq!(available(older, false), AvailableFields::OF_EVERY_LINE);
+    assert_eq!(available(older, false).stream(10).to_string(), "stream 10");
+    let with_flux =
+        "stream 10 setpoint display sink skin room force demand current flux surface finger";
+    assert_eq!(available(older, true).stream(10).to_string(), with_flux);
+    for column in COLUMNS {
+        if let Need::Capability(word) = column.need {
+            let names =
+                |fields: AvailableFields| fields.further_columns().map(|column| column.name);
+            let newer = available(&format!("{older},{word}"), false);
+            assert!(names(newer).any(|name| name == column.name));
+            let request = newer.stream(10).to_string();
+            assert!(request.split(' ').any(|name| name == column.field), "{request}");
+            assert_eq!(AvailableFields::of_table(names(newer)), newer);
+        }
+    }
+}
+
+/// At any interval, of a finger that is addressed, with a checksum (docs/protocol.md).
+#[test]
+fn a_stream_with_all_that_a_device_has_fits_into_a_line() {
+    let capabilities: Vec<_> = (COLUMNS.iter())
+        .filter_map(|column| match column.need {
+            Need::Capability(word) => Some(word),
+            _ => None,
+        })
+        .collect();
+    for interval_ms in [1, 10, 100, 1000, 10_000, 60_000] {
+        let stream = available(&capabilities.join(","), true).stream(interval_ms).to_string();
+        assert!(format!("@4 {stream}*00").len() <= 96, "{stream}");
+        assert!(stream.contains(" current flux surface finger"), "{stream}");
+    }
+}
+
+#[test]
+fn the_fields_of_a_heat_flux_sensor_are_read_into_their_columns() {
+    let fields = available("flux", true);
     let mut client = FakeDevice::client(|line| match line {
         "" => Vec::new(),
         _ => answers("ok"),
     });
-    client.ask(&StationRequest::stream_with_flux(10)).unwrap();
+    client.ask(&fields.stream(10)).unwrap();
     let line = "T 100 contact 30.5 30.4 24.1 33.2 24 1.5 2.25 2.2 2103.5 30.125 trusted -";
     client.link().sends(100, line);
     let line = client.next_telemetry(Duration::from_millis(200)).unwrap().unwrap().telemetry;
@@ -222,9 +281,9 @@ fn a_stream_with_the_fields_of_a_heat_flux_sensor_fits_into_a_line_and_is_read_i
         ("flux_w_m2", "2103.5"),
         ("surface_c", "30.125"),
         ("known", "trusted"),
+        ("check_c", ""),
     ];
     assert_eq!(cells, expected.map(|(name, text)| (name, text.to_owned())));
-    let numbers: Vec<_> =
-        TelemetryColumn::of_flux(true).iter().map(|column| column.number(&line)).collect();
+    let numbers: Vec<_> = fields.further_columns().map(|column| column.number(&line)).collect();
     assert_eq!(numbers, [Some(2103.5), Some(30.125), Some(1.0)]);
 }

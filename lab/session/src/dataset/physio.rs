@@ -5,7 +5,7 @@ use std::path::Path;
 
 use flate2::{Compression, GzBuilder};
 use serde_json::{Value, json};
-use thermal_client::client::{Telemetry, TelemetryColumn};
+use thermal_client::client::{AvailableFields, Telemetry, TelemetryColumn};
 use thermal_device::StateName;
 
 use super::events::UNKNOWN;
@@ -21,12 +21,12 @@ enum Column {
     State,
 }
 
-/// The columns of a recording with or without a heat-flux sensor. The count of evaluations is of the firmware, not of a finger.
-fn columns(has_flux: bool) -> Vec<Column> {
+/// The columns of a recording with these fields. The count of evaluations is of the firmware, not of a finger.
+fn columns(fields: AvailableFields) -> Vec<Column> {
     let measured = TelemetryColumn::default_ones().iter().filter(|field| !field.unit.is_empty());
     (measured.map(Column::Field))
         .chain([Column::Limited, Column::State])
-        .chain(TelemetryColumn::of_flux(has_flux).iter().map(Column::Field))
+        .chain(fields.further_columns().map(Column::Field))
         .collect()
 }
 
@@ -103,7 +103,7 @@ pub(super) fn compressed(
     interval_ms: u32,
 ) -> Result<Rows, RecordingError> {
     let mut gzip = GzBuilder::new().mtime(0).write(Vec::new(), Compression::default());
-    let columns = columns(telemetry::has_flux_columns(telemetry)?);
+    let columns = columns(telemetry::fields(telemetry)?);
     let nothing = vec![UNKNOWN; columns.len()].join("\t") + "\n";
     let mut next_row: i64 = 0;
     let mut off_max_s: f64 = 0.0;

@@ -7,7 +7,7 @@ use std::time::SystemTime;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use thermal_client::client::{Identity, Telemetry};
+use thermal_client::client::{AvailableFields, Identity, Telemetry};
 use thermal_client::text;
 
 use super::append::{Append, AppendFile, Writing};
@@ -151,8 +151,8 @@ pub struct Recorder {
     log: AppendFile,
     telemetry: AppendFile,
     writing: Writing,
-    /// Whether the telemetry has the columns of a heat-flux sensor: that of the device of the first trial decides.
-    has_flux_columns: bool,
+    /// The fields whose columns the telemetry has: those of the device of the first trial.
+    fields: AvailableFields,
     /// Lines since the last trial ended.
     pending: Vec<LogLine>,
     records: Vec<TrialRecord>,
@@ -229,7 +229,7 @@ impl Recorder {
             log,
             telemetry: rows,
             writing: Writing::default(),
-            has_flux_columns: false,
+            fields: AvailableFields::OF_EVERY_LINE,
             pending: Vec::new(),
             records: Vec::new(),
         }
@@ -281,7 +281,7 @@ impl Recorder {
             }
         }
         check_line_ends(&folder.source(TELEMETRY), telemetry_bytes)?;
-        let has_flux_columns = telemetry::has_flux_columns(&folder.source(TELEMETRY))?;
+        let fields = telemetry::fields(&folder.source(TELEMETRY))?;
         let log = AppendFile::open(&log_path, recorded.bytes, true)?;
         folder.remove_parts()?;
         let rows = AppendFile::open(&folder.source(TELEMETRY), telemetry_bytes, false)?;
@@ -296,7 +296,7 @@ impl Recorder {
             log,
             telemetry: rows,
             writing: Writing::default(),
-            has_flux_columns,
+            fields,
             pending: Vec::new(),
             records,
         }
@@ -361,7 +361,8 @@ impl Recorder {
     /// The file cannot be written.
     pub fn device(&mut self, report: &DeviceReport) -> Result<(), RecordingError> {
         if self.telemetry.bytes() == 0 {
-            self.has_flux_columns = report.has_flux_sensor.contains(&true);
+            let has_flux_sensor = report.has_flux_sensor.contains(&true);
+            self.fields = AvailableFields::of(&report.identity, has_flux_sensor);
         }
         let report = serde_json::to_value(report).unwrap_or_default();
         if self.info.devices.last() != Some(&report) {
@@ -399,9 +400,9 @@ impl Recorder {
         record: &TrialRecord,
         lines: impl Iterator<Item = (f64, u8, &'t Telemetry)>,
     ) -> Result<Vec<Append>, RecordingError> {
-        let has_flux = self.has_flux_columns;
-        let header = (self.telemetry.bytes() == 0).then(|| telemetry::header(has_flux));
-        let rows = lines.map(|line| telemetry::row(line, has_flux));
+        let fields = self.fields;
+        let header = (self.telemetry.bytes() == 0).then(|| telemetry::header(fields));
+        let rows = lines.map(|line| telemetry::row(line, fields));
         let rows: String = header.into_iter().chain(rows).collect();
         let rows = self.telemetry.append(rows.into_bytes())?;
         self.pending.push(LogLine {

@@ -4,7 +4,7 @@ use std::io::{self, Read};
 use std::path::Path;
 use std::time::Duration;
 
-use thermal_client::client::{ReceivedTelemetry, Telemetry, TelemetryColumn};
+use thermal_client::client::{AvailableFields, ReceivedTelemetry, Telemetry, TelemetryColumn};
 use thermal_client::text;
 use thermal_wire::host::COLUMNS;
 use thermal_wire::telemetry::{ALL_FIELDS, UNKNOWN_WORD};
@@ -13,28 +13,28 @@ use super::{RecordingError, unreadable};
 
 /// Columns before those of the telemetry.
 const BEFORE: [&str; 4] = ["t_s", "finger", "tick", "state"];
-/// Column between those that every device reports and those of a heat-flux sensor.
+/// Column between those of every line and the further ones.
 const REMARK: &str = "remark";
 
-/// The first line, of a device with or without a heat-flux sensor.
-pub(super) fn header(has_flux_sensor: bool) -> String {
+/// The first line, of a device with these fields.
+pub(super) fn header(fields: AvailableFields) -> String {
     let name = |column: &TelemetryColumn| column.name;
     let names = (BEFORE.into_iter())
         .chain(TelemetryColumn::default_ones().iter().map(name))
         .chain([REMARK])
-        .chain(TelemetryColumn::of_flux(has_flux_sensor).iter().map(name));
+        .chain(fields.further_columns().map(name));
     names.collect::<Vec<_>>().join(",") + "\n"
 }
 
 /// A line at a time of the session, s, of a finger of the device. Values that are not known are empty.
-pub(super) fn row((t_s, finger, line): (f64, u8, &Telemetry), has_flux_sensor: bool) -> String {
+pub(super) fn row((t_s, finger, line): (f64, u8, &Telemetry), fields: AvailableFields) -> String {
     let cell = |column: &TelemetryColumn| column.text(line).unwrap_or_default();
     let before =
         [format!("{t_s:.4}"), finger.to_string(), line.tick.to_string(), line.state.name().into()];
     let cells = (before.into_iter())
         .chain(TelemetryColumn::default_ones().iter().map(cell))
         .chain([line.remark().unwrap_or(UNKNOWN_WORD).into()])
-        .chain(TelemetryColumn::of_flux(has_flux_sensor).iter().map(cell));
+        .chain(fields.further_columns().map(cell));
     cells.collect::<Vec<_>>().join(",") + "\n"
 }
 
@@ -50,12 +50,11 @@ fn rows(path: &Path) -> Result<csv::Reader<impl Read>, RecordingError> {
     Ok(rows)
 }
 
-/// Whether a file has the columns of a heat-flux sensor.
-pub(super) fn has_flux_columns(path: &Path) -> Result<bool, RecordingError> {
+/// The fields whose columns a file has.
+pub(super) fn fields(path: &Path) -> Result<AvailableFields, RecordingError> {
     let mut rows = rows(path)?;
     let header = rows.headers().map_err(unreadable_csv(path))?;
-    let mut columns = TelemetryColumn::of_flux(true).iter();
-    Ok(columns.all(|column| header.iter().any(|name| name == column.name)))
+    Ok(AvailableFields::of_table(header.iter()))
 }
 
 /// All lines with their times, s.

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use thermal_client::client::{
-    BoardReport, Client, ClientError, DeviceRequest, Identity, QueryBoard, QueryCause,
-    QueryIdentity, QueryState, StationRequest,
+    AvailableFields, BoardReport, Client, ClientError, DeviceRequest, Identity, QueryBoard,
+    QueryCause, QueryIdentity, QueryState, StationRequest,
 };
 use thermal_client::commissioning::settings;
 use thermal_client::link::Link;
@@ -29,7 +29,8 @@ impl<L: Link> Executor<'_, L> {
             all_settings.push(settings(&mut self.client, address).map_err(ends)?);
             has_flux_sensor.push(self.client.flux_report(address).map_err(ends)?.is_some());
         }
-        self.fingers = Fingers::new(has_flux_sensor.clone());
+        let fields = has_flux_sensor.iter().map(|has| AvailableFields::of(&identity, *has));
+        self.fingers = Fingers::new(fields.collect());
         let board = if identity.can("board") {
             Some(self.client.ask(&QueryBoard).map_err(ends)?)
         } else {

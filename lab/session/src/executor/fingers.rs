@@ -1,6 +1,6 @@
 //! The fingers of the device: their states, and their time.
 
-use thermal_client::client::Telemetry;
+use thermal_client::client::{AvailableFields, Telemetry};
 use thermal_device::StateName;
 
 /// What is known of the device's fingers.
@@ -8,14 +8,14 @@ use thermal_device::StateName;
 pub struct Fingers {
     /// State of each in its last line of telemetry.
     states: Vec<Option<StateName>>,
-    /// Whether each has a heat-flux sensor.
-    has_flux_sensor: Vec<bool>,
+    /// Fields of telemetry that each has.
+    fields: Vec<AvailableFields>,
 }
 
 impl Fingers {
-    /// The fingers of a device, of which each has a heat-flux sensor or not.
-    pub fn new(has_flux_sensor: Vec<bool>) -> Self {
-        Self { states: vec![None; has_flux_sensor.len()], has_flux_sensor }
+    /// The fingers of a device, of which each has these fields of telemetry.
+    pub fn new(fields: Vec<AvailableFields>) -> Self {
+        Self { states: vec![None; fields.len()], fields }
     }
 
     /// Their number.
@@ -23,9 +23,10 @@ impl Fingers {
         self.states.len()
     }
 
-    /// Whether a finger has a heat-flux sensor.
-    pub fn has_flux_sensor(&self, finger: u8) -> bool {
-        self.has_flux_sensor.get(usize::from(finger)) == Some(&true)
+    /// The fields of telemetry that a finger has.
+    pub fn fields(&self, finger: u8) -> AvailableFields {
+        let fields = self.fields.get(usize::from(finger));
+        fields.copied().unwrap_or(AvailableFields::OF_EVERY_LINE)
     }
 
     /// How a line addresses a finger; a device with one has no addresses.

@@ -43,11 +43,7 @@ impl<L: Link> Executor<'_, L> {
                 self.choose_rendering(device)?;
             }
             for finger in &reporting {
-                let stream = if self.fingers.has_flux_sensor(*finger) {
-                    StationRequest::stream_with_flux(device.stream_ms)
-                } else {
-                    StationRequest::stream(device.stream_ms)
-                };
+                let stream = self.fingers.fields(*finger).stream(device.stream_ms);
                 self.command(Some(*finger), &stream)?;
             }
             let now_s = self.now_s();

@@ -2,10 +2,11 @@
 
 use egui::{Color32, RichText, Sense, Stroke, Ui, vec2};
 use egui_plot::{Line, LineStyle, Plot, PlotBounds, PlotPoints, uniform_grid_spacer};
+use thermal_client::client::Telemetry;
 
 use super::theme::{Colours, colours};
 use crate::model::FingerView;
-use crate::trace::{Sample, TRACE_S};
+use crate::trace::TRACE_S;
 
 /// Most points of a line; a window is not wider.
 const POINTS_MAX: usize = 1200;
@@ -16,8 +17,7 @@ struct Quantity {
     colour: Color32,
     /// What another quantity follows, drawn broad below it, so that both are seen where they agree.
     followed: bool,
-    of: fn(&Sample) -> f32,
-    now: Option<f64>,
+    of: fn(&Telemetry) -> Option<f64>,
 }
 
 impl Quantity {
@@ -58,21 +58,18 @@ fn temperatures(ui: &mut Ui, view: &FingerView, colours: &Colours, height: f32) 
             colour: colours.setpoint,
             followed: true,
             of: |sample| sample.setpoint_c,
-            now: view.last.setpoint_c,
         },
         Quantity {
             name: "display",
             colour: colours.display,
             followed: false,
             of: |sample| sample.display_c,
-            now: view.last.display_c,
         },
         Quantity {
             name: "skin",
             colour: colours.skin,
             followed: false,
             of: |sample| sample.skin_c,
-            now: view.last.skin_c,
         },
     ];
     let frame =
@@ -86,28 +83,24 @@ fn force(ui: &mut Ui, view: &FingerView, colours: &Colours, target_n: Option<f64
         colour: colours.force,
         followed: false,
         of: |sample| sample.force_n,
-        now: view.last.force_n,
     }];
     let frame = Frame { title: "force", unit: "N", digits: 2, range_min: 1.0, from_zero: true };
     plot(ui, view, &frame, &quantities, target_n, height);
 }
 
 fn current(ui: &mut Ui, view: &FingerView, colours: &Colours, height: f32) {
-    let sign = if view.last.demand_a.is_some_and(|demand_a| demand_a < 0.0) { -1.0 } else { 1.0 };
     let quantities = [
         Quantity {
             name: "demanded",
             colour: colours.demand,
             followed: true,
             of: |sample| sample.demand_a,
-            now: view.last.demand_a,
         },
         Quantity {
             name: "measured",
             colour: colours.current,
             followed: false,
-            of: |sample| sample.current_a,
-            now: view.last.current_a.map(|current_a| sign * current_a),
+            of: signed_current_a,
         },
     ];
     let frame = Frame {
@@ -118,6 +111,12 @@ fn current(ui: &mut Ui, view: &FingerView, colours: &Colours, height: f32) {
         from_zero: false,
     };
     plot(ui, view, &frame, &quantities, None, height);
+}
+
+/// Measured current with the sign of the demanded one, A; a demand that is not known says nothing about the direction.
+fn signed_current_a(line: &Telemetry) -> Option<f64> {
+    let sign = if line.demand_a.is_some_and(|demand_a| demand_a < 0.0) { -1.0 } else { 1.0 };
+    line.current_a.map(|current_a| sign * current_a)
 }
 
 fn plot(
@@ -132,8 +131,7 @@ fn plot(
     ui.horizontal(|ui| {
         ui.label(RichText::new(frame.title).strong());
         for quantity in quantities {
-            let now = quantity
-                .now
+            let now = (quantity.of)(&view.last)
                 .map_or("unknown".into(), |now| format!("{now:.*} {}", frame.digits, frame.unit));
             swatch(ui, quantity);
             ui.label(format!("{} {now}", quantity.name));
@@ -180,7 +178,7 @@ fn plot(
 }
 
 /// Runs of points that are known.
-fn segments(view: &FingerView, of: fn(&Sample) -> f32) -> Vec<PlotPoints<'static>> {
+fn segments(view: &FingerView, of: fn(&Telemetry) -> Option<f64>) -> Vec<PlotPoints<'static>> {
     let step = view.trace.samples().count().div_ceil(POINTS_MAX).max(1);
     let mut runs: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
     for sample in view.trace.samples() {
@@ -188,10 +186,9 @@ fn segments(view: &FingerView, of: fn(&Sample) -> f32) -> Vec<PlotPoints<'static
         if !(sample.tick / 5).is_multiple_of(step as u32) {
             continue;
         }
-        let value = of(sample);
-        match runs.last_mut() {
-            Some(run) if !value.is_nan() => run.push([-view.trace.age_s(sample), value.into()]),
-            Some(run) if !run.is_empty() => runs.push(Vec::new()),
+        match (of(sample), runs.last_mut()) {
+            (Some(value), Some(run)) => run.push([-view.trace.age_s(sample), value]),
+            (None, Some(run)) if !run.is_empty() => runs.push(Vec::new()),
             _ => {}
         }
     }
@@ -206,14 +203,12 @@ fn range(
     target: Option<f64>,
 ) -> (f64, f64) {
     let samples = view.trace.samples();
-    let values = samples
-        .flat_map(|sample| quantities.iter().map(|quantity| f64::from((quantity.of)(sample))));
+    let values =
+        samples.flat_map(|sample| quantities.iter().filter_map(|quantity| (quantity.of)(sample)));
     let values = values.chain(target).chain(frame.from_zero.then_some(0.0));
-    let (least, most) = values
-        .filter(|value| value.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
-            (least.min(value), most.max(value))
-        });
+    let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
+        (least.min(value), most.max(value))
+    });
     if least > most {
         return (0.0, frame.range_min);
     }

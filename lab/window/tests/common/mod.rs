@@ -63,8 +63,6 @@ pub fn telemetry(tick: u32, state: StateName, skin_c: f64) -> Update {
     Update::Telemetry(ReceivedTelemetry {
         finger: None,
         telemetry: Telemetry {
-            tick,
-            state,
             setpoint_c: Some(28.125),
             display_c: Some(28.25),
             sink_c: Some(27.5),
@@ -73,12 +71,7 @@ pub fn telemetry(tick: u32, state: StateName, skin_c: f64) -> Update {
             force_n: Some(1.625),
             demand_a: Some(2.375),
             current_a: Some(2.5),
-            evaluations: None,
-            flux_w_m2: None,
-            surface_c: None,
-            known: None,
-            limited: false,
-            is_untuned: false,
+            ..Telemetry::new(tick, state)
         },
         at: Duration::from_millis(tick.into()),
         lost_before: 0,

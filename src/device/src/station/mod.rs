@@ -642,6 +642,7 @@ impl Station {
             limited: reference.is_some_and(|reference| reference.limited),
             is_tuned: !self.reference_limits.are_of_untuned_tile(),
             display: readings.display.ok(),
+            check: readings.display_check.ok(),
             sink: readings.sink.ok(),
             skin: readings.skin.ok(),
             room: readings.room.ok(),

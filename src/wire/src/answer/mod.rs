@@ -31,8 +31,10 @@ pub use person::{PersonCodes, PersonReply};
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
 const PROTOCOL_VERSION: u32 = 1;
 /// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
-const CAPABILITIES: &str =
-    "upload,checksum,board,self-test,raw,course,flux,contact,surface,person,untuned";
+const CAPABILITIES: &str = concat!(
+    "upload,checksum,board,self-test,raw,course,flux,contact,surface,person,untuned",
+    crate::telemetry::capabilities_of_fields!()
+);
 
 /// What the device answers when it has done what was asked.
 pub trait DeviceAnswer {

@@ -13,7 +13,7 @@ use thermal_device::stimulus::TemperatureKind;
 use thermal_settings::{CRC_32, DisplaySurface, FluxSensor, Person};
 
 use crate::request::{PersonRequest, SessionRequest, StationRequest};
-use crate::telemetry::{DEFAULT_FIELDS, FLUX_FIELDS, NO_FIELDS, place_of_field};
+use crate::telemetry::{DEFAULT_FIELDS, NO_FIELDS, place_of_field};
 use crate::{Millimetres, PersonData, UploadLine};
 
 /// Square millimetres, in which the protocol counts areas, per square metre.
@@ -23,14 +23,6 @@ impl StationRequest {
     /// Telemetry at this interval, ms, with the default fields; 0 ends it.
     pub fn stream(interval_ms: u32) -> Self {
         Self::Stream { interval_ms: f64::from(interval_ms).into(), fields: DEFAULT_FIELDS }
-    }
-
-    /// The same of a finger with a heat-flux sensor, with the sensor's fields. The count of evaluations is left out, which says nothing
-    /// of the finger.
-    pub fn stream_with_flux(interval_ms: u32) -> Self {
-        let count = place_of_field("evaluations").map_or(NO_FIELDS, |place| NO_FIELDS.with(place));
-        let fields = DEFAULT_FIELDS.union(FLUX_FIELDS).without(count);
-        Self::Stream { interval_ms: f64::from(interval_ms).into(), fields }
     }
 
     /// Telemetry at this interval, ms, with the fields of these names ([`NAMES`](crate::telemetry::NAMES)).
