@@ -49,11 +49,17 @@ impl AvailableFields {
     }
 
     /// Telemetry at this interval, ms, with these fields. If the line would be too long with the address of a finger and a
-    /// checksum, the count of evaluations is left out, then the newest fields.
+    /// checksum, the count of evaluations is left out, then the newest fields. At 1 ms those that need a capability are left out, too: the
+    /// serial line carries 100 bytes in a millisecond, and the fields of every line take up to 95.
     pub fn stream(self, interval_ms: u32) -> StationRequest {
         let of =
             |fields| StationRequest::Stream { interval_ms: f64::from(interval_ms).into(), fields };
         let mut fields = self.0;
+        if interval_ms == 1 {
+            let needs_capability = |column: &Column| matches!(column.need, Need::Capability(_));
+            let newer = (0..).zip(COLUMNS).filter(|(_, column)| needs_capability(column));
+            fields = newer.fold(fields, |fields, (place, _)| fields.without(NO_FIELDS.with(place)));
+        }
         for place in place_of_field(LEAST_NEEDED).into_iter().chain((0..COLUMNS.len()).rev()) {
             if format!("@4 {}*00", of(fields)).len() <= LINE_MAX_BYTES {
                 break;
