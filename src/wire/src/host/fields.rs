@@ -1,6 +1,6 @@
 //! Words of an answer.
 
-use core::str::FromStr;
+use super::finite;
 
 /// The words of an answer after `ok`.
 #[derive(Clone, Copy, Debug)]
@@ -28,16 +28,11 @@ impl<'a> Fields<'a> {
         words.find_map(|(word, value)| (word == name).then_some(value))
     }
 
-    /// The number behind `name=`.
-    fn number<T: FromStr>(&self, name: &str) -> Option<T> {
-        self.word(name)?.parse().ok()
-    }
-
-    /// The numbers behind these names.
+    /// The finite numbers behind these names.
     pub fn numbers<const N: usize>(&self, names: [&str; N]) -> Option<[f64; N]> {
         let mut numbers = [0.0; N];
         for (number, name) in numbers.iter_mut().zip(names) {
-            *number = self.number(name)?;
+            *number = finite(self.word(name)?)?;
         }
         Some(numbers)
     }
