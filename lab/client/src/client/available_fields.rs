@@ -16,10 +16,10 @@ const LEAST_NEEDED: &str = "evaluations";
 pub struct AvailableFields(TelemetryFields);
 
 impl AvailableFields {
-    /// Those of every line alone.
+    /// The fields of every line, without any further field.
     pub const OF_EVERY_LINE: Self = Self(DEFAULT_FIELDS);
 
-    /// Those of a device with this firmware, with a heat-flux sensor or without.
+    /// The fields that a device with this firmware has, with a heat-flux sensor or without.
     pub fn of(identity: &Identity, has_flux_sensor: bool) -> Self {
         Self::further(|column| match column.need {
             Need::Nothing => true,
@@ -28,12 +28,12 @@ impl AvailableFields {
         })
     }
 
-    /// Those whose columns a table has, by the names in its header.
+    /// The fields whose columns a recorded table has, by the names in its header.
     pub fn of_table<'a>(names: impl Iterator<Item = &'a str> + Clone) -> Self {
         Self::further(|column| names.clone().any(|name| name == column.name))
     }
 
-    /// Those of every line, and those of these columns.
+    /// The fields of every line, and the fields whose columns are chosen.
     fn further(are: impl Fn(&Column) -> bool) -> Self {
         let places = (0..).zip(COLUMNS).filter(|(_, column)| are(column)).map(|(place, _)| place);
         Self(places.fold(DEFAULT_FIELDS, TelemetryFields::with))

@@ -126,7 +126,7 @@ vocabulary! {
         AmpereSupply = "ampere supply",
         /// Voltage across the load in its last pulse, without its sign.
         ScopeLoadVolt = "scope load-volt",
-        /// Its ripple, RMS.
+        /// RMS ripple of the voltage across the load in its last pulse.
         ScopeLoadRipple = "scope load-ripple",
         /// Ripple at the current input in that pulse, RMS.
         ScopeMirrorRipple = "scope mirror-ripple",

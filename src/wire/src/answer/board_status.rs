@@ -52,7 +52,7 @@ vocabulary! {
     /// Whether the watchdogs run.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Watchdogs: "watchdogs" {
-        /// They do, whatever the program does.
+        /// The watchdogs run, whatever the program or a debugger does.
         Running = "running",
         /// A debugger has selected that they, or the PWM timers, stand still while it halts the core.
         Frozen = "frozen",

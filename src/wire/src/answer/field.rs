@@ -97,7 +97,7 @@ impl<K: Kind> Field for IfReported<K> {
     }
 }
 
-/// The name alone, if it is so.
+/// A truth value: the name stands alone on the line if it is true.
 pub enum NameAlone {}
 
 impl Field for NameAlone {

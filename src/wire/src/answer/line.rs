@@ -51,7 +51,7 @@ impl<'a, 'b> AnswerLine<'a, 'b> {
         &mut self.buffer
     }
 
-    /// The same with the name of the next value.
+    /// Appends the name of the next value and `=`; the value is to be appended to the buffer.
     #[inline(never)]
     pub fn named(&mut self) -> &mut LineBuffer {
         let name = self.next_name();

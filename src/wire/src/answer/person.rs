@@ -19,7 +19,7 @@ pub struct PersonReply {
 pub struct PersonCodes(heapless::Vec<PersonCode, { Persons::MAX }>);
 
 impl PersonCodes {
-    /// Those of these persons.
+    /// The codes of these persons, in their order.
     pub fn new(persons: &Persons) -> Self {
         let mut codes = heapless::Vec::new();
         for person in persons.as_slice() {
